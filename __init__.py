@@ -1,0 +1,1 @@
+"""Southwell: are these natural frequencies of a rotating blade right?"""

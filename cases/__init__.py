@@ -1,0 +1,1 @@
+"""Which blade, which codes, which target; runs, compares, judges; imports references, core."""

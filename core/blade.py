@@ -1,0 +1,210 @@
+"""The one description of a blade that every code is given.
+
+Axes, stated here once and converted by every adapter at its own door (right-handed, all rotating with the hub):
+
+* ``x`` runs along the blade, from the hub's centre outwards;
+* ``z`` is the rotor's axis: the rotor turns at ``omega`` about ``+z``;
+* ``y = z × x`` lies in the plane of rotation, in the direction of motion.
+
+Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
+flapwise. A section's own axes are the blade's turned by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
+
+Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bending about y, bending about z)``;
+forces likewise ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+AXIAL, SHEAR_Y, SHEAR_Z, TORSION, BEND_Y, BEND_Z = range(6)
+
+
+class BladeError(ValueError):
+    """A blade that cannot be: the message names the field, the value, the likely cause and the remedy."""
+
+
+@dataclass(frozen=True)
+class Blade:
+    """A rotating blade clamped to its hub; properties vary linearly between stations.
+
+    Attributes:
+        name: what to call it in a table.
+        stations: (n,) arc length along the reference curve from the root, m; from 0, strictly increasing.
+        stiffness: (n, 6, 6) section stiffness in section axes; ``inf`` on the diagonal means that strain is rigid
+            (its row and column are otherwise zero): Euler–Bernoulli is ``inf`` in both shears.
+        mass: (n, 6, 6) mass per length in section axes: linear and angular momentum from velocity and angular
+            velocity of the reference point.
+        twist: (n,) rad, structural twist.
+        curve: (n, 3) m, reference curve from the root in blade axes (prebend, sweep); straight along x by default.
+        hub_radius: m, from the rotor's axis to the root.
+        precone: rad, the blade's axis tilted from the plane of rotation towards +z.
+        pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
+        tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
+    """
+
+    name: str
+    stations: Array
+    stiffness: Array
+    mass: Array
+    twist: Array
+    hub_radius: float = 0.0
+    curve: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    precone: float = 0.0
+    pitch: float = 0.0
+    tip_mass: Array = field(default_factory=lambda: np.zeros((6, 6)))
+
+    def __post_init__(self) -> None:
+        set_ = object.__setattr__
+        for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass"):
+            set_(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
+        if self.curve.size == 0:
+            set_(self, "curve", np.outer(self.stations, [1.0, 0.0, 0.0]))
+        _check(self)
+
+    @property
+    def length(self) -> float:
+        """Arc length of the reference curve, m."""
+        return float(self.stations[-1])
+
+
+def _check(blade: Blade) -> None:
+    n = len(blade.stations)
+    shapes = {"stations": (n,), "stiffness": (n, 6, 6), "mass": (n, 6, 6), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6)}
+    for name, shape in shapes.items():
+        value = getattr(blade, name)
+        if value.shape != shape:
+            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
+        finite = ~np.isnan(value) if name == "stiffness" else np.isfinite(value)
+        if not finite.all():
+            raise BladeError(f"{name}: not a finite number at index {np.argwhere(~finite)[0].tolist()}: a gap in the table? give every value")
+    if n < 2:
+        raise BladeError(f"stations: {n} given: a blade needs at least a root and a tip")
+    if blade.stations[0] != 0.0:
+        raise BladeError(f"stations: first is {blade.stations[0]:g} m: lengths are measured from the root; start at 0")
+    if (np.diff(blade.stations) <= 0).any():
+        k = int(np.argmax(np.diff(blade.stations) <= 0)) + 1
+        raise BladeError(f"stations: number {k} ({blade.stations[k]:g} m) does not lie beyond the one before it "
+                         f"({blade.stations[k - 1]:g} m): sort them and drop duplicates")
+    if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
+        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: it is a distance from the rotor's axis; give 0 or more")
+    for name in ("stiffness", "mass"):
+        diagonal = np.diagonal(getattr(blade, name), axis1=1, axis2=2)
+        bad = diagonal <= 0 if name == "stiffness" else diagonal < 0
+        if name == "mass":
+            bad = bad | (diagonal[:, :3] <= 0).any(1, keepdims=True)
+        if bad.any():
+            k, i = np.argwhere(bad)[0]
+            raise BladeError(f"{name}: diagonal entry {i} at station {k} is {diagonal[k, i]:g}: it must be positive; sign or unit wrong?")
+
+
+def section_stiffness(EA: ArrayLike, GJ: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike,
+                      GA_y: ArrayLike = np.inf, GA_z: ArrayLike = np.inf) -> Array:
+    """Uncoupled section stiffness (n, 6, 6), N and N m²; EI_y resists flap, EI_z chordwise motion (at zero twist)."""
+    return _diagonal(EA, GA_y, GA_z, GJ, EI_y, EI_z)
+
+
+def section_mass(mass: ArrayLike, I_y: ArrayLike = 0.0, I_z: ArrayLike = 0.0) -> Array:
+    """Section mass (n, 6, 6) centred on the axis: mass kg/m, rotary inertias ``I_y``, ``I_z`` kg m (polar: their sum)."""
+    return _diagonal(mass, mass, mass, np.add(I_y, I_z), I_y, I_z)
+
+
+def _diagonal(*entries: ArrayLike) -> Array:
+    columns = np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(e, float)) for e in entries]), axis=-1)
+    return np.eye(6) * columns[:, None, :]
+
+
+def uniform_blade(name: str, length: float, hub_radius: float, *, EA: float, GJ: float, EI_y: float, EI_z: float,
+                  mass: float, I_y: float = 0.0, I_z: float = 0.0, GA_y: float = np.inf, GA_z: float = np.inf) -> Blade:
+    """A straight uniform untwisted cantilever; arguments as for ``section_stiffness`` and ``section_mass``."""
+    return Blade(name=name, stations=np.array([0.0, length]), twist=np.zeros(2), hub_radius=hub_radius,
+                 stiffness=np.repeat(section_stiffness(EA, GJ, EI_y, EI_z, GA_y, GA_z), 2, axis=0),
+                 mass=np.repeat(section_mass(mass, I_y, I_z), 2, axis=0))
+
+
+@dataclass(frozen=True)
+class Sections:
+    """An uncoupled blade's properties sampled at some arc lengths, in each section's own (twisted) axes; SI."""
+
+    EA: Array
+    GA_y: Array
+    GA_z: Array
+    GJ: Array
+    EI_y: Array
+    EI_z: Array
+    mass: Array
+    I_x: Array
+    I_y: Array
+    I_z: Array
+    twist: Array
+
+
+def sample(blade: Blade, s: ArrayLike) -> Sections:
+    """Engineering properties at arc lengths ``s`` (m).
+
+    Raises:
+        BladeError: if the sections are coupled, so that these properties do not describe the blade (see ``coupled``).
+    """
+    if coupled(blade):
+        raise BladeError(f"{blade.name}: its sections couple (off-diagonal stiffness or mass); this code takes uncoupled sections only")
+    k, m = stiffness_at(blade, s), mass_at(blade, s)
+    d, e = np.diagonal(k, axis1=1, axis2=2), np.diagonal(m, axis1=1, axis2=2)
+    return Sections(EA=d[:, 0], GA_y=d[:, 1], GA_z=d[:, 2], GJ=d[:, 3], EI_y=d[:, 4], EI_z=d[:, 5],
+                    mass=e[:, 0], I_x=e[:, 3], I_y=e[:, 4], I_z=e[:, 5], twist=twist_at(blade, s))
+
+
+def stiffness_at(blade: Blade, s: ArrayLike) -> Array:
+    """Section stiffness (k, 6, 6) at arc lengths ``s``; rigid strains stay ``inf``."""
+    rigid = np.isinf(blade.stiffness).any(0)
+    finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
+    out = _interpolate(blade.stations, finite, s)
+    out[:, rigid] = np.inf
+    return out
+
+
+def mass_at(blade: Blade, s: ArrayLike) -> Array:
+    """Section mass per length (k, 6, 6) at arc lengths ``s``."""
+    return _interpolate(blade.stations, blade.mass, s)
+
+
+def twist_at(blade: Blade, s: ArrayLike) -> Array:
+    """Structural twist (k,) at arc lengths ``s``, rad."""
+    return np.interp(np.atleast_1d(s), blade.stations, blade.twist)
+
+
+def _interpolate(stations: Array, values: Array, s: ArrayLike) -> Array:
+    s = np.atleast_1d(np.asarray(s, float))
+    k = np.clip(np.searchsorted(stations, s, side="right") - 1, 0, len(stations) - 2)
+    t = ((s - stations[k]) / (stations[k + 1] - stations[k]))[:, None, None]
+    return (1 - t) * values[k] + t * values[k + 1]
+
+
+def coupled(blade: Blade) -> bool:
+    """Whether any section has off-diagonal stiffness or mass about the reference curve."""
+    off = ~np.eye(6, dtype=bool)
+    scale = np.where(np.isinf(blade.stiffness), 0.0, np.abs(blade.stiffness)).max()
+    return bool((np.abs(blade.stiffness[:, off]) > 1e-12 * scale).any()
+                or (np.abs(blade.mass[:, off]) > 1e-12 * np.abs(blade.mass).max()).any())
+
+
+def straight(blade: Blade) -> bool:
+    """Whether the reference curve runs along x (no prebend or sweep)."""
+    return bool(np.abs(blade.curve - np.outer(blade.stations, [1, 0, 0])).max() <= 1e-12 * blade.length)
+
+
+def uniform(blade: Blade) -> bool:
+    """Whether every station has the same section and no twist, and the blade is straight, without precone, pitch or tip mass."""
+    same = all(np.allclose(v, v[0], rtol=1e-12, atol=0) for v in (np.diagonal(blade.mass, axis1=1, axis2=2),
+                                                                  np.diagonal(blade.stiffness, axis1=1, axis2=2)))
+    return same and not coupled(blade) and straight(blade) and not blade.twist.any() and not (
+        blade.precone or blade.pitch or blade.tip_mass.any())
+
+
+def without_rotary_inertia(blade: Blade) -> Blade:
+    """The same blade with mass but no sectional moments of inertia."""
+    mass = blade.mass.copy()
+    mass[:, 3:, 3:] = 0.0
+    return replace(blade, mass=mass)

@@ -1,0 +1,43 @@
+"""Modes, as every code returns them."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STATIONS: Array = np.linspace(0.0, 1.0, 21)
+"""Fractions of the blade's length at which every code samples its mode shapes."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural frequencies and mode shapes of a blade at one rotor speed.
+
+    Attributes:
+        omega: rotor speed, rad/s.
+        frequencies: (m,) natural frequencies, rad/s, ascending.
+        shapes: (m, 21, 4) complex: displacement along the blade axes x, y, z (m) and rotation about x (rad) of the
+            reference curve at ``STATIONS``; any scale, the phase carries the gyroscopic lag.
+        elements: what refinement this is (elements, or terms of a series).
+        damping: (m,) damping ratios, zero for undamped models.
+        uncertainty: (m,) relative, where the code itself brackets its answer; empty: to be had by refinement.
+        seconds: wall time of the solution.
+    """
+
+    omega: float
+    frequencies: Array
+    shapes: NDArray[np.complex128]
+    elements: int
+    damping: Array = field(default_factory=lambda: np.zeros(0))
+    uncertainty: Array = field(default_factory=lambda: np.zeros(0))
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.shapes.shape != (len(self.frequencies), len(STATIONS), 4):
+            raise ValueError(f"shapes: {self.shapes.shape}, expected {(len(self.frequencies), len(STATIONS), 4)}")
+        if not (np.isfinite(self.frequencies).all() and np.isfinite(self.shapes).all()):
+            raise ValueError("frequencies or shapes are not finite")
+        if not len(self.damping):
+            object.__setattr__(self, "damping", np.zeros(len(self.frequencies)))

@@ -1,0 +1,1 @@
+"""Answers from elsewhere: one module per foreign code or closed form; imports core."""

@@ -1,0 +1,1 @@
+"""Shows what the cases found: Markdown, figures, command line; imports cases, core."""
