@@ -73,22 +73,26 @@ class Blade:
 
 def _check(blade: Blade) -> None:
     n = len(blade.stations)
-    shapes = {"stations": (n,), "stiffness": (n, 6, 6), "mass": (n, 6, 6), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6)}
+    matrices = dict.fromkeys(("stiffness", "mass"), (n, 6, 6))
+    shapes = {"stations": (n,), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6), **matrices}
     for name, shape in shapes.items():
         value = getattr(blade, name)
         if value.shape != shape:
             raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
         finite = ~np.isnan(value) if name == "stiffness" else np.isfinite(value)
         if not finite.all():
-            raise BladeError(f"{name}: not a finite number at index {np.argwhere(~finite)[0].tolist()}: a gap in the table? give every value")
+            where = np.argwhere(~finite)[0].tolist()
+            raise BladeError(f"{name}: not a finite number at index {where}: a gap in the table? give every value")
     if n < 2:
         raise BladeError(f"stations: {n} given: a blade needs at least a root and a tip")
     if blade.stations[0] != 0.0:
         raise BladeError(f"stations: first is {blade.stations[0]:g} m: lengths are measured from the root; start at 0")
     if (np.diff(blade.stations) <= 0).any():
         k = int(np.argmax(np.diff(blade.stations) <= 0)) + 1
-        raise BladeError(f"stations: number {k} ({blade.stations[k]:g} m) does not lie beyond the one before it "
-                         f"({blade.stations[k - 1]:g} m): sort them and drop duplicates")
+        raise BladeError(
+            f"stations: number {k} ({blade.stations[k]:g} m) does not lie beyond the one before it "
+            f"({blade.stations[k - 1]:g} m): sort them and drop duplicates"
+        )
     if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
         raise BladeError(f"hub_radius: {blade.hub_radius:g} m: it is a distance from the rotor's axis; give 0 or more")
     for name in ("stiffness", "mass"):
@@ -98,31 +102,54 @@ def _check(blade: Blade) -> None:
             bad = bad | (diagonal[:, :3] <= 0).any(1, keepdims=True)
         if bad.any():
             k, i = np.argwhere(bad)[0]
-            raise BladeError(f"{name}: diagonal entry {i} at station {k} is {diagonal[k, i]:g}: it must be positive; sign or unit wrong?")
+            raise BladeError(
+                f"{name}: diagonal entry {i} at station {k} is {diagonal[k, i]:g}: it must be positive; sign or unit wrong?"
+            )
 
 
-def section_stiffness(EA: ArrayLike, GJ: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike,
-                      GA_y: ArrayLike = np.inf, GA_z: ArrayLike = np.inf) -> Array:
+def section_stiffness(
+    EA: ArrayLike, GJ: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike, GA_y: ArrayLike = np.inf, GA_z: ArrayLike = np.inf
+) -> Array:
     """Uncoupled section stiffness (n, 6, 6), N and N m²; EI_y resists flap, EI_z chordwise motion (at zero twist)."""
     return _diagonal(EA, GA_y, GA_z, GJ, EI_y, EI_z)
 
 
 def section_mass(mass: ArrayLike, I_y: ArrayLike = 0.0, I_z: ArrayLike = 0.0) -> Array:
-    """Section mass (n, 6, 6) centred on the axis: mass kg/m, rotary inertias ``I_y``, ``I_z`` kg m (polar: their sum)."""
+    """Section mass (n, 6, 6) centred on the axis: mass kg/m, rotary inertias ``I_y``, ``I_z`` kg m, polar their sum."""
     return _diagonal(mass, mass, mass, np.add(I_y, I_z), I_y, I_z)
 
 
 def _diagonal(*entries: ArrayLike) -> Array:
     columns = np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(e, float)) for e in entries]), axis=-1)
-    return np.eye(6) * columns[:, None, :]
+    out = np.zeros((*columns.shape, 6))
+    out[:, range(6), range(6)] = columns
+    return out
 
 
-def uniform_blade(name: str, length: float, hub_radius: float, *, EA: float, GJ: float, EI_y: float, EI_z: float,
-                  mass: float, I_y: float = 0.0, I_z: float = 0.0, GA_y: float = np.inf, GA_z: float = np.inf) -> Blade:
+def uniform_blade(
+    name: str,
+    length: float,
+    hub_radius: float,
+    *,
+    EA: float,
+    GJ: float,
+    EI_y: float,
+    EI_z: float,
+    mass: float,
+    I_y: float = 0.0,
+    I_z: float = 0.0,
+    GA_y: float = np.inf,
+    GA_z: float = np.inf,
+) -> Blade:
     """A straight uniform untwisted cantilever; arguments as for ``section_stiffness`` and ``section_mass``."""
-    return Blade(name=name, stations=np.array([0.0, length]), twist=np.zeros(2), hub_radius=hub_radius,
-                 stiffness=np.repeat(section_stiffness(EA, GJ, EI_y, EI_z, GA_y, GA_z), 2, axis=0),
-                 mass=np.repeat(section_mass(mass, I_y, I_z), 2, axis=0))
+    return Blade(
+        name=name,
+        stations=np.array([0.0, length]),
+        twist=np.zeros(2),
+        hub_radius=hub_radius,
+        stiffness=np.repeat(section_stiffness(EA, GJ, EI_y, EI_z, GA_y, GA_z), 2, axis=0),
+        mass=np.repeat(section_mass(mass, I_y, I_z), 2, axis=0),
+    )
 
 
 @dataclass(frozen=True)
@@ -149,11 +176,24 @@ def sample(blade: Blade, s: ArrayLike) -> Sections:
         BladeError: if the sections are coupled, so that these properties do not describe the blade (see ``coupled``).
     """
     if coupled(blade):
-        raise BladeError(f"{blade.name}: its sections couple (off-diagonal stiffness or mass); this code takes uncoupled sections only")
+        raise BladeError(
+            f"{blade.name}: sections couple (off-diagonal entries); this code takes uncoupled sections only"
+        )
     k, m = stiffness_at(blade, s), mass_at(blade, s)
     d, e = np.diagonal(k, axis1=1, axis2=2), np.diagonal(m, axis1=1, axis2=2)
-    return Sections(EA=d[:, 0], GA_y=d[:, 1], GA_z=d[:, 2], GJ=d[:, 3], EI_y=d[:, 4], EI_z=d[:, 5],
-                    mass=e[:, 0], I_x=e[:, 3], I_y=e[:, 4], I_z=e[:, 5], twist=twist_at(blade, s))
+    return Sections(
+        EA=d[:, 0],
+        GA_y=d[:, 1],
+        GA_z=d[:, 2],
+        GJ=d[:, 3],
+        EI_y=d[:, 4],
+        EI_z=d[:, 5],
+        mass=e[:, 0],
+        I_x=e[:, 3],
+        I_y=e[:, 4],
+        I_z=e[:, 5],
+        twist=twist_at(blade, s),
+    )
 
 
 def stiffness_at(blade: Blade, s: ArrayLike) -> Array:
@@ -186,8 +226,10 @@ def coupled(blade: Blade) -> bool:
     """Whether any section has off-diagonal stiffness or mass about the reference curve."""
     off = ~np.eye(6, dtype=bool)
     scale = np.where(np.isinf(blade.stiffness), 0.0, np.abs(blade.stiffness)).max()
-    return bool((np.abs(blade.stiffness[:, off]) > 1e-12 * scale).any()
-                or (np.abs(blade.mass[:, off]) > 1e-12 * np.abs(blade.mass).max()).any())
+    return bool(
+        (np.abs(blade.stiffness[:, off]) > 1e-12 * scale).any()
+        or (np.abs(blade.mass[:, off]) > 1e-12 * np.abs(blade.mass).max()).any()
+    )
 
 
 def straight(blade: Blade) -> bool:
@@ -196,11 +238,18 @@ def straight(blade: Blade) -> bool:
 
 
 def uniform(blade: Blade) -> bool:
-    """Whether every station has the same section and no twist, and the blade is straight, without precone, pitch or tip mass."""
-    same = all(np.allclose(v, v[0], rtol=1e-12, atol=0) for v in (np.diagonal(blade.mass, axis1=1, axis2=2),
-                                                                  np.diagonal(blade.stiffness, axis1=1, axis2=2)))
-    return same and not coupled(blade) and straight(blade) and not blade.twist.any() and not (
-        blade.precone or blade.pitch or blade.tip_mass.any())
+    """Whether every station has the same section and the blade is straight: no twist, precone, pitch or tip mass."""
+    same = all(
+        np.allclose(v, v[0], rtol=1e-12, atol=0)
+        for v in (np.diagonal(blade.mass, axis1=1, axis2=2), np.diagonal(blade.stiffness, axis1=1, axis2=2))
+    )
+    return (
+        same
+        and not coupled(blade)
+        and straight(blade)
+        and not blade.twist.any()
+        and not (blade.precone or blade.pitch or blade.tip_mass.any())
+    )
 
 
 def without_rotary_inertia(blade: Blade) -> Blade:

@@ -2,7 +2,7 @@
 
 Laws every code keeps:
 
-* it solves the blade it is given, all of it, or says in ``unsupported`` why it cannot; it never drops a property silently;
+* it solves the blade it is given, all of it, or says in ``unsupported`` why it cannot: no property silently dropped;
 * effects it lacks by construction are declared in ``model``, so that core can leave out the same;
 * frames and units are converted inside the adapter; what comes back is in the axes of ``core.blade``, SI;
 * ``solve`` is a pure function of its arguments: the same call gives the same answer in any order, in any process.

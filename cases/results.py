@@ -1,0 +1,87 @@
+"""What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+Verdict = Literal["pass", "fail", "inconclusive", "known difference", "not applicable", "not run"]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One code's answer for one mode at one speed, against the reference.
+
+    A cell without an answer (not run, not applicable) has ``mode`` 0 and no numbers. ``difference`` is
+    ``frequency/reference − 1``; ``uncertainty`` is relative, of that difference: discretisation of both sides, and
+    half a unit of the last digit for a printed table. Frequencies are in rad/s.
+
+    Attributes:
+        case: the case's name.
+        omega: rotor speed, rad/s.
+        mode: 1, 2, 3 … within the reference's modes at this speed.
+        family: chordwise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
+        code: the code's short name.
+        version: of the code.
+        role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),
+            ``same discretisation`` (held to 1e-8), ``table`` (printed numbers).
+        frequency: the code's best answer (extrapolated where refinement allows), rad/s.
+        reference: core's converged answer with the same physical effects, rad/s.
+        difference: relative.
+        uncertainty: relative.
+        target: relative; |difference| + uncertainty must not exceed it.
+        verdict: see ``cases.verdict``.
+        reason: why, where the verdict is not a plain pass; names and quantifies the cause of a known difference.
+        full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks some).
+        elements: the finest refinement used.
+        order: observed order of convergence, where there is one.
+        mac: mass-weighted MAC of the pairing.
+        seconds: wall time of the finest solution.
+    """
+
+    case: str
+    omega: float
+    mode: int
+    family: str
+    code: str
+    version: str
+    role: str
+    frequency: float | None
+    reference: float | None
+    difference: float | None
+    uncertainty: float | None
+    target: float
+    verdict: Verdict
+    reason: str = ""
+    full: float | None = None
+    elements: int | None = None
+    order: float | None = None
+    mac: float | None = None
+    seconds: float | None = None
+
+
+@dataclass(frozen=True)
+class Level:
+    """One frequency at one refinement, for convergence figures: paired to ``mode`` of the reference."""
+
+    case: str
+    omega: float
+    mode: int
+    code: str
+    elements: int
+    frequency: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything a report needs.
+
+    Attributes:
+        cells: all rows.
+        levels: every refinement's answer.
+        versions: package or code → version.
+        command: what was typed, to reproduce.
+    """
+
+    cells: tuple[Cell, ...]
+    levels: tuple[Level, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)
+    command: str = ""
