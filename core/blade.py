@@ -103,7 +103,7 @@ def _check(blade: Blade) -> None:
         if bad.any():
             k, i = np.argwhere(bad)[0]
             raise BladeError(
-                f"{name}: diagonal entry {i} at station {k} is {diagonal[k, i]:g}: it must be positive; sign or unit wrong?"
+                f"{name}: diagonal {i} at station {k} is {diagonal[k, i]:g}: it must be positive; wrong sign or unit?"
             )
 
 
