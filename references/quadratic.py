@@ -1,0 +1,141 @@
+"""Free vibration of a gyroscopic system, for the codes that hand over matrices instead of frequencies.
+
+``M q̈ + C q̇ + K q = 0`` with M symmetric and positive *semi*-definite, C skew, K symmetric positive definite: with
+``q = φ exp(iωt)`` every ω is real. The problem is solved in inverse form, whose largest eigenvalues 1/ω belong to the
+lowest modes, so that stiff constraints and massless coordinates cost no accuracy (they crowd at 1/ω = 0).
+
+Core has its own solver and never uses this one.
+"""
+
+from typing import Any, cast
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse import linalg as spla
+
+from .interface import CodeError
+
+Array = NDArray[np.float64]
+Matrix = Array | sp.spmatrix | sp.sparray
+Pairs = tuple[Array, NDArray[np.complex128]]
+
+ASYMMETRY = 1e-6
+"""Largest departure from symmetry taken for rounding (or finite differences), relative to a unit diagonal of K."""
+
+
+def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
+    """The ``count`` lowest modes of ``M q̈ + C q̇ + K q = 0``.
+
+    With ``K = L Lᵀ`` and ``M = F Fᵀ`` the states ``(Lᵀ q, Fᵀ q̇)`` make the inverse problem skew, hence i times it
+    Hermitian (L. Meirovitch, "A new method of solution of the eigenvalue problem for gyroscopic systems", AIAA Journal
+    12, 1974, eq. 15 ff., there with M⁻¹; the inverse form needs none).
+
+    Args:
+        M: (n, n) symmetric, positive semi-definite; zero rows and columns are allowed.
+        C: (n, n) skew.
+        K: (n, n) symmetric, positive definite.
+        count: how many; fewer come back if there are fewer.
+
+    Returns:
+        frequencies (m,), rad/s, positive, ascending; shapes (n, m) complex, largest entry 1.
+
+    Raises:
+        CodeError: K is not positive definite (no stable steady state), M not semi-definite, or a symmetry is missing.
+    """
+    matrices: list[Any] = [M, C, K]
+    if any(sp.issparse(matrix) for matrix in matrices):
+        matrices = [sp.csc_array(matrix) for matrix in matrices]
+        if 2 * count + 4 < matrices[0].shape[0]:
+            return _sparse(*_scaled(*matrices), count)
+        matrices = [matrix.toarray() for matrix in matrices]
+    return _dense(*_scaled(*matrices), count)
+
+
+def _scaled(M: Any, C: Any, K: Any) -> tuple[Any, Any, Any, Array]:
+    """Symmetrised matrices for coordinates in which K has a unit diagonal, and that scale (n,)."""
+    diagonal = K.diagonal()
+    if (diagonal <= 0).any():
+        raise _unstable(K)
+    scale = cast(Array, 1 / np.sqrt(diagonal))
+
+    M, C, K = (matrix * scale[:, None] * scale[None, :] for matrix in (M, C, K))
+    mass = abs(M).max()
+    # C is measured against the critical damping of the lowest modes too: at rest it is all rounding
+    for name, matrix, sign, size in (("M", M, 1, mass), ("C", C, -1, max(abs(C).max(), mass**0.5)), ("K", K, 1, 1.0)):
+        wrong = abs(matrix - sign * matrix.T).max()
+        if not np.isfinite(wrong):
+            raise CodeError(f"{name}: not finite: the code handed over no usable linearisation")
+        if wrong > ASYMMETRY * size:
+            kind = "symmetric" if sign == 1 else "skew"
+            raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
+    return (M + M.T) / 2, (C - C.T) / 2, (K + K.T) / 2, scale
+
+
+def _dense(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
+    n = len(K)
+    try:
+        L = scipy.linalg.cholesky(K, lower=True)
+    except np.linalg.LinAlgError:
+        raise _unstable(K / np.outer(scale, scale)) from None
+    m, V = np.linalg.eigh(M)
+    if m[0] < -1e-10 * m[-1]:
+        raise CodeError(f"M: lowest eigenvalue {m[0] / m[-1]:.1e} of the largest: negative mass")
+    real = m > n * np.finfo(float).eps * m[-1]
+    F = V[:, real] * np.sqrt(m[real])
+    # K q = -λ (C q + F p), p = λ Fᵀ q with λ = iω:  i [[-L⁻¹CL⁻ᵀ, -L⁻¹F], [FᵀL⁻ᵀ, 0]] y = (1/ω) y
+    coupling = scipy.linalg.solve_triangular(L, F, lower=True)
+    gyro = scipy.linalg.solve_triangular(L, scipy.linalg.solve_triangular(L, C, lower=True).T, lower=True).T
+    size = n + F.shape[1]
+    T = np.zeros((size, size), complex)
+    T[:n, :n], T[:n, n:], T[n:, :n] = -1j * gyro, -1j * coupling, 1j * coupling.T
+    # the spectrum is ± pairs and zeros, so no more than half of it is positive
+    inverse, y = scipy.linalg.eigh(T, subset_by_index=[max(size - count, (size + 1) // 2), size - 1])
+    q = scipy.linalg.solve_triangular(L, y[:n], lower=True, trans=1)
+    return _ordered(inverse, q * scale[:, None], count)
+
+
+def _sparse(M: Any, C: Any, K: Any, scale: Array, count: int) -> Pairs:
+    n = K.shape[0]
+    # no row exchanges, so that the pivots' signs are the inertia of K (Sylvester)
+    factor = spla.splu(
+        sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+    if (factor.perm_r != factor.perm_c).any() or (factor.U.diagonal() <= 0).any():
+        raise _unstable(K / scale[:, None] / scale[None, :])
+    start = np.random.default_rng(0).standard_normal(2 * n)
+    # velocities in units of a frequency near the lowest, so that both halves of a state are of a size
+    guess = factor.solve(M @ start[:n])
+    unit = np.sqrt((guess @ (K @ guess)) / (guess @ (M @ guess)))
+
+    def inverse(x: Array) -> Array:
+        """A⁻¹ S x with A = diag(K, M), S = [[-C, -M], [M, 0]]: one solve with K, none with M."""
+        q, v = x[:n], x[n:]
+        return np.concatenate([-factor.solve(C @ q + unit * (M @ v)), q / unit])
+
+    operator: Any = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]
+    k = 2 * count + 2  # ± pairs, and one to spare
+    try:
+        found = spla.eigs(operator, k=k, which="LM", v0=start, ncv=min(2 * n, max(2 * k + 1, 40)), tol=0)
+    except spla.ArpackError as error:
+        raise CodeError(f"eigenproblem: ARPACK gave up on {k} values of {2 * n} ({error}): ask for fewer") from error
+    values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
+    return _ordered(-values.imag, x[:n] * scale[:, None], count)  # 1/(iω) = -i/ω
+
+
+def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:
+    """Modes from eigenvalues 1/ω: the positive ones, ascending in ω, largest entry 1."""
+    keep = np.flatnonzero(inverse > 1e-12 * inverse.max())
+    keep = keep[np.argsort(-inverse[keep])][:count]
+    q = q[:, keep]
+    largest = q[np.abs(q).argmax(axis=0), np.arange(len(keep))]
+    return 1 / inverse[keep], cast(NDArray[np.complex128], q / largest)
+
+
+def _unstable(K: Any) -> CodeError:
+    if sp.issparse(K):
+        lowest = spla.eigsh(K, k=1, which="SA", return_eigenvectors=False)[0]
+    else:
+        lowest = np.linalg.eigvalsh((K + K.T) / 2)[0]
+    return CodeError(f"stiffness: lowest eigenvalue {lowest:.3g}: no stable steady state at this rotor speed; lower it")
