@@ -1,0 +1,184 @@
+"""Beam elements with mass: elastic between their end frames, inertia at points that ride on both ends.
+
+A point inside an element sits at ``exp ζ`` in the frame of end a, with ``ζ = ζ₀ + L (η − η₀)`` and η the logarithm of the
+relative pose of b: the undeformed element's static shape functions, kept in the coordinates in which an arc is straight.
+Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so its inertia couples both ends: a consistent mass. With the
+mass lumped at the nodes there are no such points.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import elements, inertia
+from . import spatial as sp
+from .elements import Measure
+from .model import FULL, Model
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points riding on the elements' ends, sorted by element.
+
+    Attributes:
+        element: (q,) the element each rides on.
+        rest: (q, 6) ζ₀, logarithm of the rest pose in the frame of end a.
+        shape: (q, 6, 6) L, ζ from η.
+        mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
+    """
+
+    element: Index
+    rest: Array
+    shape: Array
+    mass: Array
+
+
+NO_POINTS = Points(np.zeros(0, dtype=np.intp), np.zeros((0, 6)), np.zeros((0, 6, 6)), np.zeros((0, 6, 6)))
+
+
+@dataclass(frozen=True)
+class Beams:
+    """A batch of n elements.
+
+    Attributes:
+        measure: of strain, see ``elements``.
+        rest: (n, 4, 4) rest pose of end b in the frame of end a.
+        stiffness: (n, 6, 6) for that measure.
+        points: the inertia inside.
+        preload: (n, 6) force conjugate to the strain, at zero strain.
+    """
+
+    measure: Measure
+    rest: Array
+    stiffness: Array
+    points: Points
+    preload: Array
+
+
+@dataclass(frozen=True)
+class Pencil:
+    """Residual wrench (n, 12) on ends (a, b) and its linearisation M ξ̈ + C ξ̇ + K ξ, each (n, 12, 12).
+
+    Twists and wrenches are in a snapshot of each element's frame a; variations of wrenches are taken along with the body
+    they act on, and ξ is seen in the rotating frame.
+    """
+
+    residual: Array
+    M: Array
+    C: Array
+    K: Array
+
+
+def end_stiffness(measure: Measure, rest: Array, twist_stiffness: Array) -> Array:
+    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b seen from a, at rest."""
+    a = sp.tangent(sp.log(rest)) if measure == "corotational" else sp.adjoint(rest)
+    return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
+
+
+def riding(rest: Array, element: Index, pose: Array, shape: Array, mass: Array) -> Points:
+    """Points at rest poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b."""
+    zeta = sp.log(pose)
+    L = sp.tangent_inverse(zeta) @ shape @ sp.tangent(sp.log(rest))[element]
+    return Points(element=element, rest=zeta, shape=L, mass=mass)
+
+
+def place(beams: Beams, points: Points, x: Array) -> tuple[Array, Array]:
+    """Poses (q, 4, 4) of the points in the frames a, and their H (q, 6, 6), for relative poses ``x`` (n, 4, 4)."""
+    e = points.element
+    eta = sp.log(x)
+    zeta = points.rest + (points.shape @ (eta - sp.log(beams.rest))[e][..., None])[..., 0]
+    return sp.exp(zeta), sp.tangent(zeta) @ points.shape @ sp.tangent_inverse(eta)[e]
+
+
+def internal_force(beams: Beams, x: Array) -> Array:
+    """Force (n, 6) conjugate to the strain."""
+    eps = elements.strain(beams.measure, beams.rest, x)
+    return beams.preload + (beams.stiffness @ eps[..., None])[..., 0]
+
+
+def linear_force(beams: Beams, rho: Array) -> Array:
+    """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, at rest."""
+    rate = elements.strain_rate(beams.measure, beams.rest, beams.rest)
+    return (beams.stiffness @ rate @ rho[..., None])[..., 0]
+
+
+def massless(beams: Beams) -> Beams:
+    """The same elements without the inertia inside."""
+    return replace(beams, points=NO_POINTS)
+
+
+def prestressed(beams: Beams, preload: Array) -> Beams:
+    """The same elements with another preload."""
+    return replace(beams, preload=preload)
+
+
+def pencil(beams: Beams, x: Array, frame: Array, gravity: Array, model: Model = FULL) -> Pencil:
+    """Assemble residual and matrices of all elements.
+
+    Args:
+        beams: the elements.
+        x: (n, 4, 4) pose of b in the frame of a.
+        frame: (n, 6) twist of the rotating frame, in a's axes.
+        gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
+        model: the effects kept (``geometric`` and ``coriolis`` matter here).
+    """
+    n = len(x)
+    s = internal_force(beams, x)
+    E = elements.strain_rate(beams.measure, beams.rest, x)
+    Et = np.swapaxes(E, -1, -2)
+    w = (Et @ s[..., None])[..., 0]
+    k = Et @ beams.stiffness @ E
+    drag = np.zeros_like(k)
+    if model.geometric:
+        k = k + elements.wrench_derivative(beams.measure, beams.rest, x, s)
+        drag = sp.cross(w)
+    out = Pencil(np.concatenate([-w, w], axis=-1), np.zeros((n, 12, 12)), np.zeros((n, 12, 12)), _ends(k, k + drag))
+    return _with_inertia(out, beams, x, frame, gravity, model) if len(beams.points.element) else out
+
+
+def _ends(on_a: Array, on_b: Array) -> Array:
+    """(n, 12, 12) from −on_a ρ on end a and on_b ρ on end b, with ρ = ξ_b − ξ_a."""
+    out = np.empty((len(on_a), 12, 12))
+    out[:, :6, :6], out[:, :6, 6:] = on_a, -on_a
+    out[:, 6:, :6], out[:, 6:, 6:] = -on_b, on_b
+    return out
+
+
+def _with_inertia(out: Pencil, beams: Beams, x: Array, frame: Array, gravity: Array, model: Model) -> Pencil:
+    points, e = beams.points, beams.points.element
+    pose, H = place(beams, points, x)
+    to_point = sp.adjoint(sp.inverse(pose))
+    own_frame, own_gravity = ((to_point @ v[e][..., None])[..., 0] for v in (frame, gravity))
+    g, C, K = inertia.carried(points.mass, own_frame, own_gravity, follow=model.geometric)
+    g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]
+    M = points.mass
+    ride = np.concatenate([np.eye(6) - H, H], axis=-1)  # ξ = ξ_a + H (ξ_b − ξ_a), in a's axes
+    force = np.swapaxes(ride, -1, -2) @ g[..., None]
+    ride = to_point @ ride
+    rode = np.swapaxes(ride, -1, -2)
+    start = np.searchsorted(e, np.arange(len(x)))
+
+    def total(a: Array) -> Array:
+        return np.add.reduceat(a, start, axis=0)
+
+    stiffness = out.K + total(rode @ K @ ride)
+    if model.geometric:
+        eta = sp.log(x)
+        E = sp.tangent_inverse(eta)
+        zeta = points.rest + (points.shape @ (eta - sp.log(beams.rest))[e][..., None])[..., 0]
+        Lt = np.swapaxes(points.shape, -1, -2)
+        y = (Lt @ np.swapaxes(sp.tangent(zeta), -1, -2) @ g[..., None])[..., 0]
+        bend = total(Lt @ sp.tangent_transpose_derivative(zeta, g) @ points.shape)
+        y_sum = total(y)
+        # ∂(Hᵀg)/∂ρ with H = tangent(ζ) L tangent⁻¹(η)
+        P = (np.swapaxes(E, -1, -2) @ bend + sp.tangent_inverse_transpose_derivative(eta, y_sum)) @ E
+        swing = sp.cross(g) @ H
+        on_a = total((np.eye(6) - np.swapaxes(H, -1, -2)) @ swing) + P
+        hg = (np.swapaxes(E, -1, -2) @ y_sum[..., None])[..., 0]
+        on_b = -total(np.swapaxes(H, -1, -2) @ swing) + P + sp.cross(hg)
+        stiffness = stiffness + _ends(on_a, on_b)
+    return Pencil(out.residual + total(force[..., 0]), total(rode @ M @ ride), total(rode @ C @ ride), stiffness)

@@ -1,0 +1,83 @@
+"""A blade's natural frequencies and mode shapes: the public door of the in-house solver."""
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import beams as bm
+from . import blocks, chain, eigen
+from . import spatial as sp
+from .blade import Blade, without_rotary_inertia
+from .discretize import Chain, Mass, discretize
+from .elements import Measure
+from .model import FULL, Model
+from .modes import Modes
+
+Array = NDArray[np.float64]
+
+NO_GRAVITY = np.zeros(3)
+
+
+def modes(
+    blade: Blade,
+    omega: float,
+    elements: int = 50,
+    count: int = 10,
+    *,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    model: Model = FULL,
+    gravity: Array = NO_GRAVITY,
+) -> Modes:
+    """The lowest modes of a blade turning steadily at ``omega``.
+
+    Args:
+        blade: the blade.
+        omega: rotor speed, rad/s.
+        elements: how many beam elements.
+        count: how many modes (fewer if the discretisation has fewer).
+        mass: ``consistent`` (fourth order) or ``half_end`` (lumped, Park et al. 2010; second order).
+        stiffness: ``corotational``, or ``parent``: linear in the parent body's frame (Park et al. 2010).
+        model: physical effects kept.
+        gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
+
+    Raises:
+        ValueError: elements or count below 1, omega not finite.
+        SteadyStateError: no steady state at this speed.
+        UnstableError: the steady state is not stable.
+    """
+    if count < 1:
+        raise ValueError(f"count: {count}: ask for at least one mode")
+    if not np.isfinite(omega):
+        raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
+    begun = time.perf_counter()
+    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness)
+    body, nodes = balance(body, omega, gravity, model)
+    p = chain.linearize(body, nodes, omega, gravity, model)
+    found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count)
+    shapes = mode_shapes(body, nodes, found.vectors)
+    return Modes(omega, found.frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+
+
+def balance(body: Chain, omega: float, gravity: Array, model: Model) -> tuple[Chain, Array]:
+    """The chain with the internal forces, and at the node poses, that the model's steady state has."""
+    if not model.geometric:
+        return body, body.nodes
+    if not model.prestretch:
+        return chain.prestress_at_rest(body, omega, gravity), body.nodes
+    return body, chain.steady(body, omega, gravity)
+
+
+def mode_shapes(body: Chain, nodes: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) displacement and rotation about x at the common stations, from the nodes' twists (6n, m)."""
+    x = sp.inverse(nodes[:-1]) @ nodes[1:]
+    pose, H = bm.place(body.beams, body.samples, x)
+    e = body.samples.element
+    twist = np.concatenate([np.zeros((1, 6, vectors.shape[1])), vectors.reshape(-1, 6, vectors.shape[1])])
+    a = twist[:-1][e]
+    rho = sp.adjoint(x)[e] @ twist[1:][e] - a
+    moved = a + H @ rho
+    velocity = moved[:, :3] - sp.skew(pose[:, :3, 3]) @ moved[:, 3:]
+    turn = nodes[:-1, :3, :3][e]
+    return np.concatenate([turn @ velocity, (turn @ moved[:, 3:])[:, :1]], axis=1).transpose(2, 0, 1)
