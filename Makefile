@@ -1,0 +1,38 @@
+# make verify | make test | make lint | make readme | make clean
+# All that is needed is Python 3.11 or later; everything else goes into .venv.
+
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+BIN := .venv/bin
+INSTALLED := .venv/installed
+
+# one thread a process: the runs are parallel already
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
+.PHONY: verify test lint readme clean
+
+verify: $(INSTALLED)
+	$(BIN)/southwell verify --out reports/out
+
+test: $(INSTALLED)
+	$(BIN)/pytest -n 2
+
+lint: $(INSTALLED)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+readme: $(INSTALLED)
+	$(BIN)/southwell readme
+
+$(INSTALLED): pyproject.toml
+	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'
+	touch $@
+
+clean:
+	rm -rf .venv build dist reports/out *.egg-info .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
