@@ -7,6 +7,7 @@ lowest modes, so that stiff constraints and massless coordinates cost no accurac
 Core has its own solver and never uses this one.
 """
 
+from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
@@ -19,7 +20,11 @@ from .interface import CodeError
 
 Array = NDArray[np.float64]
 Matrix = Array | sp.spmatrix | sp.sparray
+Solve = Callable[[Array], Array]
 Pairs = tuple[Array, NDArray[np.complex128]]
+
+DENSE = 150
+"""Size above which a few modes of full matrices are had sooner by iteration than all of them directly."""
 
 ASYMMETRY = 1e-6
 """Largest departure from symmetry taken for rounding (or finite differences), relative to a unit diagonal of K."""
@@ -30,7 +35,7 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
 
     With ``K = L Lᵀ`` and ``M = F Fᵀ`` the states ``(Lᵀ q, Fᵀ q̇)`` make the inverse problem skew, hence i times it
     Hermitian (L. Meirovitch, "A new method of solution of the eigenvalue problem for gyroscopic systems", AIAA Journal
-    12, 1974, eq. 15 ff., there with M⁻¹; the inverse form needs none).
+    12, 1974, there with M⁻¹; the inverse form needs none).
 
     Args:
         M: (n, n) symmetric, positive semi-definite; zero rows and columns are allowed.
@@ -45,12 +50,16 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
         CodeError: K is not positive definite (no stable steady state), M not semi-definite, or a symmetry is missing.
     """
     matrices: list[Any] = [M, C, K]
+    size = matrices[0].shape[0]
+    large = 2 * count + 4 < size
     if any(sp.issparse(matrix) for matrix in matrices):
         matrices = [sp.csc_array(matrix) for matrix in matrices]
-        if 2 * count + 4 < matrices[0].shape[0]:
-            return _sparse(*_scaled(*matrices), count)
+        if large:
+            return _krylov(*_scaled(*matrices), count, _sparse_solver)
         matrices = [matrix.toarray() for matrix in matrices]
-    return _dense(*_scaled(*matrices), count)
+    if large and size > DENSE:
+        return _krylov(*_scaled(*matrices), count, _dense_solver)
+    return _direct(*_scaled(*matrices), count)
 
 
 def _scaled(M: Any, C: Any, K: Any) -> tuple[Any, Any, Any, Array]:
@@ -73,7 +82,7 @@ def _scaled(M: Any, C: Any, K: Any) -> tuple[Any, Any, Any, Array]:
     return (M + M.T) / 2, (C - C.T) / 2, (K + K.T) / 2, scale
 
 
-def _dense(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
+def _direct(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
     n = len(K)
     try:
         L = scipy.linalg.cholesky(K, lower=True)
@@ -96,25 +105,23 @@ def _dense(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
     return _ordered(inverse, q * scale[:, None], count)
 
 
-def _sparse(M: Any, C: Any, K: Any, scale: Array, count: int) -> Pairs:
+def _krylov(M: Any, C: Any, K: Any, scale: Array, count: int, solver: Callable[[Any], Solve]) -> Pairs:
     n = K.shape[0]
-    # no row exchanges, so that the pivots' signs are the inertia of K (Sylvester)
-    factor = spla.splu(
-        sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
-    if (factor.perm_r != factor.perm_c).any() or (factor.U.diagonal() <= 0).any():
-        raise _unstable(K / scale[:, None] / scale[None, :])
+    try:
+        solve = solver(K)
+    except np.linalg.LinAlgError:
+        raise _unstable(K / scale[:, None] / scale[None, :]) from None
     start = np.random.default_rng(0).standard_normal(2 * n)
     # velocities in units of a frequency near the lowest, so that both halves of a state are of a size
-    guess = factor.solve(M @ start[:n])
+    guess = solve(M @ start[:n])
     unit = np.sqrt((guess @ (K @ guess)) / (guess @ (M @ guess)))
 
     def inverse(x: Array) -> Array:
         """A⁻¹ S x with A = diag(K, M), S = [[-C, -M], [M, 0]]: one solve with K, none with M."""
         q, v = x[:n], x[n:]
-        return np.concatenate([-factor.solve(C @ q + unit * (M @ v)), q / unit])
+        return np.concatenate([-solve(C @ q + unit * (M @ v)), q / unit])
 
-    operator: Any = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]
+    operator = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]
     k = 2 * count + 2  # ± pairs, and one to spare
     try:
         found = spla.eigs(operator, k=k, which="LM", v0=start, ncv=min(2 * n, max(2 * k + 1, 40)), tol=0)
@@ -122,6 +129,21 @@ def _sparse(M: Any, C: Any, K: Any, scale: Array, count: int) -> Pairs:
         raise CodeError(f"eigenproblem: ARPACK gave up on {k} values of {2 * n} ({error}): ask for fewer") from error
     values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
     return _ordered(-values.imag, x[:n] * scale[:, None], count)  # 1/(iω) = -i/ω
+
+
+def _sparse_solver(K: Any) -> Solve:
+    """Solve with K; no rows are exchanged, so that the pivots' signs are the inertia of K (Sylvester)."""
+    factor = spla.splu(
+        sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+    if (factor.perm_r != factor.perm_c).any() or (factor.U.diagonal() <= 0).any():
+        raise np.linalg.LinAlgError("not positive definite")
+    return factor.solve
+
+
+def _dense_solver(K: Any) -> Solve:
+    factor = scipy.linalg.cho_factor(K, lower=True)
+    return lambda b: scipy.linalg.cho_solve(factor, b, check_finite=False)
 
 
 def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:
