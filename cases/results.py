@@ -1,7 +1,15 @@
-"""What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``."""
+"""What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``.
 
+That file has one JSON object a line. Most are cells, by their fields; ``kind`` tells them from refinements' answers and
+from the one line about the run itself, which comes last and may be missing if the run was cut short.
+"""
+
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
 
 Verdict = Literal["pass", "fail", "inconclusive", "known difference", "not applicable", "not run"]
 
@@ -15,7 +23,7 @@ class Cell:
     half a unit of the last digit for a printed table. Frequencies are in rad/s.
 
     Attributes:
-        case: the case's name.
+        case: the case's name; of a case with several blades, the blade's after a slash.
         omega: rotor speed, rad/s.
         mode: 1, 2, 3 … within the reference's modes at this speed.
         family: chordwise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
@@ -85,3 +93,39 @@ class Run:
     levels: tuple[Level, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     command: str = ""
+
+
+def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
+    """Add lines to a results file: cells and levels as they come; of ``run``, its versions and command."""
+    lines: list[dict[str, Any]] = [{"kind": "cell", **msgspec.to_builtins(c)} for c in cells]
+    lines += [{"kind": "level", **msgspec.to_builtins(v)} for v in levels]
+    if run:
+        lines.append({"kind": "run", "versions": run.versions, "command": run.command})
+    with path.open("ab") as file:
+        file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
+
+
+def read(path: Path) -> Run:
+    """The run in a results file, rows in the file's order; a torn last line is left out.
+
+    Raises:
+        ValueError: naming file and line, if a whole line is not what this version writes.
+    """
+    cells: list[Cell] = []
+    levels: list[Level] = []
+    about: dict[str, Any] = {}
+    for number, line in enumerate(path.read_bytes().split(b"\n")[:-1], 1):
+        try:
+            data = msgspec.json.decode(line)
+            kind = data.pop("kind")
+            if kind == "cell":
+                cells.append(msgspec.convert(data, Cell))
+            elif kind == "level":
+                levels.append(msgspec.convert(data, Level))
+            else:
+                about = {"versions": data["versions"], "command": data["command"]}
+        except (msgspec.DecodeError, AttributeError, KeyError, TypeError) as error:
+            raise ValueError(
+                f"{path}: line {number}: not a result ({error}): was it written by another version?"
+            ) from error
+    return Run(tuple(cells), tuple(levels), **about)

@@ -1,0 +1,160 @@
+"""The ways a case file can give its blade, and what ``core`` makes of each.
+
+Every kind is straight, without offsets: shear is rigid (Euler–Bernoulli), the sections' principal axes turn with twist.
+"""
+
+import csv
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+from msgspec import Meta, Struct
+
+from ..core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
+from .errors import CaseError, nearest
+
+POISSON = 0.3
+"""For the torsional stiffness of a dimensionless beam, which has no influence on its bending."""
+
+
+def _positive(description: str) -> Meta:
+    return Meta(gt=0, description=description)
+
+
+class Beam(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="beam"):
+    """A uniform beam from its material and cross-section."""
+
+    length: Annotated[float, _positive("from root to tip, m")]
+    E: Annotated[float, _positive("Young's modulus, Pa")]
+    G: Annotated[float, _positive("shear modulus, Pa")]
+    density: Annotated[float, _positive("kg/m³")]
+    A: Annotated[float, _positive("area of the cross-section, m²")]
+    I_y: Annotated[float, _positive("second moment of area about y, resisting flapwise motion, m⁴")]
+    I_z: Annotated[float, _positive("second moment of area about z, resisting chordwise motion, m⁴")]
+    J: Annotated[float, _positive("torsion constant, m⁴")]
+    hub_radius: Annotated[float, Meta(ge=0, description="from the rotor's axis to the root, m")] = 0.0
+    rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; ``folder`` is not used."""
+        inertia = self.density if self.rotary_inertia else 0.0
+        return uniform_blade(
+            name,
+            self.length,
+            self.hub_radius,
+            EA=self.E * self.A,
+            GJ=self.G * self.J,
+            EI_y=self.E * self.I_y,
+            EI_z=self.E * self.I_z,
+            mass=self.density * self.A,
+            I_y=inertia * self.I_y,
+            I_z=inertia * self.I_z,
+        )
+
+
+class Dimensionless(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="dimensionless"):
+    """A uniform beam as the literature has it: length, mass per length and bending stiffness (both ways) are 1.
+
+    Speeds and frequencies are then in units of ``√(EI / (ρ A L⁴))``, and ``rad/s`` reads as that unit. No rotary inertia.
+    """
+
+    slenderness: Annotated[float, _positive("α = √(A L² / I), dimensionless")]
+    hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length, dimensionless")] = 0.0
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; ``folder`` is not used."""
+        return uniform_blade(
+            name,
+            length=1.0,
+            hub_radius=self.hub_ratio,
+            EA=self.slenderness**2,
+            GJ=1.0 / (1.0 + POISSON),
+            EI_y=1.0,
+            EI_z=1.0,
+            mass=1.0,
+        )
+
+
+class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="stations"):
+    """A blade from a table of stations along its span: a CSV file beside the case file, ``#`` starting a comment."""
+
+    file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
+    length: Annotated[float, _positive("from root to tip, m")]
+    hub_radius: Annotated[float, Meta(ge=0, description="from the rotor's axis to the root, m")] = 0.0
+    bending_factor: Annotated[float, _positive("multiplies both bending stiffnesses of the table, dimensionless")] = 1.0
+    twisted: Annotated[bool, Meta(description="whether the table's twist is used")] = True
+
+    COLUMNS: ClassVar[tuple[str, ...]] = (
+        "fraction [-]",
+        "twist [deg]",
+        "mass [kg/m]",
+        "EI_flap [N m^2]",
+        "EI_edge [N m^2]",
+        "GJ [N m^2]",
+        "EA [N]",
+    )
+    OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]")
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade, its table read from ``folder``.
+
+        Raises:
+            CaseError: if the table is missing or malformed.
+        """
+        path = folder / self.file
+        columns = _read(path, self.COLUMNS, self.OPTIONAL)
+        fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
+        if fraction[-1] != 1.0:
+            raise CaseError(
+                f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
+            )
+        I_flap, I_edge = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL)
+        try:
+            return Blade(
+                name=name,
+                stations=fraction * self.length,
+                stiffness=section_stiffness(axial, torsion, self.bending_factor * flap, self.bending_factor * edge),
+                mass=section_mass(mass, I_flap, I_edge),
+                twist=np.radians(twist) * self.twisted,
+                hub_radius=self.hub_radius,
+            )
+        except BladeError as error:
+            raise CaseError(f"{path}: {error}") from error
+
+
+BladeData = Beam | Dimensionless | Stations
+
+
+def _read(path: Path, needed: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, np.ndarray]:
+    if not path.is_file():
+        raise CaseError(f"{path}: blade.file: no such file: it is looked for beside the case file; correct the name")
+    with path.open(encoding="utf-8", newline="") as file:
+        lines = [(k, line) for k, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
+    rows = [[cell.strip() for cell in row] for row in csv.reader(line for _, line in lines)]
+    numbers = [k for k, _ in lines]
+    header = rows[0] if rows else []
+    for column in header:
+        if column not in needed + optional:
+            raise CaseError(
+                f"{path}: line {numbers[0]}: unknown column {column!r}: {nearest(column, needed + optional)}"
+            )
+    for column in needed:
+        if column not in header:
+            raise CaseError(f"{path}: column {column!r} is missing: the header must have {', '.join(needed)}")
+    out = np.zeros((len(rows) - 1, len(header)))
+    for i, row in enumerate(rows[1:]):
+        where = f"{path}: line {numbers[i + 1]}"
+        if len(row) != len(header):
+            raise CaseError(f"{where}: {len(row)} columns instead of {len(header)}: a missing or stray comma?")
+        for j, cell in enumerate(row):
+            try:
+                out[i, j] = float(cell)
+            except ValueError:
+                raise CaseError(f"{where}: {header[j]}: {cell!r} is not a number: correct it") from None
+            if not np.isfinite(out[i, j]):
+                raise CaseError(
+                    f"{where}: {header[j]}: {cell}: not a finite number; a gap in the table? give every value"
+                )
+    if len(out) < 2:
+        raise CaseError(f"{path}: {len(out)} stations: a blade needs at least a root and a tip")
+    return {column: out[:, j] for j, column in enumerate(header)}

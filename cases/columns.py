@@ -1,0 +1,121 @@
+"""The columns of the matrix: one for each code, for the source's own discretisation, and for each printed table.
+
+A column's work is a picklable function of the speeds and of core's references there, and gives the column's rows.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from ..core.blade import Blade
+from ..core.model import FULL, Model
+from ..references.codes import cap
+from ..references.interface import Code
+from ..references.worker import Answer, Failure, answers
+from ..references.worker import Run as Asked
+from . import own
+from .cells import Head, empty, given, refined, same
+from .reference import Reference, felt
+from .results import Cell, Level, Verdict
+from .schema import Case, Discretisation, Variant
+from .study import Refining, solve
+
+SAME = 1e-8
+"""Target for two codes given the very same discretisation."""
+
+References = Sequence[tuple[float, Reference]]
+"""Rotor speeds, rad/s, and core's references there."""
+
+Rows = tuple[list[Cell], list[Level]]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of one blade.
+
+    Attributes:
+        name: as shown while it is being solved.
+        model: the effects that its references keep.
+        head: what its cells have in common.
+        work: rows from core's references.
+    """
+
+    name: str
+    model: Model
+    head: Head
+    work: Callable[[References], Rows]
+
+    def __call__(self, speeds: Sequence[float], core: Sequence[Reference | Failure]) -> Rows:
+        """Rows at all speeds; without a reference there is nothing to compare with."""
+        pairs = list(zip(speeds, core, strict=True))
+        without = [
+            empty(self.head, omega, "inconclusive", f"core with the same effects: {r.reason}")
+            for omega, r in pairs
+            if isinstance(r, Failure)
+        ]
+        cells, levels = self.work([(omega, r) for omega, r in pairs if isinstance(r, Reference)])
+        return without + cells, levels
+
+
+def columns(case: Case, variant: Variant, codes: dict[str, Code], timeout: float) -> list[Column]:
+    """All columns of one blade; ``codes`` by the name or import path they were asked for."""
+    target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
+    out = []
+    if source:
+        head = Head(variant.name, "core", "", "discretisation", target)
+        out.append(Column("core, as in the source", FULL, head, partial(_source, head, blade, source)))
+    for name, code in codes.items():
+        out.append(
+            _code(Head(variant.name, code.name, code.version() or "", "code", target), name, code, blade, timeout)
+        )
+    return out
+
+
+def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:
+    if why := code.unsupported(blade):
+        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", why))
+    if not head.version:
+        return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
+    model = felt(code.model, blade)
+    if code.shares == "discretisation":
+        head = Head(head.case, head.code, head.version, "same discretisation", SAME)
+        return Column(code.name, model, head, partial(_same, head, name, blade, code.levels[-1], code.model, timeout))
+    refining = Refining(tuple(code.levels), code.order, cap(code))
+    return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
+
+
+def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
+    return [empty(head, omega, verdict, reason) for omega, _ in core], []
+
+
+def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: float, core: References) -> Rows:
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return answers(name, blade, runs, timeout)
+
+    count = max(r.core.count for _, r in core)
+    studies = solve(ask, [omega for omega, _ in core], refining, count, [r.core.wanted for _, r in core])
+    return _join(refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, studies, strict=True))
+
+
+def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return own.answers(blade, runs, source.mass, source.stiffness)
+
+    n = source.elements
+    refining = Refining((n, 2 * n, 4 * n), 2, 8 * n)
+    what = f"{n} elements, {source.mass} masses, {source.stiffness} stiffness".replace("_", "-")
+    count = max(r.core.count for _, r in core)
+    studies = solve(ask, [omega for omega, _ in core], refining, count, [r.core.wanted for _, r in core])
+    return _join(given(head, omega, r, s, refining.order, what) for (omega, r), s in zip(core, studies, strict=True))
+
+
+def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:
+    runs = [(omega, elements, r.core.count) for omega, r in core]
+    theirs = answers(name, blade, runs, timeout)
+    mine = own.answers(blade, runs, "half_end", "parent", model)
+    return _join(same(head, omega, r, a, b) for (omega, r), a, b in zip(core, theirs, mine, strict=True))
+
+
+def _join(parts: Iterable[Rows]) -> Rows:
+    cells, levels = zip(*parts, strict=True)
+    return [c for part in cells for c in part], [v for part in levels for v in part]

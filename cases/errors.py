@@ -1,0 +1,15 @@
+"""The one error of bad input."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class CaseError(ValueError):
+    """Input that cannot be used. One line: the file, the field, the value, the likely cause, the remedy."""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Advice on a word that is not known: the nearest that is, else all of them."""
+    known = tuple(known)
+    near = get_close_matches(word, known, 1, cutoff=0.5)
+    return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"

@@ -1,0 +1,119 @@
+"""The run: every blade of every case through every code, on any executor, rows delivered as they come.
+
+For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
+"""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from importlib.metadata import version
+from platform import python_version
+from typing import Any
+
+from ..references.codes import code
+from .columns import Column, Rows, columns
+from .reference import references
+from .results import Cell, Level, Run
+from .schema import Case, Variant
+
+TIMEOUT = 300.0
+"""Seconds a worker has for what it is asked at once: all speeds of one blade."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is, and what it just delivered.
+
+    Attributes:
+        done: tasks finished.
+        total: tasks in all; known from the start.
+        running: what is being solved now: ``park-cantilever × pinocchio``.
+        cells: rows just delivered.
+        levels: refinements' answers just delivered.
+    """
+
+    done: int
+    total: int
+    running: tuple[str, ...]
+    cells: tuple[Cell, ...] = ()
+    levels: tuple[Level, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Task:
+    """One thing to solve of one blade: core's references (no column), or a column."""
+
+    variant: Variant
+    columns: tuple[Column, ...]
+    column: Column | None = None
+
+    @property
+    def label(self) -> str:
+        return f"{self.variant.name} × {self.column.name if self.column else 'core'}"
+
+
+def run(
+    cases: Sequence[Case],
+    codes: Sequence[str],
+    executor: Executor,
+    on_progress: Callable[[Progress], None] = lambda _: None,
+    timeout: float = TIMEOUT,
+) -> Run:
+    """Every blade of ``cases`` through every one of ``codes``, judged.
+
+    Args:
+        cases: as read.
+        codes: names or import paths, see ``references.codes``.
+        executor: where tasks run: threads, processes, another machine's.
+        on_progress: told when the run starts and whenever a task ends; an exception from it stops the run.
+        timeout: seconds for one worker.
+
+    Raises:
+        CaseError: if core itself cannot solve a case.
+        UnknownCodeError: if a code is not known.
+    """
+    known = {name: code(name) for name in codes}
+    plans = [
+        (case, _Task(variant, tuple(columns(case, variant, known, timeout))))
+        for case in cases
+        for variant in case.variants
+    ]
+    total = sum(1 + len(task.columns) for _, task in plans)
+    rows: dict[tuple[str, str], Rows] = {}
+    pending: dict[Future[Any], _Task] = {}
+    try:
+        for case, task in plans:
+            models = [column.model for column in task.columns]
+            question = (task.variant.blade, task.variant.speeds, case.text.compare, models)
+            pending[executor.submit(references, *question)] = task
+        on_progress(Progress(0, total, _running(pending)))
+        while pending:
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                task, new = pending.pop(future), ([], [])
+                if task.column:
+                    rows[task.variant.name, task.column.name] = new = future.result()
+                else:
+                    for column in task.columns:
+                        answer = executor.submit(column, task.variant.speeds, future.result()[column.model])
+                        pending[answer] = _Task(task.variant, task.columns, column)
+                done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
+                on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
+    finally:
+        for future in pending:
+            future.cancel()
+    ordered = [rows[task.variant.name, column.name] for _, task in plans for column in task.columns]
+    return Run(
+        cells=tuple(cell for cells, _ in ordered for cell in cells),
+        levels=tuple(level for _, levels in ordered for level in levels),
+        versions=versions({c.name: c.version() for c in known.values()}),
+    )
+
+
+def versions(codes: dict[str, str | None]) -> dict[str, str]:
+    """What the numbers were made with: Python, the packages core needs, and each code."""
+    ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
+    return {"python": python_version(), **ours, **{name: v or "not installed" for name, v in codes.items()}}
+
+
+def _running(pending: dict[Future[Any], _Task]) -> tuple[str, ...]:
+    return tuple(task.label for future, task in pending.items() if future.running())

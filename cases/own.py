@@ -1,0 +1,110 @@
+"""Core as one more solver: its answers in the form of a foreign code's, refined until they can serve as reference."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.blade import Blade
+from ..core.chain import SteadyStateError
+from ..core.discretize import Mass
+from ..core.eigen import UnstableError
+from ..core.elements import Measure
+from ..core.model import FULL, Model
+from ..core.modes import Modes
+from ..core.solve import modes
+from ..references.worker import Answer, Failure, Run
+from .errors import CaseError
+from .pairing import MOTIONS, Array, aligned, families, shares, weights
+from .schema import Compare
+from .study import Refining, Settled, Wanted, settle, solve
+
+SURE = 1e-5
+"""Core is refined until its own uncertainty, relative, is no more than this: a twentieth of what a code is allowed."""
+
+START, CAP = 20, 320
+"""Core's coarsest and finest reference discretisation, in elements."""
+
+MARGIN = 4
+"""Modes solved beyond the highest one wanted, so that each has a chance of its partner."""
+
+
+@dataclass(frozen=True)
+class Converged:
+    """Core's modes at one speed: which of them a case compares, their estimates and families, in the same order."""
+
+    wanted: Wanted
+    settled: tuple[Settled, ...]
+    names: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """How many modes another solver should be asked for."""
+        return max(self.wanted.indices) + 1 + MARGIN
+
+
+def answers(
+    blade: Blade,
+    runs: Sequence[Run],
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    model: Model = FULL,
+) -> list[Answer]:
+    """Core's answers to ``runs``; a speed without a stable steady state is a failure that says so."""
+    out: list[Answer] = []
+    for omega, elements, count in runs:
+        try:
+            out.append(modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+        except (SteadyStateError, UnstableError) as error:
+            out.append(Failure("refused", str(error)))
+    return out
+
+
+def refining(blade: Blade) -> Refining:
+    """How core is refined: with every station at a node if that can be had, since kinks inside elements cost order."""
+    fractions = blade.stations / blade.length
+    fit = (n for n in range(START, 10 * START) if np.abs(n * fractions - np.round(n * fractions)).max() < 1e-6)
+    start = next(fit, 3 * START)
+    return Refining((start, 2 * start, 4 * start), order=4, cap=CAP, sure=SURE)
+
+
+def converged(blade: Blade, speeds: Sequence[float], compare: Compare, model: Model) -> list[Converged | Failure]:
+    """Core's converged modes at each speed, with the effects of ``model``.
+
+    Raises:
+        CaseError: if the blade has fewer modes than the case compares.
+    """
+    plan, weight = refining(blade), weights(blade)
+    return [_converged(blade, omega, compare, model, plan, weight) for omega in speeds]
+
+
+def _converged(
+    blade: Blade, omega: float, compare: Compare, model: Model, plan: Refining, weight: Array
+) -> Converged | Failure:
+    def ask(runs: Sequence[Run]) -> list[Answer]:
+        return answers(blade, runs, model=model)
+
+    finest, count = plan.levels[-1], 2 * compare.modes + MARGIN
+    (first,) = ask([(omega, finest, count)])
+    while isinstance(first, Modes) and len(qualifying(first, weight, compare)) < compare.modes:
+        if len(first.frequencies) < count:
+            raise CaseError(
+                f"{blade.name}: compare.modes: {compare.modes}: the blade has fewer that move so at {omega:g} rad/s: lower it"
+            )
+        count *= 2
+        (first,) = ask([(omega, finest, count)])
+    if isinstance(first, Failure):
+        return first
+    wanted = Wanted(aligned(first, weight), qualifying(first, weight, compare), weight)
+    (study,) = solve(ask, [omega], plan, max(wanted.indices) + 1 + MARGIN, [wanted])
+    if not study.answers:
+        return study.failure or Failure("refused", "no answer")
+    settled = tuple(settle(study.answers, wanted, plan.order))
+    named = families(wanted.reference, weight)
+    return Converged(wanted, settled, tuple(named[k] for k in wanted.indices))
+
+
+def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:
+    """Indices of the lowest ``compare.modes`` modes with at least half their modal mass in ``compare.motions``."""
+    share = shares(aligned(modes, weight), weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
+    return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

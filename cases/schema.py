@@ -1,0 +1,218 @@
+"""What a case file may say: a frozen schema, unknown keys refused, the unit of every key in its description.
+
+A case asks one question of every code: these blades, at these speeds, compared in these motions, within this target.
+"""
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, get_args
+
+import msgspec
+import numpy as np
+from msgspec import UNSET, Meta, Struct, UnsetType
+from numpy.typing import NDArray
+
+from ..core.blade import Blade
+from .blades import BladeData, Dimensionless
+from .errors import CaseError, nearest
+
+Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
+Values = list[Annotated[float, Meta(ge=0)]] | str
+
+
+class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
+    """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends."""
+
+    rad_s: Annotated[Values, Meta(description="rad/s")] | UnsetType = UNSET
+    rpm: Annotated[Values, Meta(description="revolutions per minute")] | UnsetType = UNSET
+    gamma: (
+        Annotated[Values, Meta(description="γ, in units of √(EI/(ρ A L⁴)); dimensionless blades only")] | UnsetType
+    ) = UNSET
+
+
+class Compare(Struct, frozen=True, forbid_unknown_fields=True):
+    """Which modes are compared, and how closely they must agree."""
+
+    modes: Annotated[int, Meta(ge=1, description="how many, from the lowest, of those that qualify")]
+    motions: Annotated[
+        tuple[Motion, ...],
+        Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
+    ] = get_args(Motion)
+    target: Annotated[float, Meta(gt=0, description="largest difference, relative")] = 1e-3
+    tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+
+
+class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
+    """A discretisation of core's own, shown in a column of its own: usually the source's."""
+
+    elements: Annotated[int, Meta(ge=1, description="number of elements")]
+    mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]
+    stiffness: Annotated[
+        Literal["corotational", "parent"], Meta(description="the frame the beam's stiffness is linear in")
+    ]
+
+
+class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
+    """A case file."""
+
+    name: Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9.-]*$", description="as typed on the command line")]
+    title: Annotated[str, Meta(description="one line, as printed over a table")]
+    description: Annotated[str, Meta(description="what the case shows, and what in it is assumed")]
+    source: Annotated[str, Meta(description="where data and numbers come from")]
+    blade: BladeData
+    speeds: Speeds
+    compare: Compare
+    variants: Annotated[
+        dict[str, dict[str, Any]], Meta(description="name → the keys of ``blade`` that differ; empty: the blade itself")
+    ] = {}
+    discretisation: Discretisation | None = None
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One blade of a case.
+
+    Attributes:
+        name: the case's name, and the variant's after a slash if it has several.
+        blade: as every code is given it.
+        speeds: (k,) rad/s, ascending.
+    """
+
+    name: str
+    blade: Blade
+    speeds: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case file, read: ``text`` as it stands there, and its blades.
+
+    Attributes:
+        path: of the file, for messages.
+        text: the file's contents.
+        variants: one at least.
+    """
+
+    path: str
+    text: CaseFile
+    variants: tuple[Variant, ...]
+
+    @property
+    def name(self) -> str:
+        """As typed on the command line."""
+        return self.text.name
+
+
+def read(path: Path) -> Case:
+    """The case in a TOML file.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file: correct the path, or give the name of a case") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
+    return decode(data, str(path), path.parent)
+
+
+def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
+    """The case in a decoded TOML document; ``folder`` holds the tables it names.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    _finite(data, path, "")
+    text = _convert(data, data, path)
+    speeds = _speeds(text, path)
+    variants = []
+    for label, changes in (text.variants or {"": {}}).items():
+        changed = {**data, "blade": {**data["blade"], **changes}}
+        blade = _convert(changed, changed, f"{path}: variants.{label}" if label else path).blade
+        name = f"{text.name}/{label}" if label else text.name
+        variants.append(Variant(name, blade.blade(name, folder), speeds))
+    return Case(path, text, tuple(variants))
+
+
+def speed_range(text: str) -> NDArray[np.float64]:
+    """Speeds from ``first:last:step``, both ends included, or from one number.
+
+    Raises:
+        ValueError: saying what is wrong with it.
+    """
+    parts = text.split(":")
+    try:
+        first, last, step = (float(p) for p in (parts if len(parts) == 3 else [*parts, *parts, "1"]))
+    except ValueError:
+        raise ValueError(f"{text!r} is neither a speed nor first:last:step, as in 0:30:5") from None
+    if not (0 <= first <= last < math.inf and 0 < step < math.inf):
+        raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
+    return first + step * np.arange(math.floor((last - first) / step * (1 + 1e-12)) + 1)
+
+
+def _speeds(text: CaseFile, path: str) -> NDArray[np.float64]:
+    given = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(text.speeds, unit)) is not UNSET}
+    if len(given) != 1:
+        listed = ", ".join(given) or "none"
+        raise CaseError(f"{path}: speeds: {listed} given: give exactly one of rad_s, rpm, gamma")
+    ((unit, value),) = given.items()
+    if unit == "gamma" and not isinstance(text.blade, Dimensionless):
+        raise CaseError(f'{path}: speeds.gamma: it needs blade.kind = "dimensionless": give rad_s or rpm')
+    try:
+        speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)
+    except ValueError as error:
+        raise CaseError(f"{path}: speeds.{unit}: {error}") from error
+    if not len(speeds):
+        raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
+    if (np.diff(speeds) <= 0).any():
+        raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")
+    return speeds * (np.pi / 30 if unit == "rpm" else 1.0)
+
+
+def _finite(value: Any, path: str, field: str) -> None:
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            _finite(item, path, f"{field}.{key}" if field else key)
+    elif isinstance(value, list):
+        for k, item in enumerate(value):
+            _finite(item, path, f"{field}[{k}]")
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
+
+
+def _convert(data: Mapping[str, Any], raw: Mapping[str, Any], path: str) -> CaseFile:
+    try:
+        return msgspec.convert(data, CaseFile)
+    except msgspec.ValidationError as error:
+        message, _, where = str(error).partition(" - at `$")
+        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), raw)}") from error
+
+
+def _explain(message: str, field: str, raw: Mapping[str, Any]) -> str:
+    key = re.search(r"field `(.+)`", message)
+    if key and "unknown" in message:
+        dotted = f"{field}.{key[1]}" if field else key[1]
+        return f"{dotted}: unknown key: {nearest(key[1], _keys(field, raw))}"
+    if key:
+        dotted = f"{field}.{key[1]}" if field else key[1]
+        return f"{dotted}: missing: add it"
+    value: Any = raw
+    for step in re.findall(r"[^.\[\]]+", field):
+        value = value[int(step)] if step.isdigit() and isinstance(value, list) else value.get(step, value)
+    return (
+        f"{field}: {value!r}: {message[0].lower()}{message[1:].replace('`', '')}: wrong sign, unit or type? correct it"
+    )
+
+
+def _keys(field: str, raw: Mapping[str, Any]) -> tuple[str, ...]:
+    kinds = {str(k.__struct_config__.tag): k for k in get_args(BladeData)}
+    struct: type[Struct] = {"speeds": Speeds, "compare": Compare, "discretisation": Discretisation}.get(field, CaseFile)
+    if field == "blade":
+        struct = kinds[raw["blade"]["kind"]]
+    return struct.__struct_fields__

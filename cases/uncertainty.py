@@ -1,0 +1,114 @@
+"""How far a computed frequency may be from what ever finer discretisation would give.
+
+Three refinements show the observed order of convergence; Richardson extrapolation and Roache's grid convergence index
+(GCI) follow from it. Sources: Roache, *Verification and Validation in Computational Science and Engineering* (1998);
+Celik et al., J. Fluids Eng. 130 (2008) 078001, for the order at unequal refinement ratios; Oberkampf and Roy,
+*Verification and Validation in Scientific Computing* (2010), §8.6, for when to use which safety factor; Eça and
+Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the order of convergence means nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import root_scalar
+
+ROUNDING = 1e-12
+"""Nothing computed in double precision is claimed to be better, relative."""
+
+NOISE = 1e-8
+"""Where three refinements agree to this, relative, what remains is rounding, and its order of convergence says nothing."""
+
+QUIET = 1e-6
+"""Up to this spread, relative, a sequence that does not converge monotonely is given its spread instead of a refusal."""
+
+NEAR_THEORY = 0.1
+"""Relative distance from the theoretical order within which a sequence counts as asymptotic (Oberkampf and Roy)."""
+
+FIRM, WARY = 1.25, 3.0
+"""Roache's safety factors: for a sequence seen to converge at the theoretical order, and for any other."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The best value of a frequency and how sure it is.
+
+    Attributes:
+        value: rad/s; extrapolated where the refinements allow it, else the finest.
+        uncertainty: relative; None where it is refused.
+        order: observed order of convergence, where there is one.
+        note: why the uncertainty is refused, or large.
+    """
+
+    value: float
+    uncertainty: float | None
+    order: float | None = None
+    note: str = ""
+
+
+def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order: int) -> Estimate:
+    """The estimate from frequencies at increasing numbers of elements (or terms); the three finest are used.
+
+    Args:
+        elements: ascending.
+        frequencies: rad/s, one for each.
+        order: the theoretical order of convergence; 0 for spectral, where the last change is the uncertainty.
+    """
+    n, f = np.asarray(elements, float)[-3:], np.asarray(frequencies, float)[-3:]
+    if order == 0 and len(f) >= 2:
+        return Estimate(float(f[-1]), _at_least(abs(f[-1] - f[-2]) / abs(f[-1])))
+    if len(f) < 3:
+        return Estimate(float(f[-1]), None, note=f"{len(f)} of 3 refinements were solved: no order of convergence")
+    spread = float((f.max() - f.min()) / abs(f[-1]))
+    scattered = Estimate(float(f[-1]), _at_least(WARY * spread))
+    if spread <= NOISE:
+        return scattered
+    listed = f"{f[0]:.9g}, {f[1]:.9g}, {f[2]:.9g} rad/s"
+    if (f[1] - f[0]) * (f[2] - f[1]) <= 0:
+        return scattered if spread <= QUIET else Estimate(float(f[-1]), None, note=f"not monotone: {listed}")
+    observed = observed_order(n, f)
+    if observed <= 0:
+        return scattered if spread <= QUIET else Estimate(float(f[-1]), None, observed, f"not converging: {listed}")
+    firm = abs(observed - order) <= NEAR_THEORY * order
+    used = float(order) if firm else min(max(observed, 0.5), float(order))
+    correction = (f[2] - f[1]) / ((n[2] / n[1]) ** used - 1.0)
+    factor = FIRM if firm else WARY
+    note = "" if firm else f"observed order {observed:.2f} instead of {order}: safety factor {WARY:g}"
+    return Estimate(float(f[2] + correction), _at_least(factor * abs(correction / f[2])), observed, note)
+
+
+def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:
+    """Order p of a monotone sequence of three values, ``v = v∞ + C n⁻ᵖ``, at any three ascending ``elements``.
+
+    The root of ``(n₁⁻ᵖ − n₂⁻ᵖ) / (n₂⁻ᵖ − n₃⁻ᵖ) = (v₂ − v₁) / (v₃ − v₂)``, which grows with p (equivalent to Celik et
+    al., eq. 5). Negative where the changes grow; ±20 at the ends of what is searched.
+    """
+    n1, n2, n3 = (float(n) for n in elements)
+    ratio = (values[1] - values[0]) / (values[2] - values[1])
+
+    def excess(p: float) -> float:
+        if abs(p) < 1e-9:
+            return float(np.log(np.log(n2 / n1) / np.log(n3 / n2) / ratio))
+        return float(np.log(((n2 / n1) ** p - 1.0) / (1.0 - (n2 / n3) ** p) / ratio))
+
+    low, high = -20.0, 20.0
+    if excess(low) >= 0:
+        return low
+    return high if excess(high) <= 0 else float(root_scalar(excess, bracket=(low, high)).root)
+
+
+def from_bracket(frequency: float, uncertainty: float) -> Estimate:
+    """The estimate of a code that brackets its own answer; ``uncertainty`` is relative."""
+    return Estimate(frequency, _at_least(uncertainty))
+
+
+def from_print(text: str) -> Estimate:
+    """The estimate from a printed number: half a unit of its last digit (``189.7`` is 189.7 ± 0.05)."""
+    digits = text.strip().lower().partition("e")
+    decimals = len(digits[0].partition(".")[2]) - int(digits[2] or 0)
+    value = float(text)
+    return Estimate(value, _at_least(0.5 * 10.0**-decimals / abs(value)))
+
+
+def _at_least(uncertainty: float) -> float:
+    return max(float(uncertainty), ROUNDING)

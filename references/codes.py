@@ -1,0 +1,84 @@
+"""The codes by name: ours, those of installed packages (entry-point group ``southwell.codes``), and any by import path.
+
+A code's module is imported only when the code is asked for, so that a missing or broken foreign package costs nothing
+to those who do not use it.
+"""
+
+from difflib import get_close_matches
+from importlib import import_module
+from importlib.metadata import entry_points
+
+from .interface import Code
+
+GROUP = "southwell.codes"
+
+OURS = {
+    "exudyn-ancf": "southwell.references.exudyn_ancf:CODE",
+    "exudyn-tree": "southwell.references.exudyn_tree:CODE",
+    "scikit-fem": "southwell.references.scikit_fem_beam:CODE",
+    "pinocchio": "southwell.references.pinocchio_chain:CODE",
+    "yoo-shin": "southwell.references.yoo_shin:CODE",
+    "assumed-modes": "southwell.references.assumed_modes:CODE",
+    "southwell-equation": "southwell.references.southwell_equation:CODE",
+    "exact-beam": "southwell.references.exact_beam:CODE",
+}
+"""Name → ``module:attribute`` of the codes that come with the package."""
+
+
+class UnknownCodeError(ValueError):
+    """A code that cannot be had: the message names it, the likely cause, and the remedy."""
+
+
+def names() -> tuple[str, ...]:
+    """Names of all codes known here, ours first; installed or not."""
+    theirs = sorted(e.name for e in entry_points(group=GROUP) if e.name not in OURS)
+    return (*OURS, *theirs)
+
+
+def locate(name: str) -> str:
+    """Import path ``module:attribute`` of a code.
+
+    Args:
+        name: a name from ``names()``, or an import path itself (a code nobody registered).
+
+    Raises:
+        UnknownCodeError: if no such name is known; the nearest is suggested.
+    """
+    if ":" in name:
+        return name
+    if name in OURS:
+        return OURS[name]
+    for entry in entry_points(group=GROUP, name=name):
+        return entry.value
+    near = get_close_matches(name, names(), 1)
+    advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(names())}"
+    raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
+
+
+def code(name: str) -> Code:
+    """The code called ``name`` (as for ``locate``), imported now.
+
+    Raises:
+        UnknownCodeError: if it is not known, or what the path leads to cannot be imported or is not a code.
+    """
+    path = locate(name)
+    module, _, attribute = path.partition(":")
+    try:
+        found = getattr(import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}") from error
+    missing = [
+        a for a in ("name", "model", "levels", "order", "version", "unsupported", "solve") if not hasattr(found, a)
+    ]
+    if missing:
+        raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.interface.Code")
+    return found
+
+
+CAPS = {"pinocchio": 40}
+"""Finest refinement that a code can be asked for, where memory sets it (Pinocchio keeps dense cubes of all freedoms)."""
+
+
+def cap(code: Code) -> int:
+    """The finest refinement a code is taken to."""
+    return CAPS.get(code.name, 8 * code.levels[-1])
