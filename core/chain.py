@@ -29,12 +29,26 @@ class SteadyStateError(ValueError):
 
 @dataclass(frozen=True)
 class Linear:
-    """Residual (6n,) and block-tridiagonal M, C, K of the free nodes 1 … n."""
+    """Residual (6n,) and block-tridiagonal M, C, K of the free nodes 1 … n; K = ``rest`` + Σ of ``spring`` on ρ = Ad ξ_b − ξ_a.
+
+    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses.
+    """
 
     residual: Array
     M: Tridiagonal
     C: Tridiagonal
-    K: Tridiagonal
+    rest: Tridiagonal
+    spring: Array
+    lever: Array
+
+    @property
+    def K(self) -> Tridiagonal:
+        """The whole stiffness."""
+        on_b = np.swapaxes(self.lever, -1, -2) @ self.spring
+        diagonal = self.rest.diagonal + on_b @ self.lever
+        diagonal[:-1] += self.spring[1:]
+        upper = self.rest.upper - self.spring[1:] @ self.lever[1:]
+        return Tridiagonal(diagonal, upper, self.rest.lower - on_b[1:])
 
 
 def spin(omega: float) -> Array:
@@ -70,8 +84,19 @@ def linearize(chain: Chain, nodes: Array, omega: float, gravity: Array, model: M
         r.ravel(),
         blocks.from_elements(back @ p.M @ own, chain.lumps),
         blocks.from_elements(coriolis * (back @ p.C @ own), coriolis * C),
-        blocks.from_elements(back @ p.K @ own, K),
+        blocks.from_elements(back @ p.rest @ own, K),
+        p.spring,
+        own[:, 6:, 6:],
     )
+
+
+def strain_energy(linear: Linear, x: NDArray[np.complex128]) -> Array:
+    """x*Kx (m,) of nodal twists (6n, m), from the elements' own strains: exact to rounding however stiff they are."""
+    twist = x.reshape(-1, 6, x.shape[-1])
+    rho = linear.lever @ twist
+    rho[1:] -= twist[:-1]
+    springs = (rho.conj() * (linear.spring @ rho)).sum((0, 1))
+    return np.real(springs + (x.conj() * (blocks.sparse(linear.rest) @ x)).sum(0))
 
 
 def steady(chain: Chain, omega: float, gravity: Array, start: Array | None = None) -> Array:

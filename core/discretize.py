@@ -1,7 +1,7 @@
 """A blade as a chain: rigid bodies at nodes along the blade, joined by beam elements."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from .elements import Measure
 from .inertia import moved
 from .modes import STATIONS
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 Mass = Literal["consistent", "half_end"]
 
 

@@ -6,7 +6,9 @@ rounding, and M is never inverted: massless coordinates are condensed exactly, w
 (Meirovitch 1974; Lancaster 2013, *Stability of linear gyroscopic systems*.)
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
@@ -17,6 +19,7 @@ from .blocks import Tridiagonal
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Numbers = NDArray[Any]
 
 _TOLERANCE = 1e-13
 
@@ -53,14 +56,18 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     wanted = r if count is None else min(count, r)
     mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
     order = np.argsort(-mu)
-    x = scipy.linalg.solve_triangular(k.T, z[:n, order], lower=False)
+    x = scipy.linalg.solve_triangular(k.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
     return _scaled(1.0 / mu[order], x, K)
 
 
-def lanczos(M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int) -> Eigen:
+def lanczos(
+    M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int, energy: Callable[[Numbers], Array] | None = None
+) -> Eigen:
     """The ``count`` lowest modes of a chain: block Lanczos in the A product, one K-solve a step.
 
     Blocks of two find the double frequencies of symmetric blades; each basis vector is orthogonalised against all before.
+    With ``energy``, x*Kx to full accuracy, the frequencies are taken from the gyroscopic Rayleigh quotient of the vectors,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
 
     Raises:
         UnstableError: if K is not positive definite.
@@ -105,8 +112,54 @@ def lanczos(M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int) -> Eigen
                 break
         v = w
     positive = mu > 1e-12 * mu.max()
-    x = basis[:n, :size] @ z[:, positive]
-    return _scaled(1.0 / mu[positive], x, ks)
+    x = basis[:n, :size] @ z[:, positive].conj()  # i A⁻¹S has 1/ω at λ = −iω
+    frequencies = 1.0 / mu[positive]
+    if energy is not None:
+        m = np.real((x.conj() * (ms @ x)).sum(0))
+        half = -0.5 * np.imag((x.conj() * (cs @ x)).sum(0))
+        kappa = energy(x)
+        root = np.sqrt(half**2 + m * kappa)
+        frequencies = kappa / (root - half)
+    return _scaled(frequencies, x, ks)
+
+
+@dataclass(frozen=True)
+class Damped:
+    """Eigenvalues (m,) of one of each conjugate pair (and real ones), by modulus, and vectors (n, m)."""
+
+    values: Complex
+    vectors: Complex
+
+    @property
+    def frequencies(self) -> Array:
+        """Undamped frequencies |λ|, rad/s."""
+        return np.abs(self.values)
+
+    @property
+    def damping(self) -> Array:
+        """Damping ratios −Re λ/|λ|; negative: the mode grows. Zero for a rigid mode."""
+        size = np.abs(self.values)
+        return np.where(size > 0, -self.values.real / np.where(size > 0, size, 1.0), 0.0)
+
+
+def damped(M: Array, C: Array, K: Array, count: int | None = None) -> Damped:
+    """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none."""
+    n = len(M)
+    scale = (
+        np.sqrt(max(np.linalg.norm(K), 1e-300) / max(np.linalg.norm(M), 1e-300)) or 1.0
+    )  # time scale (Fan, Lin, Van Dooren)
+    zero, one = np.zeros((n, n)), np.eye(n)
+    a = np.block([[zero, one], [-K / scale**2, -C / scale]])
+    b = np.block([[one, zero], [zero, M]])
+    pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
+    alpha, beta = pair
+    finite = np.abs(beta) > 1e-12 * np.abs(alpha)
+    values, x = scale * alpha[finite] / beta[finite], z[:n, finite]
+    largest = np.abs(values).max(initial=0.0)
+    one_of_each = values.imag >= -1e-12 * largest
+    values, x = values[one_of_each], x[:, one_of_each]
+    order = np.argsort(np.abs(values), kind="stable")[:count]
+    return Damped(values[order], x[:, order])
 
 
 def _skew(t: Array) -> Array:
@@ -115,11 +168,11 @@ def _skew(t: Array) -> Array:
     return upper - upper.T
 
 
-def _norms(v: Array, product) -> Array:  # noqa: ANN001
+def _norms(v: Array, product: Callable[[Array], Array]) -> Array:
     return np.sqrt(np.maximum((v * product(v)).sum(0), 0.0))
 
 
-def _orthonormal(v: Array, product, basis: Array, dual: Array) -> tuple[Array, int]:  # noqa: ANN001
+def _orthonormal(v: Array, product: Callable[[Array], Array], basis: Array, dual: Array) -> tuple[Array, int]:
     """Make the columns orthonormal in the A product, to the basis and to each other; drop those that vanish."""
     before = _norms(v, product)
     for _ in range(2):
@@ -133,7 +186,7 @@ def _orthonormal(v: Array, product, basis: Array, dual: Array) -> tuple[Array, i
     return v @ np.linalg.inv(np.linalg.cholesky(0.5 * (gram + gram.T))).T if keep.any() else v, int(keep.sum())
 
 
-def _scaled(frequencies: Array, x: Complex, K) -> Eigen:  # noqa: ANN001
+def _scaled(frequencies: Array, x: Numbers, K: Any) -> Eigen:
     energy = np.sqrt(np.maximum(np.real((x.conj() * (K @ x)).sum(0)), 1e-300))
     order = np.argsort(frequencies)
     return Eigen(frequencies[order], (x / energy)[:, order])

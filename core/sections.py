@@ -50,13 +50,13 @@ def frames(blade: Blade, s: Array) -> Array:
 def compliance(blade: Blade, s: Array) -> Array:
     """Section compliance (k, 6, 6); rigid shears have none, rigid axial and torsional strains next to none."""
     k = stiffness_at(blade, s)
-    soft = ~np.isinf(k).any(axis=(0, 2))
+    soft = np.flatnonzero(np.isfinite(k).all(axis=(0, 2)))
     out = np.zeros_like(k)
-    out[:, np.ix_(soft, soft)[0], np.ix_(soft, soft)[1]] = np.linalg.inv(k[:, soft][:, :, soft])
+    out[:, soft[:, None], soft] = np.linalg.inv(k[:, soft[:, None], soft])
     bend = np.minimum(out[:, BEND_Y, BEND_Y], out[:, BEND_Z, BEND_Z])
-    if not soft[AXIAL]:
+    if AXIAL not in soft:
         out[:, AXIAL, AXIAL] = RIGID_AXIAL * blade.length**2 * bend
-    if not soft[TORSION]:
+    if TORSION not in soft:
         out[:, TORSION, TORSION] = RIGID_TORSION * bend
     return out
 

@@ -55,7 +55,7 @@ def modes(
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness)
     body, nodes = balance(body, omega, gravity, model)
     p = chain.linearize(body, nodes, omega, gravity, model)
-    found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count)
+    found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, lambda x: chain.strain_energy(p, x))
     shapes = mode_shapes(body, nodes, found.vectors)
     return Modes(omega, found.frequencies, shapes, elements, seconds=time.perf_counter() - begun)
 

@@ -1,0 +1,35 @@
+"""A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .beams import Beams, Points
+from .discretize import Chain
+from .joints import Joint
+from .mechanism import GROUND, Beam, Body, Mechanism, Motion
+
+Array = NDArray[np.float64]
+
+
+def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
+    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection (Park 2010, sec. 3)."""
+    n = len(chain.nodes) - 1
+    bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
+    joints = (
+        Joint("hub", "revolute", GROUND, "hub"),
+        Joint("root", "fixed", "hub", "body 0", at_parent=chain.nodes[0]),
+        *(
+            Joint(f"element {k + 1}", "elastic", f"body {k}", f"body {k + 1}", at_parent=chain.beams.rest[k])
+            for k in range(n)
+        ),
+    )
+    beams = tuple(Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k)) for k in range(n))
+    return Mechanism(bodies, joints, (Motion("hub.rz", 0.0, omega),), beams=beams, gravity=gravity)
+
+
+def one(beams: Beams, k: int) -> Beams:
+    """The k-th element alone."""
+    mine = beams.points.element == k
+    p = beams.points
+    points = Points(np.zeros(int(mine.sum()), dtype=np.intp), p.rest[mine], p.shape[mine], p.mass[mine])
+    return Beams(beams.measure, beams.rest[k : k + 1], beams.stiffness[k : k + 1], points, beams.preload[k : k + 1])

@@ -1,0 +1,65 @@
+"""The velocity transformation Y = B v of a tree and its rates (Park et al. 2010, eq. 3, 4), in the ground's axes.
+
+With twists taken at the ground's origin, passing down the tree needs no transformation: ``Y_child = Y_parent + J v``, J the
+joint's screw brought to the ground, so a body's rows of B are the J of the coordinates that carry it. A screw moves with
+the link it hangs on, hence ``J̇ = Y × J`` and ``J̈ = Ẏ × J + Y × J̇``, Y the twist of that link.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import spatial as sp
+from .mechanism import Tree
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """A tree's state and its velocity transformation; b bodies, n coordinates.
+
+    Attributes:
+        poses: (b, 4, 4) of the bodies.
+        J: (6, n) screws.
+        B, B1, B2: (b, 6, n) velocity transformation, its first and second rates along the motion.
+        Y, A: (b, 6) twists of the bodies and their rates, ``A = B v̇ + Ḃ v``.
+    """
+
+    poses: Array
+    J: Array
+    B: Array
+    B1: Array
+    B2: Array
+    Y: Array
+    A: Array
+
+
+def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
+    """Poses (b, 4, 4) of the bodies and screws J (6, n) at coordinates q (n,)."""
+    steps = tree.fixed @ sp.exp(tree.screw * q[:, None])
+    links = np.empty((len(q) + 1, 4, 4))
+    links[-1] = np.eye(4)  # the ground, so that index −1 finds it
+    for j, before in enumerate(tree.before):
+        links[j] = links[before] @ steps[j]
+    # a screw is the same seen from either side of its own motion
+    J = (sp.adjoint(links[:-1]) @ tree.screw[..., None])[..., 0].T
+    return links[tree.link] @ tree.on_link, J
+
+
+def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
+    """Everything that follows from coordinates, velocities and accelerations, each (n,)."""
+    x, J = poses(tree, q)
+    hangs = tree.above.astype(float) - np.eye(len(q))  # the links strictly above
+    Y = hangs @ (J * v).T
+    J1 = _cross(Y, J)
+    A = hangs @ (J * a + J1 * v).T
+    J2 = _cross(A, J) + _cross(Y, J1)
+    carries = tree.carries.astype(float)
+    B, B1, B2 = (carries[:, None, :] * j for j in (J, J1, J2))
+    return Kinematics(x, J, B, B1, B2, B @ v, B @ a + B1 @ v)
+
+
+def _cross(Y: Array, J: Array) -> Array:
+    return (sp.ad(Y) @ J.T[..., None])[..., 0].T
