@@ -1,11 +1,14 @@
 """Exudyn's kinematic tree: rigid segments on elastic hinges, in relative coordinates.
 
-An element bends, twists, stretches and shears in a hinge at its middle, by its whole compliance; what lies between two
-hinges is a rigid body with the blade's own mass and inertia. The root's half element belongs to the hub. This is a
-lumped model of second order. Exudyn's recursive equations of motion (R. Featherstone, *Rigid Body Dynamics Algorithms*,
-2008) make the large motions, hence the steady tension's stiffening, and all inertia forces.
+An element bends, twists, stretches and shears in one hinge, by its whole compliance and where the compliance in bending
+has its centroid (the middle, if uniform); what lies between two hinges is a rigid body with the blade's own mass and
+inertia. What lies before the first belongs to the hub. This is a lumped model of second order. Exudyn's recursive
+equations of motion (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008) make the large motions, hence the steady
+tension's stiffening, and all inertia forces.
 
-Sliding joints sit half on either side of the turning ones, so that a stretched hinge still turns at its middle.
+Sliding joints sit half on either side of the turning ones, so that a stretched hinge still turns at its middle
+(all on one side would cost an order: the middle would be off by half the stretch).
+
 Where the blade has no moments of inertia the segments have none about their own line, and torsion has no modes: M and C
 vanish there, and a semi-definite M is all the eigenproblem asks for.
 """

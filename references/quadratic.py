@@ -2,7 +2,7 @@
 
 ``M q̈ + C q̇ + K q = 0`` with M symmetric and positive *semi*-definite, C skew, K symmetric positive definite: with
 ``q = φ exp(iωt)`` every ω is real. The problem is solved in inverse form, whose largest eigenvalues 1/ω belong to the
-lowest modes, so that stiff constraints and massless coordinates cost no accuracy (they crowd at 1/ω = 0).
+lowest modes, so that stiff and massless coordinates cost no accuracy (they crowd at 1/ω = 0).
 
 Core has its own solver and never uses this one.
 """
