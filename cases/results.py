@@ -1,7 +1,7 @@
 """What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``.
 
-That file has one JSON object a line. Most are cells, by their fields; ``kind`` tells them from refinements' answers and
-from the one line about the run itself, which comes last and may be missing if the run was cut short.
+That file has one JSON object a line. Most are cells, by their fields; ``kind`` tells them from refinements' answers, from
+the settings of the cases, which come first, and from the line about the run itself.
 """
 
 from collections.abc import Iterable
@@ -79,6 +79,27 @@ class Level:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """What a report says of a case's blade, so that old results can be shown without the case's file.
+
+    Attributes:
+        case: as in ``Cell``.
+        title: one line.
+        description: what the case shows, and what in it is assumed.
+        source: where its data come from.
+        unit: what its speeds are given in: ``rad_s``, ``rpm`` or ``gamma``.
+        facts: name → value with unit, in words.
+    """
+
+    case: str
+    title: str
+    description: str
+    source: str
+    unit: Literal["rad_s", "rpm", "gamma"]
+    facts: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Run:
     """Everything a report needs.
 
@@ -87,19 +108,22 @@ class Run:
         levels: every refinement's answer.
         versions: package or code → version.
         command: what was typed, to reproduce.
+        settings: of each case's blade.
     """
 
     cells: tuple[Cell, ...]
     levels: tuple[Level, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     command: str = ""
+    settings: tuple[Setting, ...] = ()
 
 
 def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
-    """Add lines to a results file: cells and levels as they come; of ``run``, its versions and command."""
+    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, versions and command."""
     lines: list[dict[str, Any]] = [{"kind": "cell", **msgspec.to_builtins(c)} for c in cells]
     lines += [{"kind": "level", **msgspec.to_builtins(v)} for v in levels]
     if run:
+        lines += [{"kind": "setting", **msgspec.to_builtins(s)} for s in run.settings]
         lines.append({"kind": "run", "versions": run.versions, "command": run.command})
     with path.open("ab") as file:
         file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
@@ -111,21 +135,22 @@ def read(path: Path) -> Run:
     Raises:
         ValueError: naming file and line, if a whole line is not what this version writes.
     """
-    cells: list[Cell] = []
-    levels: list[Level] = []
+    rows: dict[type, list[Any]] = {kind: [] for kind in KINDS.values()}
     about: dict[str, Any] = {}
     for number, line in enumerate(path.read_bytes().split(b"\n")[:-1], 1):
         try:
             data = msgspec.json.decode(line)
             kind = data.pop("kind")
-            if kind == "cell":
-                cells.append(msgspec.convert(data, Cell))
-            elif kind == "level":
-                levels.append(msgspec.convert(data, Level))
-            else:
+            if kind == "run":
                 about = {"versions": data["versions"], "command": data["command"]}
+            else:
+                rows[KINDS[kind]].append(msgspec.convert(data, KINDS[kind]))
         except (msgspec.DecodeError, AttributeError, KeyError, TypeError) as error:
             raise ValueError(
                 f"{path}: line {number}: not a result ({error}): was it written by another version?"
             ) from error
-    return Run(tuple(cells), tuple(levels), **about)
+    return Run(tuple(rows[Cell]), tuple(rows[Level]), settings=tuple(rows[Setting]), **about)
+
+
+KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting}
+"""What a line of each kind is."""

@@ -1,0 +1,51 @@
+"""What a report says of a case: its words, and the facts of each blade that every code was given."""
+
+import numpy as np
+from msgspec import UNSET
+from scipy.integrate import trapezoid
+
+from ..core.blade import Blade
+from .results import Setting
+from .schema import Case, Variant
+from .verdict import unsigned
+
+
+def settings(case: Case) -> tuple[Setting, ...]:
+    """One for each blade of the case."""
+    return tuple(_setting(case, variant) for variant in case.variants)
+
+
+def _setting(case: Case, variant: Variant) -> Setting:
+    text = case.text
+    (unit,) = (u for u in ("rad_s", "rpm", "gamma") if getattr(text.speeds, u) is not UNSET)
+    facts = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
+    given = getattr(text.speeds, unit)
+    facts["speeds"] = given if isinstance(given, str) else ", ".join(f"{v:g}" for v in given)
+    facts["speeds"] += {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
+    facts["modes compared"] = f"the lowest {text.compare.modes} that move mostly {' or '.join(text.compare.motions)}"
+    facts["target"] = unsigned(text.compare.target)
+    if text.discretisation:
+        d = text.discretisation
+        facts["source's discretisation"] = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness"
+    title = text.title if len(case.variants) == 1 else f"{text.title}: {variant.name.partition('/')[2]}"
+    return Setting(variant.name, title, " ".join(text.description.split()), text.source, unit, facts)
+
+
+def _dimensional(blade: Blade) -> dict[str, str]:
+    mass = trapezoid(blade.mass[:, 0, 0], blade.stations)
+    facts = {
+        "length": f"{blade.length:g} m",
+        "hub radius": f"{blade.hub_radius:g} m",
+        "mass": f"{mass + blade.tip_mass[0, 0]:.6g} kg",
+        "stations": f"{len(blade.stations)}",
+    }
+    if blade.twist.any():
+        facts["twist"] = f"{np.degrees(blade.twist[0]):g}° at the root, {np.degrees(blade.twist[-1]):g}° at the tip"
+    if not blade.mass[:, 3:, 3:].any():
+        facts["rotary inertia"] = "none"
+    return facts
+
+
+def _dimensionless(blade: Blade) -> dict[str, str]:
+    axial, bending = blade.stiffness[0, 0, 0], blade.stiffness[0, 5, 5]
+    return {"slenderness": f"{np.sqrt(axial / bending):g}", "hub ratio": f"{blade.hub_radius:g}"}
