@@ -50,44 +50,67 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
         CodeError: K is not positive definite (no stable steady state), M not semi-definite, or a symmetry is missing.
     """
     matrices: list[Any] = [M, C, K]
-    size = matrices[0].shape[0]
-    large = 2 * count + 4 < size
-    if any(sp.issparse(matrix) for matrix in matrices):
-        matrices = [sp.csc_array(matrix) for matrix in matrices]
-        if large:
-            return _krylov(*_scaled(*matrices), count, _sparse_solver)
-        matrices = [matrix.toarray() for matrix in matrices]
-    if large and size > DENSE:
-        return _krylov(*_scaled(*matrices), count, _dense_solver)
-    return _direct(*_scaled(*matrices), count)
+    size = matrices[2].shape[0]
+    thin = any(sp.issparse(matrix) for matrix in matrices)
+    iterate = 2 * count + 4 < size and (thin or size > DENSE)
+    if thin:
+        matrices = [sp.csc_array(matrix) if iterate else sp.csc_array(matrix).toarray() for matrix in matrices]
+    scale = _scale(matrices[2])
+    m, c, k = (matrix * scale[:, None] * scale[None, :] for matrix in matrices)
+    k = _symmetric("K", k, 1, 1.0)
+    try:
+        solve = _factor(k)
+    except np.linalg.LinAlgError:
+        raise _unstable(matrices[2]) from None
+    largest = abs(m).max()
+    m = _symmetric("M", m, 1, largest)
+    # C is measured against the critical damping of the lowest modes too: at rest it is all rounding
+    c = _symmetric("C", c, -1, max(abs(c).max(), largest**0.5))
+    inverse, q = _iterated(m, c, k, solve, count) if iterate else _direct(m, c, k, count)
+    return _ordered(inverse, q * scale[:, None], count)
 
 
-def _scaled(M: Any, C: Any, K: Any) -> tuple[Any, Any, Any, Array]:
-    """Symmetrised matrices for coordinates in which K has a unit diagonal, and that scale (n,)."""
+def _scale(K: Any) -> Array:
+    """(n,) units for the coordinates in which K has a unit diagonal."""
     diagonal = K.diagonal()
     if (diagonal <= 0).any():
         raise _unstable(K)
-    scale = cast(Array, 1 / np.sqrt(diagonal))
-
-    M, C, K = (matrix * scale[:, None] * scale[None, :] for matrix in (M, C, K))
-    mass = abs(M).max()
-    # C is measured against the critical damping of the lowest modes too: at rest it is all rounding
-    for name, matrix, sign, size in (("M", M, 1, mass), ("C", C, -1, max(abs(C).max(), mass**0.5)), ("K", K, 1, 1.0)):
-        wrong = abs(matrix - sign * matrix.T).max()
-        if not np.isfinite(wrong):
-            raise CodeError(f"{name}: not finite: the code handed over no usable linearisation")
-        if wrong > ASYMMETRY * size:
-            kind = "symmetric" if sign == 1 else "skew"
-            raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
-    return (M + M.T) / 2, (C - C.T) / 2, (K + K.T) / 2, scale
+    return cast(Array, 1 / np.sqrt(diagonal))
 
 
-def _direct(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
+def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
+    """The symmetric (sign 1) or skew (sign -1) part, which must be all but rounding of ``size``."""
+    wrong = abs(matrix - sign * matrix.T).max()
+    if not np.isfinite(wrong):
+        raise CodeError(f"{name}: not finite: the code handed over no usable linearisation")
+    if wrong > ASYMMETRY * size:
+        kind = "symmetric" if sign == 1 else "skew"
+        raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
+    return (matrix + sign * matrix.T) / 2
+
+
+def _factor(K: Any) -> Solve:
+    """How to solve with K, which must be positive definite.
+
+    Raises:
+        LinAlgError: it is not.
+    """
+    if not sp.issparse(K):
+        cholesky = scipy.linalg.cho_factor(K, lower=True)
+        return lambda b: scipy.linalg.cho_solve(cholesky, b, check_finite=False)
+    # no rows are exchanged, so that the pivots' signs are the inertia of K (Sylvester)
+    factor = spla.splu(
+        sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+    if (factor.perm_r != factor.perm_c).any() or (factor.U.diagonal() <= 0).any():
+        raise np.linalg.LinAlgError("not positive definite")
+    return factor.solve
+
+
+def _direct(M: Array, C: Array, K: Array, count: int) -> Pairs:
+    """1/ω and shapes, by all of the Hermitian problem."""
     n = len(K)
-    try:
-        L = scipy.linalg.cholesky(K, lower=True)
-    except np.linalg.LinAlgError:
-        raise _unstable(K / np.outer(scale, scale)) from None
+    L = scipy.linalg.cholesky(K, lower=True)
     m, V = np.linalg.eigh(M)
     if m[0] < -1e-10 * m[-1]:
         raise CodeError(f"M: lowest eigenvalue {m[0] / m[-1]:.1e} of the largest: negative mass")
@@ -101,23 +124,19 @@ def _direct(M: Array, C: Array, K: Array, scale: Array, count: int) -> Pairs:
     T[:n, :n], T[:n, n:], T[n:, :n] = -1j * gyro, -1j * coupling, 1j * coupling.T
     # the spectrum is ± pairs and zeros, so no more than half of it is positive
     inverse, y = scipy.linalg.eigh(T, subset_by_index=[max(size - count, (size + 1) // 2), size - 1])
-    q = scipy.linalg.solve_triangular(L, y[:n], lower=True, trans=1)
-    return _ordered(inverse, q * scale[:, None], count)
+    return inverse, scipy.linalg.solve_triangular(L, y[:n], lower=True, trans=1)
 
 
-def _krylov(M: Any, C: Any, K: Any, scale: Array, count: int, solver: Callable[[Any], Solve]) -> Pairs:
+def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
+    """1/ω and shapes, by Arnoldi's method on A⁻¹S with A = diag(K, M), S = [[-C, -M], [M, 0]]."""
     n = K.shape[0]
-    try:
-        solve = solver(K)
-    except np.linalg.LinAlgError:
-        raise _unstable(K / scale[:, None] / scale[None, :]) from None
     start = np.random.default_rng(0).standard_normal(2 * n)
     # velocities in units of a frequency near the lowest, so that both halves of a state are of a size
     guess = solve(M @ start[:n])
     unit = np.sqrt((guess @ (K @ guess)) / (guess @ (M @ guess)))
 
     def inverse(x: Array) -> Array:
-        """A⁻¹ S x with A = diag(K, M), S = [[-C, -M], [M, 0]]: one solve with K, none with M."""
+        """A⁻¹ S x: one solve with K, none with M."""
         q, v = x[:n], x[n:]
         return np.concatenate([-solve(C @ q + unit * (M @ v)), q / unit])
 
@@ -128,22 +147,7 @@ def _krylov(M: Any, C: Any, K: Any, scale: Array, count: int, solver: Callable[[
     except spla.ArpackError as error:
         raise CodeError(f"eigenproblem: ARPACK gave up on {k} values of {2 * n} ({error}): ask for fewer") from error
     values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
-    return _ordered(-values.imag, x[:n] * scale[:, None], count)  # 1/(iω) = -i/ω
-
-
-def _sparse_solver(K: Any) -> Solve:
-    """Solve with K; no rows are exchanged, so that the pivots' signs are the inertia of K (Sylvester)."""
-    factor = spla.splu(
-        sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
-    if (factor.perm_r != factor.perm_c).any() or (factor.U.diagonal() <= 0).any():
-        raise np.linalg.LinAlgError("not positive definite")
-    return factor.solve
-
-
-def _dense_solver(K: Any) -> Solve:
-    factor = scipy.linalg.cho_factor(K, lower=True)
-    return lambda b: scipy.linalg.cho_solve(factor, b, check_finite=False)
+    return -values.imag, x[:n]  # 1/(iω) = -i/ω
 
 
 def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy import sparse
+
 from southwell.references.interface import CodeError
 from southwell.references.quadratic import DENSE, gyroscopic_modes
 
