@@ -1,16 +1,15 @@
 """From a solver's study and core's reference to rows: the difference, how sure it is, and what it means."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ..core.modes import Modes
 from ..references.worker import Answer, Failure
-from .pairing import Pair, pair
+from .pairing import LEAST_MAC, MOTIONS, Pair, pair, shares
 from .reference import Reference
 from .results import Cell, Level, Verdict
 from .study import Settled, Study, settle
 from .uncertainty import ROUNDING, Estimate
-from .verdict import bracketed, discretised, judge, known
+from .verdict import Judgement, bracketed, discretised, judge, known, percent
 
 FAILED: dict[str, Verdict] = {
     "not installed": "not run",
@@ -65,7 +64,9 @@ def refined(head: Head, omega: float, reference: Reference, study: Study, order:
     cells = []
     for i, mine in enumerate(settled):
         cell = _row(head, omega, i, reference, study.answers[-1], mine.partner)
-        if mine.estimate:
+        if still := _still(reference, i, study.answers[-1]):
+            cell = replace(cell, verdict="not applicable", reason=still)
+        elif mine.estimate:
             cell = _judged(cell, reference, i, mine, late)
         cells.append(cell)
     levels = [
@@ -94,14 +95,27 @@ def same(head: Head, omega: float, reference: Reference, theirs: Answer, mine: A
     return cells, levels
 
 
-def printed(head: Head, omega: float, reference: Reference, values: Sequence[Estimate | None], note: str) -> list[Cell]:
-    """Cells of a printed table: its number for each mode the case compares, None where it has none."""
-    cells = []
-    for i, value in enumerate(values):
-        if value:
-            settled = Settled(value, Pair(i, 1.0, note), ())
-            cells.append(_judged(_row(head, omega, i, reference, None, settled.partner), reference, i, settled, ""))
-    return cells
+def printed(head: Head, omega: float, i: int, reference: Reference, value: Estimate, note: str) -> Cell:
+    """The cell of a printed number for the ``i``-th mode the case compares."""
+    settled = Settled(value, Pair(i, 1.0, note), ())
+    return _judged(_row(head, omega, i, reference, None, settled.partner), reference, i, settled, "")
+
+
+def excused(cell: Cell, value: Estimate, discretised: float | None, what: str) -> Cell:
+    """The cell of a printed number whose author's discretisation is known and core's answer with it is ``discretised``.
+
+    Where the number is not within the target of the converged answer but agrees with that one, the rest is known.
+    """
+    if cell.verdict == "pass" or discretised is None or cell.reference is None:
+        return cell
+    verdict, _ = judge(value.value / discretised - 1.0, value.uncertainty, cell.target)
+    if verdict != "pass":
+        return cell
+    error = percent(discretised / cell.reference - 1.0)
+    reason = (
+        f"discretisation error of {what}: {error} (core so discretised, and converged); so discretised, core agrees"
+    )
+    return replace(cell, verdict="known difference", reason=reason)
 
 
 def given(head: Head, omega: float, reference: Reference, study: Study, order: int, what: str) -> Rows:
@@ -122,6 +136,9 @@ def given(head: Head, omega: float, reference: Reference, study: Study, order: i
         if cell.difference is not None and base is not None:
             cell = replace(cell, uncertainty=base.uncertainty)
             verdict, reason = discretised(cell.difference, base.uncertainty, head.target, limit.difference, what)
+            if verdict != "fail":
+                lacking, why = _known(reference, i, head.target)
+                verdict, reason = verdict if lacking == "pass" else lacking, _join(reason, why)
             cell = replace(cell, verdict=verdict, reason=reason)
         cells.append(cell)
     return cells, levels
@@ -146,6 +163,24 @@ def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes |
     )
 
 
+def _known(reference: Reference, i: int, target: float) -> Judgement:
+    """What the effects that the reference lacks do to its ``i``-th mode."""
+    full, base = reference.full[i], reference.core.settled[i].estimate
+    shift = base.value / full - 1.0 if full and base else None
+    verdict, reason = known(shift, target, reference.effects[i])
+    if full and reference.likeness[i] < LEAST_MAC:
+        reason = _join(reason, f"shapes with and without are alike to MAC {reference.likeness[i]:.2f} only")
+    return verdict, reason
+
+
+def _still(reference: Reference, i: int, modes: Modes) -> str:
+    """Why a code cannot have a mode: none of its shapes moves at all where this one moves most."""
+    wanted = reference.core.wanted
+    share = shares(wanted.reference, wanted.weight)[wanted.indices[i]]
+    motion = int(share.argmax())
+    return "" if modes.shapes[:, :, motion].any() else f"no mode of this code has any {MOTIONS[motion]} motion"
+
+
 def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) -> Cell:
     base, best = reference.core.settled[i].estimate, mine.estimate
     if base is None or best is None:
@@ -157,9 +192,7 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) 
     if mine.bracketed:
         verdict, reason = bracketed(difference, best.uncertainty, (verdict, reason))
     if verdict == "pass":
-        full = reference.full[i]
-        shift = base.value / full - 1.0 if full else None
-        verdict, reason = known(shift, cell.target, reference.effects[i])
+        verdict, reason = _known(reference, i, cell.target)
     else:
         reason = _join(reason, best.note, base.note and f"core: {base.note}", late)
     return replace(

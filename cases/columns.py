@@ -6,6 +6,7 @@ A column's work is a picklable function of the speeds and of core's references t
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.metadata import version
 
 from ..core.blade import Blade
 from ..core.model import FULL, Model
@@ -19,6 +20,7 @@ from .reference import Reference, felt
 from .results import Cell, Level, Verdict
 from .schema import Case, Discretisation, Variant
 from .study import Refining, solve
+from .tables import about, rows
 
 SAME = 1e-8
 """Target for two codes given the very same discretisation."""
@@ -62,8 +64,15 @@ def columns(case: Case, variant: Variant, codes: dict[str, Code], timeout: float
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
     out = []
     if source:
-        head = Head(variant.name, "core", "", "discretisation", target)
-        out.append(Column("core, as in the source", FULL, head, partial(_source, head, blade, source)))
+        head = Head(variant.name, "core", version("southwell"), "discretisation", target)
+        out.append(
+            Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
+        )
+    for table in about(blade, case.text.compare.tables):
+        head = Head(variant.name, table.name, "", "table", target)
+        computed = source if source and table.name in source.tables else None
+        work = partial(rows, head, table, blade, computed)
+        out.append(Column(table.name, felt(table.series.model, blade), head, work))
     for name, code in codes.items():
         out.append(
             _code(Head(variant.name, code.name, code.version() or "", "code", target), name, code, blade, timeout)
@@ -99,14 +108,15 @@ def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: f
 
 def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
-        return own.answers(blade, runs, source.mass, source.stiffness)
+        return own.answers(blade, runs, source.mass, source.stiffness, source.model)
 
     n = source.elements
     refining = Refining((n, 2 * n, 4 * n), 2, 8 * n)
-    what = f"{n} elements, {source.mass} masses, {source.stiffness} stiffness".replace("_", "-")
     count = max(r.core.count for _, r in core)
     studies = solve(ask, [omega for omega, _ in core], refining, count, [r.core.wanted for _, r in core])
-    return _join(given(head, omega, r, s, refining.order, what) for (omega, r), s in zip(core, studies, strict=True))
+    return _join(
+        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, studies, strict=True)
+    )
 
 
 def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:

@@ -15,6 +15,7 @@ from .columns import Column, Rows, columns
 from .reference import references
 from .results import Cell, Level, Run
 from .schema import Case, Variant
+from .settings import settings
 
 TIMEOUT = 300.0
 """Seconds a worker has for what it is asked at once: all speeds of one blade."""
@@ -106,6 +107,7 @@ def run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
         versions=versions({c.name: c.version() for c in known.values()}),
+        settings=tuple(setting for case in cases for setting in settings(case)),
     )
 
 

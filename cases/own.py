@@ -19,10 +19,10 @@ from .pairing import MOTIONS, Array, aligned, families, shares, weights
 from .schema import Compare
 from .study import Refining, Settled, Wanted, settle, solve
 
-SURE = 1e-5
-"""Core is refined until its own uncertainty, relative, is no more than this: a twentieth of what a code is allowed."""
+SURE = 2e-5
+"""Core is refined until its own uncertainty, relative, is no more than this: a tenth of what a code is allowed."""
 
-START, CAP = 20, 320
+START, CAP = 20, 640
 """Core's coarsest and finest reference discretisation, in elements."""
 
 MARGIN = 4

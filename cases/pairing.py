@@ -114,40 +114,40 @@ def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
     return replace(modes, shapes=shapes)
 
 
-def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array) -> list[Pair]:
+def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array, least: float = LEAST_MAC) -> list[Pair]:
     """Partners in ``other`` of the reference's modes ``wanted``.
 
     All modes of both take part in one assignment that makes the sum of MACs largest. Where a partner found so is too
     unlike and the reference's mode has close neighbours in frequency, the group is compared as a subspace, and its
-    members are matched in the order of frequency.
+    members are matched in the order of frequency. ``least``: the MAC below which two shapes are not partners.
     """
     table = mac(reference.shapes, other.shapes, weight)
     rows, columns = linear_sum_assignment(-table)
     partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
     found: dict[int, Pair] = {}
     for group in groups(reference.frequencies):
-        if any(table[k, partner[k]] < LEAST_MAC for k in group if k in partner):
-            found.update(_as_subspace(group, partner, reference, other, weight))
-    return [found.get(k) or _alone(table[k], partner.get(k), other) for k in wanted]
+        if any(table[k, partner[k]] < least for k in group if k in partner):
+            found.update(_as_subspace(group, partner, reference, other, weight, least))
+    return [found.get(k) or _alone(table[k], partner.get(k), other, least) for k in wanted]
 
 
 def _as_subspace(
-    group: list[int], partner: dict[int, int], reference: Modes, other: Modes, weight: Array
+    group: list[int], partner: dict[int, int], reference: Modes, other: Modes, weight: Array, least: float
 ) -> dict[int, Pair]:
     if len(group) == 1 or not all(k in partner for k in group):
         return {}
     theirs = sorted(partner[k] for k in group)
     likeness = _subspace(reference.shapes[group], other.shapes[theirs], weight)
-    if likeness < LEAST_MAC:
+    if likeness < least:
         return {}
     note = f"compared as a subspace of {len(group)} close modes"
     return {k: Pair(mode, likeness, note) for k, mode in zip(group, theirs, strict=True)}
 
 
-def _alone(row: Array, mode: int | None, other: Modes) -> Pair:
+def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
     if not len(row):
         return Pair(None, 0.0, "no partner: the code gave no modes")
-    if mode is None or row[mode] < LEAST_MAC:
+    if mode is None or row[mode] < least:
         best = int(row.argmax())
         nearest = f"its most similar mode, at {other.frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
         return Pair(None, float(row[best]), f"no partner: {nearest}")

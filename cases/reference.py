@@ -20,13 +20,18 @@ class Reference:
     Attributes:
         core: converged modes.
         full: the same modes' frequencies with all effects, rad/s; None where no mode with all effects resembles them.
+        likeness: MAC of each mode with the one with all effects.
         effects: for each mode, what leaving out each effect that the model lacks does to it.
     """
 
     core: Converged
     full: tuple[float | None, ...]
+    likeness: tuple[float, ...]
     effects: tuple[tuple[Effect, ...], ...]
 
+
+MAJORITY = 0.5
+"""Least MAC of core's modes with and without an effect that changes shapes too: at most one mode can be so alike."""
 
 References = dict[Model, list[Reference | Failure]]
 """By model, at each speed."""
@@ -66,22 +71,25 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: 
 
 
 def _reference(mine: Converged, full: Converged | Failure, without: dict[str, Converged | Failure]) -> Reference:
-    whole = _partners(mine, full)
-    changes = {name: _partners(mine, other) for name, other in without.items()}
+    whole, likeness = _partners(mine, full)
+    changes = {name: _partners(mine, other)[0] for name, other in without.items()}
     effects = tuple(
-        tuple(
-            Effect(name.replace("_", " "), f[i] / reference - 1.0) for name, f in changes.items() if f[i] and reference
-        )
+        tuple(Effect(name.replace("_", " "), _change(f[i], reference)) for name, f in changes.items())
         for i, reference in enumerate(whole)
     )
-    return Reference(mine, whole, effects)
+    return Reference(mine, whole, likeness, effects)
 
 
-def _partners(mine: Converged, other: Converged | Failure) -> tuple[float | None, ...]:
-    """Frequencies in ``other`` of the modes of ``mine``."""
+def _change(without: float | None, whole: float | None) -> float | None:
+    return without / whole - 1.0 if without and whole else None
+
+
+def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
+    """Frequencies in ``other`` of the modes of ``mine``, and how alike the shapes are."""
     if isinstance(other, Failure):
-        return (None,) * len(mine.settled)
+        return (None,) * len(mine.settled), (0.0,) * len(mine.settled)
     theirs = dict(zip(other.wanted.indices, other.settled, strict=True))
-    found = pair(mine.wanted.reference, other.wanted.reference, mine.wanted.indices, mine.wanted.weight)
+    wanted = mine.wanted
+    found = pair(wanted.reference, other.wanted.reference, wanted.indices, wanted.weight, least=MAJORITY)
     estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in found]
-    return tuple(e.value if e else None for e in estimates)
+    return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in found)

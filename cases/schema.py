@@ -17,9 +17,12 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from numpy.typing import NDArray
 
 from ..core.blade import Blade
+from ..core.model import Model
+from ..references import published
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
 
+Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
 Values = list[Annotated[float, Meta(ge=0)]] | str
 
@@ -54,6 +57,18 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
     stiffness: Annotated[
         Literal["corotational", "parent"], Meta(description="the frame the beam's stiffness is linear in")
     ]
+    lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the source leaves out")] = ()
+    tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()
+
+    @property
+    def model(self) -> Model:
+        """The effects kept."""
+        return Model(**dict.fromkeys(self.lacks, False))
+
+    @property
+    def what(self) -> str:
+        """Its name in a sentence."""
+        return f"{self.elements} elements, {self.mass} masses, {self.stiffness} stiffness".replace("_", "-")
 
 
 class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
@@ -130,6 +145,9 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     """
     _finite(data, path, "")
     text = _convert(data, data, path)
+    for table in text.compare.tables:
+        if table not in published.names():
+            raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
     speeds = _speeds(text, path)
     variants = []
     for label, changes in (text.variants or {"": {}}).items():

@@ -50,7 +50,7 @@ class Settled:
 
 @dataclass(frozen=True)
 class Study:
-    """A solver's answer at one speed: its modes at every refinement, ascending, and why there are no more."""
+    """A solver's answer at one speed: its modes at every refinement, and why the finest asked for is not there."""
 
     answers: tuple[Modes, ...]
     failure: Failure | None = None
@@ -67,8 +67,9 @@ def solve(
     while runs:
         for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
             if isinstance(answer, Failure):
-                failed.setdefault(omega, answer)
+                failed[omega] = answer
             else:
+                failed.pop(omega, None)
                 solved[omega].append(answer)
         finer = 2 * levels[-1]
         levels.append(finer)

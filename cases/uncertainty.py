@@ -19,7 +19,7 @@ ROUNDING = 1e-12
 NOISE = 1e-8
 """Where three refinements agree to this, relative, what remains is rounding, and its order of convergence says nothing."""
 
-QUIET = 1e-6
+QUIET = 1e-5
 """Up to this spread, relative, a sequence that does not converge monotonely is given its spread instead of a refusal."""
 
 NEAR_THEORY = 0.1
@@ -102,12 +102,12 @@ def from_bracket(frequency: float, uncertainty: float) -> Estimate:
     return Estimate(frequency, _at_least(uncertainty))
 
 
-def from_print(text: str) -> Estimate:
-    """The estimate from a printed number: half a unit of its last digit (``189.7`` is 189.7 ± 0.05)."""
+def from_print(text: str, unit: float = 1.0) -> Estimate:
+    """The estimate from a printed number in ``unit``: half a unit of its last digit (``189.7`` is 189.7 ± 0.05)."""
     digits = text.strip().lower().partition("e")
     decimals = len(digits[0].partition(".")[2]) - int(digits[2] or 0)
     value = float(text)
-    return Estimate(value, _at_least(0.5 * 10.0**-decimals / abs(value)))
+    return Estimate(value * unit, _at_least(0.5 * 10.0**-decimals / abs(value)))
 
 
 def _at_least(uncertainty: float) -> float:

@@ -16,10 +16,13 @@ Judgement = tuple[Verdict, str]
 
 @dataclass(frozen=True)
 class Effect:
-    """What leaving one physical effect out does to a frequency of core's: ``change`` is ``without/with − 1``."""
+    """What leaving one physical effect out does to a frequency of core's: ``change`` is ``without/with − 1``.
+
+    None where core has no such mode with, or without.
+    """
 
     name: str
-    change: float
+    change: float | None
 
 
 def judge(difference: float, uncertainty: float | None, target: float) -> Judgement:
@@ -43,23 +46,31 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
         effects: each of them alone.
     """
     if shift is None:
-        names = ", ".join(f"no {e.name}" for e in effects) or "fewer effects"
+        names = ", ".join(f"no {e.name}" for e in effects)
         return "known difference", f"{names}: core with all effects has no mode like it; without, core agrees"
     if abs(shift) <= target:
         return "pass", ""
-    causes = [f"no {e.name}: {percent(e.change)}" for e in effects if abs(e.change) >= 0.01 * abs(shift)]
+    changes = {
+        e.name: "not comparable" if e.change is None else percent(e.change) for e in effects if not _small(e, shift)
+    }
+    causes = [f"no {name}: {change}" for name, change in changes.items()]
     together = [f"together {percent(shift)}"] if len(causes) != 1 else []
     return "known difference", f"{', '.join(causes + together)} (core with and without); without, core agrees"
 
 
 def bracketed(difference: float, uncertainty: float | None, otherwise: Judgement) -> Judgement:
-    """The verdict on a code that brackets its own estimate: wide, but true, is a known difference."""
+    """The verdict on a code that brackets its own estimate: wide, but true, is a known difference.
+
+    Args:
+        difference: of the estimate from the reference, relative to the reference.
+        uncertainty: half the bracket's width, relative to the estimate.
+        otherwise: the verdict that the two would have without a bracket.
+    """
     if otherwise[0] == "pass" or uncertainty is None:
         return otherwise
-    bracket = f"an estimate, by its own account within {unsigned(uncertainty)}"
-    if abs(difference) <= uncertainty:
-        return "known difference", f"{bracket}: core, {percent(-difference)} from it, lies inside"
-    return "fail", f"{bracket}: core, {percent(-difference)} from it, lies outside"
+    away = -difference / (1.0 + difference)
+    bracket = f"an estimate, by its own account within {unsigned(uncertainty)}: core, {percent(away)} from it, lies"
+    return ("known difference", f"{bracket} inside") if abs(away) <= uncertainty else ("fail", f"{bracket} outside")
 
 
 def discretised(
@@ -81,6 +92,10 @@ def discretised(
     if abs(limit) + (uncertainty or 0.0) <= target:
         return "known difference", f"{error}; refined, its limit is {percent(limit)} from the reference"
     return "fail", f"{error}, and its refinements do not lead to the reference ({percent(limit)})"
+
+
+def _small(effect: Effect, shift: float) -> bool:
+    return effect.change is not None and abs(effect.change) < 0.01 * abs(shift)
 
 
 def percent(value: float) -> str:

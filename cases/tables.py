@@ -1,0 +1,97 @@
+"""Printed tables as columns of the matrix: the series that are about a case's blade, at the speeds both have."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.blade import Blade, sample, uniform
+from ..core.model import Model
+from ..references.published import Datum, Series, load
+from ..references.worker import Failure
+from .cells import Head, excused, printed
+from .own import answers
+from .pairing import pair
+from .reference import Reference
+from .results import Cell, Level
+from .schema import Discretisation
+from .uncertainty import from_print
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A series of printed numbers for one blade.
+
+    Attributes:
+        name: the table's and the series', ``park2010/present``.
+        series: the numbers.
+        unit: what the series' speeds and frequencies are multiplied by to be rad/s.
+    """
+
+    name: str
+    series: Series
+    unit: float
+
+    def at(self, omega: float, families: Sequence[str]) -> list[Datum | None]:
+        """The number for each of a reference's modes, by family and ordinal within it, at rotor speed ``omega``."""
+        here = {(d.family, d.mode): d for d in self.series.data if np.isclose(d.speed * self.unit, omega, rtol=1e-9)}
+        seen: Counter[str] = Counter()
+        found = []
+        for family in families:
+            seen[family] += 1
+            found.append(here.get((family, seen[family])))
+        return found
+
+
+def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
+    """The series of the tables ``names`` whose beam is this blade.
+
+    Raises:
+        TableError: if there is no such table.
+    """
+    if not uniform(blade):
+        return []
+    section = sample(blade, 0.0)
+    hub_ratio = blade.hub_radius / blade.length
+    slenderness = blade.length * np.sqrt(section.EA[0] / section.EI_z[0])
+    rate = np.sqrt(section.EI_z[0] / (section.mass[0] * blade.length**4))
+    return [
+        Printed(f"{name}/{series.name}", series, 1.0 if table.unit == "rad/s" else float(rate))
+        for name in names
+        for table in [load(name)]
+        for series in table.series
+        if np.isclose(series.hub_ratio, hub_ratio, rtol=1e-6, atol=1e-9)
+        and (series.slenderness is None or np.isclose(series.slenderness, slenderness, rtol=1e-6))
+        and not series.tip_mass_ratio
+    ]
+
+
+def rows(
+    head: Head, table: Printed, blade: Blade, source: Discretisation | None, core: Sequence[tuple[float, Reference]]
+) -> tuple[list[Cell], list[Level]]:
+    """Cells of every number that the table has for core's modes; ``source``: what it was computed with, if known."""
+    cells = []
+    for omega, reference in core:
+        data = table.at(omega, reference.core.names)
+        if any(data):
+            coarse = _coarse(blade, omega, table.series.model, reference, source) if source else [None] * len(data)
+            for i, datum in enumerate(data):
+                if datum:
+                    value = from_print(datum.printed, table.unit)
+                    note = f"suspect print: {datum.evidence}" if datum.suspect else ""
+                    cell = printed(head, omega, i, reference, value, note)
+                    cells.append(excused(cell, value, coarse[i], source.what) if source else cell)
+    return cells, []
+
+
+def _coarse(
+    blade: Blade, omega: float, model: Model, reference: Reference, source: Discretisation
+) -> list[float | None]:
+    """Core's frequencies of the reference's modes in the source's discretisation, None where one has no partner."""
+    wanted, run = reference.core.wanted, (omega, source.elements, reference.core.count)
+    (modes,) = answers(blade, [run], source.mass, source.stiffness, model)
+    if isinstance(modes, Failure):
+        return [None] * len(wanted.indices)
+    partners = pair(wanted.reference, modes, wanted.indices, wanted.weight)
+    return [None if p.mode is None else float(modes.frequencies[p.mode]) for p in partners]
