@@ -5,6 +5,8 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 INSTALLED := .venv/installed
+# the root is the package; pyright finds it by this name (extraPaths in pyproject.toml)
+HERE := .venv/here
 
 # one thread a process: the runs are parallel already
 export OMP_NUM_THREADS := 1
@@ -21,7 +23,7 @@ test: $(INSTALLED)
 lint: $(INSTALLED)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/pyright
+	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
 readme: $(INSTALLED)
@@ -31,6 +33,7 @@ $(INSTALLED): pyproject.toml
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'
+	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
 	touch $@
 
 clean:

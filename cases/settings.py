@@ -5,6 +5,7 @@ from msgspec import UNSET
 from scipy.integrate import trapezoid
 
 from ..core.blade import Blade
+from .pairing import MOTIONS
 from .results import Setting
 from .schema import Case, Variant
 from .verdict import unsigned
@@ -18,17 +19,18 @@ def settings(case: Case) -> tuple[Setting, ...]:
 def _setting(case: Case, variant: Variant) -> Setting:
     text = case.text
     (unit,) = (u for u in ("rad_s", "rpm", "gamma") if getattr(text.speeds, u) is not UNSET)
+    speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
     facts = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
-    given = getattr(text.speeds, unit)
-    facts["speeds"] = given if isinstance(given, str) else ", ".join(f"{v:g}" for v in given)
-    facts["speeds"] += {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
-    facts["modes compared"] = f"the lowest {text.compare.modes} that move mostly {' or '.join(text.compare.motions)}"
+    facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
+    some = len(text.compare.motions) < len(MOTIONS)
+    moving = f" that move mostly {' or '.join(text.compare.motions)}" if some else ""
+    facts["modes compared"] = f"the lowest {text.compare.modes}{moving}"
     facts["target"] = unsigned(text.compare.target)
     if text.discretisation:
         d = text.discretisation
-        facts["source's discretisation"] = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness"
-    title = text.title if len(case.variants) == 1 else f"{text.title}: {variant.name.partition('/')[2]}"
-    return Setting(variant.name, title, " ".join(text.description.split()), text.source, unit, facts)
+        what = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
+        facts["source's discretisation"] = what
+    return Setting(variant.name, text.title, " ".join(text.description.split()), text.source, unit, facts)
 
 
 def _dimensional(blade: Blade) -> dict[str, str]:

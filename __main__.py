@@ -1,0 +1,5 @@
+"""``python -m southwell`` is the command line."""
+
+from .reports.cli import main
+
+main()

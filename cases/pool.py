@@ -1,0 +1,54 @@
+"""Worker processes for a run that, when told to stop, stop at once and take the foreign codes they wait for with them."""
+
+import os
+import signal
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor
+from multiprocessing import active_children, get_context
+from types import FrameType
+from typing import Any, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+_leaving = False
+
+
+class Pool(ProcessPoolExecutor):
+    """``workers`` processes, one thread of linear algebra each."""
+
+    def __init__(self, workers: int) -> None:
+        os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
+        super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin)
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """As any executor's; a task that was handed over but not begun when the stop came is not begun."""
+        return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
+
+    def stop(self) -> None:
+        """Interrupt every process and drop what is pending; returns when all are gone."""
+        for child in active_children():
+            if child.pid is not None:
+                os.kill(child.pid, signal.SIGINT)
+        self.shutdown(wait=True, cancel_futures=True)
+
+
+def _begin() -> None:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _leave)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    """Unwind whatever runs (a wait for a foreign code kills it on its way out), once."""
+    global _leaving
+    if not _leaving:
+        _leaving = True
+        raise SystemExit(128 + number)
+
+
+def _unless_leaving(fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    if _leaving:
+        raise SystemExit(128 + signal.SIGINT)
+    return fn(*args, **kwargs)

@@ -1,0 +1,292 @@
+"""The command line: bad input is one line on standard error and status 2, never a traceback."""
+
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from cyclopts import App, CycloptsError, Parameter
+from cyclopts.validators import Number
+from rich import box
+from rich.table import Table
+
+from ..cases import library, lumping, matrix, results
+from ..cases.errors import CaseError, nearest
+from ..cases.pool import Pool
+from ..cases.results import Run
+from ..cases.schema import Case, speed_range
+from ..cases.settings import settings
+from ..cases.sweep import Named, sweep
+from ..references import codes as registry
+from ..references.codes import UnknownCodeError
+from . import markdown, summary, terminal
+from .units import BY_KEY, RAD_S, RPM, Units
+
+PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
+
+RESULTS = "results.jsonl"
+
+app = App(
+    name="southwell",
+    help="""Are these natural frequencies of a rotating blade right?
+
+    One blade through many independent codes, every difference with its uncertainty and its cause.
+
+    Exit status: 0 all within target or explained, 1 something fails or is inconclusive, 2 bad input, 130 interrupted.
+    """,
+    version=lambda: version("southwell"),
+    suppress_keyboard_interrupt=False,
+)
+
+
+class UsageError(ValueError):
+    """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
+
+
+@app.command
+def verify(
+    *case: str,
+    codes: str | None = None,
+    out: Path = Path("southwell-report"),
+    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
+) -> int:
+    """Solve cases with every code, compare, judge, and write a report.
+
+    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive;
+    interrupted, it keeps and reports what is there, status 130.
+
+    Parameters
+    ----------
+    case
+        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file; all cases by default.
+    codes
+        Names separated by commas (`southwell codes`), or import paths `module:attribute`; all codes by default.
+    out
+        Folder for the report; results of an earlier run in it are replaced.
+    workers
+        Processes to use; one a processor by default.
+    """
+    chosen = [select(name) for name in dict.fromkeys(case or library.names())]
+    names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
+    known = [registry.code(name) for name in names]
+    about = Run(
+        cells=(),
+        versions=matrix.versions({c.name: c.version() for c in known}),
+        command=shlex.join(["southwell", "verify", *case, *(["--codes", codes] if codes else [])]),
+        settings=tuple(s for c in chosen for s in settings(c)),
+    )
+    path = _fresh(out)
+    results.append(path, run=about)
+    run, complete = _solve(chosen, names, about, path, workers or os.cpu_count() or 1)
+    report = markdown.write(run, out)
+    _show(run, report)
+    if not complete:
+        print(f"southwell: interrupted: the report has the {len(run.cells)} cells that were finished", file=sys.stderr)
+        return INTERRUPTED
+    return summary.status(run)
+
+
+def _solve(chosen: Sequence[Case], names: Sequence[str], about: Run, path: Path, workers: int) -> tuple[Run, bool]:
+    """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
+    pool, watch = Pool(workers), terminal.Watch()
+
+    def keep(step: matrix.Progress) -> None:
+        results.append(path, step.cells, step.levels)
+        watch.show(step)
+
+    try:
+        with watch:
+            lumped = [
+                pool.submit(lumping.lumping, v.blade) for c in chosen for v in c.variants if v.name == lumping.CASE
+            ]
+            done = matrix.run(chosen, names, pool, keep)
+            levels = done.levels + tuple(level for future in lumped for level in future.result())
+    except KeyboardInterrupt:
+        return results.read(path), False
+    finally:
+        pool.stop()
+    run = replace(about, cells=done.cells, levels=levels)
+    ordered = path.with_suffix(".part")
+    ordered.unlink(missing_ok=True)
+    results.append(ordered, run.cells, run.levels, run)
+    ordered.replace(path)
+    return run, True
+
+
+@app.command
+def modes(
+    case: str,
+    /,
+    *,
+    omega: str | None = None,
+    rpm: str | None = None,
+    elements: Annotated[int, Parameter(validator=Number(gte=1))] = 50,
+    modes: Annotated[int, Parameter(validator=Number(gte=1))] = 10,
+    json: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
+    """Natural frequencies by the in-house solver, with their families.
+
+    Parameters
+    ----------
+    case
+        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file.
+    omega
+        Rotor speed in rad/s, or a range `first:last:step` with both ends; the case's own speeds by default.
+    rpm
+        The same in revolutions per minute.
+    elements
+        Beam elements along the blade.
+    modes
+        How many, from the lowest.
+    json
+        Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz.
+    """
+    chosen = select(case)
+    speeds, units = _speeds(omega, rpm)
+    rows: list[dict[str, object]] = []
+    for variant in chosen.variants:
+        found = sweep(variant.blade, variant.speeds.tolist() if speeds is None else speeds, elements, modes)
+        rows += [_tidy(variant.name, row) for row in found]
+        if not json:
+            own = units or BY_KEY[settings(chosen)[0].unit]
+            title = f"{variant.name}: {len(variant.blade.stations)} stations, {elements} elements"
+            terminal.output().print(terminal.frequencies(found, title, own))
+    if json:
+        print(msgspec.json.format(msgspec.json.encode(rows)).decode())
+    return PASSED
+
+
+def _tidy(case: str, row: Named) -> dict[str, object]:
+    return {
+        "case": case,
+        "omega_rad_s": row.omega,
+        "mode": row.mode,
+        "name": row.name,
+        "frequency_rad_s": row.frequency,
+        "frequency_hz": row.frequency / (2 * np.pi),
+    }
+
+
+def _speeds(omega: str | None, rpm: str | None) -> tuple[Sequence[float] | None, Units | None]:
+    if omega is not None and rpm is not None:
+        raise UsageError(f"--omega {omega} and --rpm {rpm}: the speed is given twice: give one of them")
+    if omega is None and rpm is None:
+        return None, None
+    option, text, units = ("--omega", omega, RAD_S) if omega is not None else ("--rpm", rpm, RPM)
+    try:
+        return (speed_range(text or "") / units.speeds).tolist(), units
+    except ValueError as error:
+        raise UsageError(f"{option}: {error}") from error
+
+
+@app.command
+def report(folder: Path, /) -> int:
+    """Write report.md and figures anew from the results.jsonl in a folder.
+
+    Parameters
+    ----------
+    folder
+        What `southwell verify --out` was given.
+    """
+    path = folder / RESULTS
+    try:
+        run = results.read(path)
+    except FileNotFoundError:
+        raise UsageError(f"{path}: no such file: give a folder that `southwell verify --out` has written") from None
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    if not run.cells:
+        raise UsageError(f"{path}: no results in it: the run was cut short before its first; run `southwell verify`")
+    _show(run, markdown.write(run, folder))
+    return PASSED
+
+
+@app.command
+def cases() -> int:
+    """List the cases that come with the package."""
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in ("case", "what", "blades", "speeds"):
+        table.add_column(head, overflow="fold")
+    for name in library.names():
+        known = library.load(name)
+        first, *_ = settings(known)
+        blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
+        table.add_row(name, known.text.title, blades, first.facts["speeds"])
+    terminal.output().print(table)
+    return PASSED
+
+
+@app.command
+def codes() -> int:
+    """List the codes: found or not, version, what each shares with core, how to install it."""
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in ("code", "title", "version", "shares with core", "leaves out"):
+        table.add_column(head, overflow="fold")
+    for name in registry.names():
+        known = registry.code(name)
+        found = known.version()
+        table.add_row(
+            known.name,
+            known.title,
+            f"✔ {found}" if found else f"○ not found; {known.hint}",
+            known.shares,
+            ", ".join(known.model.lacks()) or "nothing",
+        )
+    terminal.output().print(table)
+    return PASSED
+
+
+def select(name: str) -> Case:
+    """A case by name or file, or with only one of its blades: ``park-blade/surrogate``.
+
+    Raises:
+        CaseError: if there is no such case or blade.
+    """
+    stem, _, blade = name.partition("/")
+    if name.endswith(".toml") or not blade:
+        return library.load(name)
+    case = library.load(stem)
+    kept = tuple(v for v in case.variants if v.name == name)
+    if not kept:
+        raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
+    return replace(case, variants=kept)
+
+
+def _fresh(out: Path) -> Path:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        path = out / RESULTS
+        path.write_bytes(b"")
+    except OSError as error:
+        raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+    return path
+
+
+def _show(run: Run, report: Path) -> None:
+    console = terminal.output()
+    for line in markdown.headline(run):
+        console.print(line.replace("**", ""), markup=False)
+    console.print(terminal.matrix(run))
+    console.print(f"{report}, {report.parent / RESULTS}", markup=False, soft_wrap=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """The entry point; ends the process with the command's status."""
+    try:
+        status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+        sys.stdout.flush()
+    except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
+        print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
+        status = BAD_INPUT
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    except BrokenPipeError:  # the reader of a pipe has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = PASSED
+    sys.exit(status)

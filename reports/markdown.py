@@ -1,0 +1,225 @@
+"""The report of a run as GitHub-flavoured Markdown: verdict first, then a heat table, then case by case."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+from itertools import groupby
+from pathlib import Path
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from matplotlib.figure import Figure
+
+from ..cases.lumping import CASE as LUMPED
+from ..cases.results import Cell, Run, Setting, Verdict
+from ..cases.verdict import unsigned
+from . import lumped, summary
+from .convergence import convergence
+from .figures import campbell, differences
+from .style import save
+from .summary import SYMBOL, column, columns
+from .units import BY_KEY, Units
+
+FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
+    "campbell": campbell,
+    "differences": differences,
+    "convergence": convergence,
+}
+"""Drawn for each blade; the key ends the file's name."""
+
+LARGEST: dict[Verdict, str] = {
+    "fail": "Worst failure",
+    "inconclusive": "Largest inconclusive difference",
+    "known difference": "Largest known difference",
+    "pass": "Largest difference that passes",
+}
+"""What the headline names, gravest first."""
+
+TEXT = re.compile(r"([\\`*_{}\[\]|~])")
+"""What Markdown could take for markup."""
+
+
+def plain(text: object) -> str:
+    """Text as text in a line or a table's cell, whatever a case file or a code put into it."""
+    return TEXT.sub(r"\\\1", escape(" ".join(str(text).split()), quote=False))
+
+
+def table(rows: Sequence[dict[str, str]]) -> str:
+    """A Markdown table of ready-made cells; numbers stay as they are written."""
+    return pd.DataFrame(list(rows)).to_markdown(index=False, disable_numparse=True)
+
+
+def write(run: Run, folder: Path) -> Path:
+    """Write ``report.md`` and ``figures/*.svg`` into ``folder``; the same run gives the same bytes.
+
+    Raises:
+        OSError: if something cannot be written.
+    """
+    figures = folder / "figures"
+    figures.mkdir(parents=True, exist_ok=True)
+    drawn: dict[str, list[str]] = {}
+    for case in summary.cases(run):
+        for kind, draw in FIGURES.items():
+            if figure := draw(run, case, units(run, case)):
+                name = f"{re.sub(r'[^A-Za-z0-9.-]+', '-', case)}-{kind}.svg"
+                save(figure, figures / name)
+                drawn.setdefault(case, []).append(f"figures/{name}")
+    if figure := lumped.lumping(run):
+        save(figure, figures / "lumped-mass.svg")
+    path = folder / "report.md"
+    path.write_text(render(run, drawn), encoding="utf-8")
+    return path
+
+
+def units(run: Run, case: str) -> Units:
+    """The units a case is read in; rad/s if the run says nothing of it."""
+    return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
+
+
+def render(run: Run, figures: dict[str, list[str]]) -> str:
+    """The report's text; ``figures`` are paths of each case's figures, relative to it."""
+    environment = Environment(
+        loader=PackageLoader(__package__ or "", "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["plain"] = plain
+    found = lumped.taken(run)
+    return environment.get_template("report.md.jinja").render(
+        headline=headline(run),
+        heat=heat(run),
+        legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
+        cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
+        lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
+        versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
+        if run.versions
+        else "",
+        command=run.command,
+    )
+
+
+def headline(run: Run) -> list[str]:
+    """The verdict in a few sentences, the gravest first."""
+    counted = {v: n for v, n in summary.counts(run.cells).items() if n}
+    lines = [f"**{len(run.cells)} cells**: " + ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in counted.items()) + "."]
+    for verdict, what in LARGEST.items():
+        worst = summary.largest(c for c in run.cells if c.verdict == verdict)
+        if worst:
+            where = f"{worst.case}, {column(worst)}, {summary.labels(run.cells)[worst]}, "
+            where += units(run, worst.case).at(worst.omega)
+            lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(where)}).")
+    return lines
+
+
+def heat(run: Run) -> str:
+    """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it."""
+    names = columns(run.cells)
+    rows = []
+    for case in summary.cases(run):
+        mine = [c for c in run.cells if c.case == case]
+        rows.append({"case": plain(case)} | {plain(n): _heat([c for c in mine if column(c) == n]) for n in names})
+    return table(rows)
+
+
+def _heat(cells: Sequence[Cell]) -> str:
+    if not cells:
+        return ""
+    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    size = summary.size(worst) if worst else None
+    return f"{SYMBOL[verdict]} {verdict}" + (f"<br>{unsigned(size)}" if size is not None else "")
+
+
+@dataclass(frozen=True)
+class Section:
+    """One blade's part of the report, ready for the template."""
+
+    name: str
+    setting: Setting | None
+    facts: str
+    focus: str
+    main: str
+    rest: list[tuple[str, str]]
+    figures: list[str]
+    reasons: str
+    count: int
+
+
+def section(run: Run, case: str, figures: list[str]) -> Section:
+    """One blade: its setting, frequencies and differences at the speed in focus and at the others, reasons."""
+    cells = [c for c in run.cells if c.case == case]
+    setting = next((s for s in run.settings if s.case == case), None)
+    unit = units(run, case)
+    speeds = sorted({c.omega for c in cells if c.mode})
+    printed = [c.omega for c in cells if c.role == "table"]
+    focus = max(printed or speeds, default=None)
+    tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
+    reasons = why(cells, unit)
+    return Section(
+        name=case,
+        setting=setting,
+        facts="; ".join(f"{k}: {v}" for k, v in setting.facts.items()) if setting else "",
+        focus=unit.at(focus) if focus is not None else "",
+        main=tables[focus] if focus is not None else "",
+        rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
+        figures=figures,
+        reasons=table(reasons) if reasons else "",
+        count=len(reasons),
+    )
+
+
+def comparison(cells: Sequence[Cell], unit: Units) -> str:
+    """Modes × columns at one speed: core's frequency, and each column's difference ± uncertainty with its sign.
+
+    The source's own discretisation shows its frequency too. A code that lacks effects is compared with core lacking
+    them, whose modes may come in another order: rows are modes by name.
+    """
+    names = summary.labels(cells)
+    full = {names[c]: c.full for c in sorted(cells, key=lambda c: c.reference != c.full) if c.full is not None}
+    rows = []
+    for mode in dict.fromkeys(names[c] for c in sorted(cells, key=lambda c: (c.reference != c.full, c.mode))):
+        core = next(
+            (c.full for c in cells if names[c] == mode and c.full is not None and c.reference == c.full), full.get(mode)
+        )
+        row = {"mode": mode, f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        for name in columns(cells):
+            mine = next((c for c in cells if column(c) == name and names[c] == mode), None)
+            row[plain(name)] = _entry(mine, unit) if mine else ""
+        rows.append(row)
+    return table(rows)
+
+
+def _entry(cell: Cell, unit: Units) -> str:
+    frequency = ""
+    if cell.role in ("discretisation", "table") and cell.frequency is not None:
+        frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
+    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}".strip()
+
+
+def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
+    """A row for every cell that does not plainly pass; neighbours that differ in nothing but speed share one."""
+    names = summary.labels(cells)
+    grave = [
+        c
+        for verdict in summary.GRAVEST_FIRST
+        for c in cells
+        if c.verdict == verdict and (verdict != "pass" or c.reason)
+    ]
+    rows = []
+    for (verdict, name, mode, reason), group in groupby(
+        grave, lambda c: (c.verdict, column(c), names.get(c, ""), c.reason)
+    ):
+        at = [unit.at(c.omega) for c in group]
+        where = at[0] if len(at) == 1 else f"{len(at)} speeds" if not mode else ", ".join(at)
+        rows.append(
+            {
+                "verdict": f"{SYMBOL[verdict]} {verdict}",
+                "code": plain(name),
+                "mode": mode,
+                "speed": where,
+                "reason": plain(reason),
+            }
+        )
+    return rows

@@ -1,0 +1,117 @@
+"""How every figure looks: one palette, one marker a code, the same bytes for the same numbers.
+
+Colours are those of Okabe and Ito (Color Universal Design, 2008), told apart with any common colour vision; no meaning
+rests on colour alone: codes differ in marker too, families in line style.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+LINES = {"chordwise": "-", "flapwise": (0, (5, 2)), "torsion": (0, (1, 1.5)), "axial": (0, (6, 2, 1, 2)), "mixed": "-"}
+
+RC: dict[Any, Any] = {
+    "svg.hashsalt": "southwell",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 10.0,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "text.color": INK,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "axes.unicode_minus": True,
+    "figure.facecolor": "white",
+    "axes.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+
+
+@dataclass(frozen=True)
+class Look:
+    """One code's colour and marker."""
+
+    colour: str
+    marker: str
+
+
+@contextmanager
+def house() -> Iterator[None]:
+    """The settings under which a figure is made and saved, whatever the user's own are."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(RC)
+        yield
+
+
+def looks(codes: Sequence[str]) -> dict[str, Look]:
+    """A look for each code, by its place: the same codes look the same in every figure of a run."""
+    return {
+        code: Look(COLOURS[k % len(COLOURS)], MARKERS[(k + k // len(COLOURS)) % len(MARKERS)])
+        for k, code in enumerate(codes)
+    }
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write an SVG whose bytes depend on the figure alone.
+
+    Raises:
+        OSError: if the file cannot be written.
+    """
+    with house():
+        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "southwell"})
+
+
+def spread(wanted: Sequence[float], gap: float) -> list[float]:
+    """Positions as near as can be to those wanted, in their order, no two nearer than ``gap``: labels beside lines."""
+    order = sorted(range(len(wanted)), key=lambda k: wanted[k])
+    blocks: list[tuple[float, list[int]]] = []  # centre and members of labels that touch
+    for k in order:
+        centre, members = wanted[k], [k]
+        while blocks and centre - blocks[-1][0] < gap * (len(blocks[-1][1]) + len(members)) / 2:
+            members = blocks.pop()[1] + members
+            centre = sum(wanted[i] for i in members) / len(members)
+        blocks.append((centre, members))
+    out = [0.0] * len(wanted)
+    for centre, members in blocks:
+        for place, k in enumerate(members):
+            out[k] = centre + gap * (place - (len(members) - 1) / 2)
+    return out
+
+
+def beside(axes: Axes, labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
+    """Labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
+
+    Args:
+        axes: with its limits and scales settled.
+        labels: height, text, and colour if not that of ink.
+        size: of the letters, points.
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    points = axes.get_position().height * figure.get_figheight() * 72
+    fractions = [float((axes.transScale + axes.transLimits).transform((axes.get_xlim()[1], y))[1]) for y, *_ in labels]
+    for y, (_, text, *colour) in zip(spread([f * points for f in fractions], 1.3 * size), labels, strict=True):
+        at, offset = (1.0, y / points), (6, 0)
+        axes.annotate(
+            text, at, offset, "axes fraction", "offset points", va="center", size=size, color=(*colour, INK)[0]
+        )

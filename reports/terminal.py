@@ -1,0 +1,111 @@
+"""What the command line shows while a run goes on and when it is done."""
+
+import time
+from collections.abc import Sequence
+from types import TracebackType
+
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from ..cases.matrix import Progress as Step
+from ..cases.results import Cell, Run, Verdict
+from ..cases.sweep import Named
+from . import summary
+from .summary import SYMBOL, column, columns
+from .units import Units
+
+COLOUR: dict[Verdict, str] = {
+    "pass": "green",
+    "known difference": "cyan",
+    "inconclusive": "yellow",
+    "fail": "bold red",
+    "not applicable": "dim",
+    "not run": "dim",
+}
+"""Beside sign and number, never instead of them."""
+
+WIDE = 132
+"""Columns for tables that go into a file or a log."""
+
+SILENCE = 10.0
+"""Seconds between two lines in a log."""
+
+
+def output() -> Console:
+    """Where tables go: standard output; wide if that is no terminal."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=WIDE)
+
+
+class Watch:
+    """A bar with what is running and what is left, on standard error; a line now and then where there is no terminal."""
+
+    def __init__(self) -> None:
+        self.console = Console(stderr=True, highlight=False)
+        self.bar = Progress(
+            SpinnerColumn(),
+            BarColumn(bar_width=30),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.description}", markup=False),
+            console=self.console,
+            transient=True,
+            disable=not self.console.is_terminal,
+        )
+        self.task = self.bar.add_task("starting")
+        self.spoke = time.monotonic()
+
+    def __enter__(self) -> "Watch":
+        self.bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.bar.stop()
+
+    def show(self, step: Step) -> None:
+        """Bring the bar up to date."""
+        running = ", ".join(step.running)
+        self.bar.update(self.task, completed=step.done, total=step.total, description=running)
+        if self.bar.disable and time.monotonic() - self.spoke > SILENCE:
+            self.spoke = time.monotonic()
+            self.console.print(f"{step.done} of {step.total} done; running: {running}", markup=False, soft_wrap=True)
+
+
+def matrix(run: Run) -> Table:
+    """Case × code: sign and largest difference in percent; the gravest verdict of all modes and speeds."""
+    signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
+    out = Table(box=box.SIMPLE_HEAD, caption=f"largest difference from core, %; {signs}", caption_justify="left")
+    out.add_column("case", overflow="fold")
+    names = columns(run.cells)
+    for name in names:
+        out.add_column(name, min_width=7, overflow="fold")
+    for case in summary.cases(run):
+        mine = [c for c in run.cells if c.case == case]
+        out.add_row(case, *[_field([c for c in mine if column(c) == name]) for name in names])
+    return out
+
+
+def _field(cells: Sequence[Cell]) -> str:
+    if not cells:
+        return ""
+    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    size = summary.size(worst) if worst else None
+    number = f" {100 * abs(size):.2g}" if size is not None else ""
+    return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
+
+
+def frequencies(rows: Sequence[Named], title: str, units: Units) -> Table:
+    """Modes × speeds, rows by name, in the order of the first speed."""
+    out = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
+    speeds = list(dict.fromkeys(r.omega for r in rows))
+    out.add_column(units.frequency_label)
+    for omega in speeds:
+        out.add_column(units.at(omega), justify="right")
+    for name in dict.fromkeys(r.name for r in sorted(rows, key=lambda r: (r.omega, r.mode))):
+        at = {r.omega: f"{r.frequency * units.frequencies:.7g}" for r in rows if r.name == name}
+        out.add_row(name, *[at.get(omega, "") for omega in speeds])
+    return out
