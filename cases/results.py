@@ -12,6 +12,7 @@ from typing import Any, Literal
 import msgspec
 
 Verdict = Literal["pass", "fail", "inconclusive", "known difference", "not applicable", "not run"]
+Unit = Literal["rad_s", "rpm", "gamma"]
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class Setting:
     title: str
     description: str
     source: str
-    unit: Literal["rad_s", "rpm", "gamma"]
+    unit: Unit
     facts: dict[str, str] = field(default_factory=dict)
 
 

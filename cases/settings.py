@@ -1,12 +1,14 @@
 """What a report says of a case: its words, and the facts of each blade that every code was given."""
 
+from typing import get_args
+
 import numpy as np
 from msgspec import UNSET
 from scipy.integrate import trapezoid
 
 from ..core.blade import Blade
 from .pairing import MOTIONS
-from .results import Setting
+from .results import Setting, Unit
 from .schema import Case, Variant
 from .verdict import unsigned
 
@@ -18,7 +20,7 @@ def settings(case: Case) -> tuple[Setting, ...]:
 
 def _setting(case: Case, variant: Variant) -> Setting:
     text = case.text
-    (unit,) = (u for u in ("rad_s", "rpm", "gamma") if getattr(text.speeds, u) is not UNSET)
+    (unit,) = (u for u in get_args(Unit) if getattr(text.speeds, u) is not UNSET)
     speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
     facts = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
     facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]

@@ -149,7 +149,7 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
         axes.xaxis.set_major_locator(LogLocator(numticks=20))
         axes.set_xlabel(f"|difference| from core, relative, ± uncertainty; in each row from above: modes 1 to {tracks}")
         figure.text(0.015, 1 - 0.24 / height, f"{case}: differences, every mode and speed", weight="bold", size=10.5)
-        present = [v for v in FACES if v in {c.verdict for c in cells}]
+        present: list[Verdict] = [v for v in FACES if v in {c.verdict for c in cells}]
         keys = [Line2D([], [], ls="", color=INK, ms=5, label=v, **_face(v, "o", INK)) for v in present]
         figure.legend(handles=keys, loc="lower left", bbox_to_anchor=(0.19, 0.0), ncols=4, handletextpad=0.1)
     return figure

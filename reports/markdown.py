@@ -103,8 +103,8 @@ def render(run: Run, figures: dict[str, list[str]]) -> str:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first."""
-    counted = {v: n for v, n in summary.counts(run.cells).items() if n}
-    lines = [f"**{len(run.cells)} cells**: " + ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in counted.items()) + "."]
+    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
+    lines = [f"**{len(run.cells)} cells**: {counted}."]
     for verdict, what in LARGEST.items():
         worst = summary.largest(c for c in run.cells if c.verdict == verdict)
         if worst:
