@@ -1,0 +1,142 @@
+"""The printed tables: read as they are written, and held to exact computation digit by digit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import Blade, uniform_blade
+from southwell.core.model import FULL, Model
+from southwell.core.solve import modes as core_modes
+from southwell.references import assumed_modes, published, yoo_shin
+from southwell.references.published import Datum, Series, TableError
+
+from .straight_blades import X, Y, Z, family, park
+
+COLUMN = {"chordwise": Y, "flapwise": Z, "axial": X}
+
+DATA = [
+    pytest.param(name, series, datum, id=f"{name}-{series.name}-{datum.family}{datum.mode}-{datum.speed:g}")
+    for name in published.names()
+    for series in published.load(name).series
+    for datum in series.data
+]
+
+
+def blade_of(name: str, series: Series) -> Blade:
+    """The beam of a series; the paper's is the one identified from its digits."""
+    if name == "park2010":
+        return park()
+    blade = uniform_blade(
+        name, 1.0, series.hub_ratio, EA=(series.slenderness or 1e3) ** 2, GJ=1.0, EI_y=1.0, EI_z=1.0, mass=1.0
+    )
+    return replace(blade, tip_mass=series.tip_mass_ratio * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]))
+
+
+def computed(name: str, series: Series, datum: Datum) -> float:
+    """By the code that has the series' model; the paper's own column by core with the paper's discretisation."""
+    blade = blade_of(name, series)
+    if (name, series.name) == ("park2010", "present"):
+        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="parent", model=series.model)
+    else:
+        code = {c.model: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.model]
+        found = code.solve(blade, datum.speed, 32, 10)
+    return float(family(found, COLUMN[datum.family])[datum.mode - 1])
+
+
+@pytest.mark.parametrize(("name", "series", "datum"), DATA)
+def test_a_datum_is_right_to_its_last_digit_or_suspect(name: str, series: Series, datum: Datum) -> None:
+    """Within half a unit, or marked; and none is marked that is within."""
+    off = abs(computed(name, series, datum) - datum.value) > datum.half_unit
+    assert off == datum.suspect
+
+
+@pytest.mark.parametrize(("name", "series", "datum"), [p for p in DATA if p.values[2].suspect])
+def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Datum) -> None:
+    value = computed(name, series, datum)
+    assert any(f"{value:.{digits}f}" in datum.evidence for digits in (5, 6))
+
+
+def test_the_yoo_shin_digits_are_cut_off() -> None:
+    """What the notes of that table say of its ten values up to speed 10."""
+    series = published.load("yoo_shin1998").series[0]
+    slow = [datum for datum in series.data if datum.speed <= 10]
+    assert len(slow) == 10
+    for datum in slow:
+        assert np.floor(1e4 * computed("yoo_shin1998", series, datum)) / 1e4 == pytest.approx(datum.value, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", published.names())
+def test_no_datum_is_given_twice(name: str) -> None:
+    for series in published.load(name).series:
+        keys = [(d.family, d.mode, d.speed) for d in series.data]
+        assert len(keys) == len(set(keys))
+    assert len({s.name for s in published.load(name).series}) == len(published.load(name).series)
+
+
+@pytest.mark.parametrize(
+    ("printed", "value", "half_unit"), [("189.7", 189.7, 0.05), ("4.9700", 4.97, 5e-5), ("12", 12.0, 0.5)]
+)
+def test_rounding_is_half_a_unit_of_the_last_digit(printed: str, value: float, half_unit: float) -> None:
+    datum = Datum(family="chordwise", mode=1, speed=0.0, printed=printed)
+    assert datum.value == value
+    assert datum.half_unit == pytest.approx(half_unit, rel=1e-15)
+
+
+def test_a_series_says_what_its_model_lacks() -> None:
+    park2010 = published.load("park2010")
+    assert park2010.series[1].model == Model(prestretch=False, rotary_inertia=False)
+    assert replace(park2010.series[0].model, rotary_inertia=True) == FULL
+
+
+GOOD = """
+citation = "A. Author, 2000"
+beam = "a beam"
+unit = "rad/s"
+scale = "as printed"
+[[series]]
+name = "a"
+title = "A"
+provenance = "read"
+description = "exact"
+lacks = []
+hub_ratio = 0.0
+data = [{ family = "chordwise", mode = 1, speed = 10, printed = "11.71" }]
+"""
+
+
+def test_a_good_file_is_read() -> None:
+    assert published.parse(GOOD, "good.toml").series[0].data[0].value == 11.71
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('beam = "a beam"', 'beam = "a beam"\nbream = "a fish"', ["bream"]),
+        ('scale = "as printed"', "", ["scale"]),
+        ("mode = 1", "mode = 0", ["data[0].mode"]),
+        ('printed = "11.71"', "printed = 11.71", ["data[0].printed"]),
+        ('printed = "11.71"', 'printed = "11,71"', ["data[0].printed"]),
+        ('printed = "11.71"', 'printed = "11.71", suspect = true', ["evidence"]),
+        ('printed = "11.71"', 'printed = "11.71", colour = "red"', ["colour"]),
+        ("lacks = []", 'lacks = ["gravity"]', ["lacks", "gravity"]),
+        ('family = "chordwise"', 'family = "sideways"', ["family", "sideways"]),
+        ('unit = "rad/s"', 'unit = "Hz"', ["unit", "Hz"]),
+        ("lacks = []", "lacks = [", ["line"]),
+    ],
+)
+def test_a_bad_file_is_told(old: str, new: str, words: list[str]) -> None:
+    assert old in GOOD
+    with pytest.raises(TableError) as told:
+        published.parse(GOOD.replace(old, new), "bad.toml")
+    message = str(told.value)
+    assert message.startswith("bad.toml: ")
+    assert "\n" not in message
+    assert all(word in message for word in words)
+
+
+def test_an_unknown_table_is_told_with_the_nearest() -> None:
+    with pytest.raises(TableError, match="'park2011' is not known: did you mean park2010"):
+        published.load("park2011")
+    with pytest.raises(TableError, match="known: bir2010, park2010"):
+        published.load("xyz")
