@@ -85,7 +85,7 @@ def run(
     try:
         for case, task in plans:
             models = [column.model for column in task.columns]
-            question = (task.variant.blade, task.variant.speeds, case.text.compare, models)
+            question = (task.variant.blade, task.variant.speeds.tolist(), case.text.compare, models)
             pending[executor.submit(references, *question)] = task
         on_progress(Progress(0, total, _running(pending)))
         while pending:
@@ -95,7 +95,7 @@ def run(
                     rows[task.variant.name, task.column.name] = new = future.result()
                 else:
                     for column in task.columns:
-                        answer = executor.submit(column, task.variant.speeds, future.result()[column.model])
+                        answer = executor.submit(column, task.variant.speeds.tolist(), future.result()[column.model])
                         pending[answer] = _Task(task.variant, task.columns, column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
