@@ -41,7 +41,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Args:
         tree: the mechanism.
         k: its kinematics.
-        multipliers: (w, 6) wrench each weld exerts on the copy, reversed on the body; none: zero.
+        multipliers: (w, 6) wrench each weld needs on the body, reversed on the copy; none: zero.
 
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
@@ -121,17 +121,16 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: Cartesian) -> None:
         raise MechanismError(f"spring {s.body_a!r}–{s.body_b!r}: its ends coincide: it has no direction; move one")
     n = d / length
     velocity = np.hstack([np.eye(3), -sp.skew(pb)])  # of the point at p_b, from a twist at the origin
-    relative = (yb[:3] + np.cross(yb[3:], pb)) - (ya[:3] + np.cross(ya[3:], pa))
-    rate = float(n @ relative)
-    tension = s.stiffness * (length - s.rest) + s.damping * rate
     line = np.concatenate([n, np.cross(pb, n)])  # wrench of a unit force along the spring
     # seen from a: δd = velocity ρ, its direction turns by the part across
     across = (np.eye(3) - np.outer(n, n)) / length
     seen = yb - ya
-    slip = seen[:3] + np.cross(seen[3:], pb)
-    # δ(rate) seen from a = n·(δ slip) + slip·(δ n); δ slip = velocity ρ̇ + ω_rel × (velocity ρ)
+    slip = seen[:3] + np.cross(seen[3:], pb)  # velocity of b's point seen from a
+    tension = s.stiffness * (length - s.rest) + s.damping * float(n @ slip)
+    # δ(rate) seen from a = slip·δn + n·δslip, with δslip = velocity ρ̇ + ρ_ω × slip
     tilt = across @ velocity
-    rate_k = slip @ tilt + n @ sp.skew(seen[3:]) @ velocity
+    rate_k = slip @ tilt
+    rate_k[3:] -= n @ sp.skew(slip)
     force_k = np.outer(n, s.stiffness * (n @ velocity) + s.damping * rate_k) + tension * tilt
     moment = np.vstack([np.eye(3), sp.skew(pb)])
     kk = moment @ force_k
@@ -174,7 +173,7 @@ def _beam(tree: Tree, k: Kinematics, beam: Beam, out: Cartesian) -> None:
 def _weld(body: int, copy: int, w: Array, out: Cartesian) -> None:
     """Equal and opposite reactions; δ(reaction) beyond what moves with the copy is left to the multipliers."""
     zero = np.zeros((6, 6))
-    _add(out, (copy, body), _between(-w, -0.5 * sp.cross(-w), zero))
+    _add(out, (copy, body), _between(w, -0.5 * sp.cross(w), zero))
 
 
 def reduced_mass(k: Kinematics, c: Cartesian) -> Array:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from . import dynamics, partition
@@ -73,25 +74,30 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
         tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free]
         K = dynamics.tangent(tree, state.kinematics, state.cartesian)[2][np.ix_(free, free)]
         J = partition.jacobian(tree, state.kinematics.B)[:, free]
-        gap = partition.misfit(tree, state.kinematics.poses)
-        n = len(free)
-        scale = max(float(np.abs(K).max(initial=0.0)), 1.0)  # multipliers in units of the stiffness
-        system = np.zeros((n + len(gap), n + len(gap)))
-        system[:n, :n], system[:n, n:], system[n:, :n] = K / scale, J.T, J
-        step = -np.linalg.lstsq(system, np.concatenate([tau / scale, gap]), rcond=1e-13)[0]
-        change = float(np.abs(step[:n]).max(initial=0.0))
+        step, more = _constrained_step(K, J, tau, partition.misfit(tree, state.kinematics.poses))
+        change = float(np.abs(step).max(initial=0.0))
         if not np.isfinite(change):
             break
-        shrink = min(1.0, 0.5 / max(change, 0.5))
         q = q.copy()
-        q[free] += shrink * step[:n]
-        lam = lam + scale * shrink * step[n:].reshape(-1, 6)
+        q[free] += step * min(1.0, 0.5 / max(change, 0.5))
+        lam = lam + more.reshape(-1, 6)
         if change < 1e-11 or (change < 1e-8 and change > 0.3 * before):
             return _checked(tree, _state(tree, q, lam), free)
         before = change
     raise MechanismError(
         "no steady state was found near the guess: give a better one, or check for a missing spring or joint"
     )
+
+
+def _constrained_step(K: Array, J: Array, tau: Array, gap: Array) -> tuple[Array, Array]:
+    """Newton's δq and δλ: close the gap, then balance along what the loops leave free; redundant multipliers stay least."""
+    if not len(gap):
+        return -np.linalg.lstsq(K, tau, rcond=1e-13)[0], gap
+    close = -np.linalg.lstsq(J, gap, rcond=1e-9)[0]
+    along = scipy.linalg.null_space(J, rcond=1e-9)
+    rest = along.T @ (tau + K @ close)
+    step = close - along @ np.linalg.lstsq(along.T @ K @ along, rest, rcond=1e-13)[0]
+    return step, -np.linalg.lstsq(J.T, tau + K @ step, rcond=1e-9)[0]
 
 
 def _checked(tree: Tree, state: State, free: NDArray[np.intp]) -> State:

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import dynamics, eigen
-from .equilibrium import State, steady
-from .mechanism import Mechanism, Tree, compile_tree
-from .partition import Partition, partition
+from .equilibrium import State, assemble, steady
+from .kinematics import kinematics
+from .mechanism import Mechanism, MechanismError, Tree, compile_tree
+from .partition import Partition, freedom, partition
 
 Array = NDArray[np.float64]
 
@@ -49,7 +50,26 @@ def linearize(
         MechanismError: for whatever cannot be assembled, balanced or partitioned; the message says what.
     """
     tree = compile_tree(mechanism)
-    return about(tree, steady(tree, guess), independent)
+    state = steady(tree, guess)
+    _check_regular(tree, state)
+    return about(tree, state, independent)
+
+
+def _check_regular(tree: Tree, state: State) -> None:
+    """Compare the freedom here with that of an assembled configuration a little way off."""
+    if not tree.welds:
+        return
+    here = partition(tree, state.kinematics)
+    nudge = here.R @ np.random.default_rng(1921).normal(size=here.R.shape[1])
+    q = state.q.copy()
+    q[here.free] += 1e-3 * nudge / max(float(np.abs(nudge).max(initial=0.0)), 1e-300)
+    near = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
+    beside = freedom(tree, kinematics(tree, near, state.v, state.a).B)
+    if beside < len(here.independent):
+        raise MechanismError(
+            f"joints {', '.join(tree.weld_names)}: singular configuration: {len(here.independent)} freedoms here but {beside} "
+            "beside it, so no linear model holds; start the assembly from another guess"
+        )
 
 
 def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linear:

@@ -100,6 +100,12 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, J, rank))
 
 
+def freedom(tree: Tree, B: Array) -> int:
+    """How many ways the free coordinates can move at a configuration with velocity transformation B."""
+    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))]
+    return J.shape[1] - _rank(J)[0]
+
+
 def _rank(J: Array) -> tuple[int, Index]:
     if not J.size:
         return 0, np.arange(J.shape[1])
