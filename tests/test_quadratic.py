@@ -15,7 +15,7 @@ def way(request):
     return points, sparse.csc_array if request.param == "sparse" else np.asarray
 
 
-def row(points: int, omega: float):
+def row(points: int, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A row of unit masses in a turning plane, each tied to its neighbours by unit springs, both ways alike.
 
     With z = x + iy: z̈ + 2iΩ ż + κ z = 0 for each of the row's own stiffnesses κ, hence ω = √(Ω² + κ) ± Ω.
@@ -48,7 +48,7 @@ def test_two_springs_on_a_turntable():
     """m ẍ − 2mΩẏ + (k₁ − mΩ²) x = 0 and its like in y: a quadratic in ω²."""
     m, k1, k2, omega = 2.0, 50.0, 90.0, 3.0
     M, K = m * np.eye(2), np.diag([k1 - m * omega**2, k2 - m * omega**2])
-    C = 2 * m * omega * np.array([[0.0, -1.0], [1.0, 0.0]])
+    C = np.array([[0.0, -2 * m * omega], [2 * m * omega, 0.0]])
     a, b = K[0, 0] / m, K[1, 1] / m
     squares = np.roots([1.0, -(a + b + 4 * omega**2), a * b])
     frequencies, _ = gyroscopic_modes(M, C, K, 5)
@@ -88,8 +88,8 @@ def test_stiff_coordinates_cost_no_accuracy(way):
 
 def test_the_same_call_gives_the_same_bits(way):
     points, form = way
-    matrices = [form(matrix) for matrix in row(points, 0.01)[:3]]
-    first, again = gyroscopic_modes(*matrices, 6), gyroscopic_modes(*matrices, 6)
+    M, C, K = (form(matrix) for matrix in row(points, 0.01)[:3])
+    first, again = gyroscopic_modes(M, C, K, 6), gyroscopic_modes(M, C, K, 6)
     assert (first[0] == again[0]).all()
     assert (first[1] == again[1]).all()
 
@@ -116,8 +116,9 @@ def test_matrices_of_no_undamped_steady_state_are_refused(way, which, entry, mes
     points, form = way
     matrices = list(row(points, 0.01)[:3])
     matrices[which][entry] += 1e-3
+    M, C, K = (form(matrix) for matrix in matrices)
     with pytest.raises(CodeError, match=message):
-        gyroscopic_modes(*[form(matrix) for matrix in matrices], 4)
+        gyroscopic_modes(M, C, K, 4)
 
 
 def test_what_is_not_finite_is_refused(way):
