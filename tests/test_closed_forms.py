@@ -190,6 +190,22 @@ def test_southwells_bracket_holds_for_every_mode(hub: float, omega: float, taper
         assert (np.abs(found.frequencies[here][:2] - family(truth, plane)[:2]) <= reach + 1e-9).all()
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_southwells_bracket_holds_for_any_two_stiffnesses(seed: int) -> None:
+    """Also where the modes that are stiff in bending are soft as cables, unlike a blade's."""
+    draw = np.random.default_rng(seed)
+    basis = np.linalg.qr(np.eye(8) + 0.3 * draw.normal(size=(8, 8)))[0]
+    beta = np.sort(draw.uniform(0, 9, 8))
+    elastic, centrifugal = np.diag(np.arange(1.0, 9.0)), basis @ np.diag(beta[::-1]) @ basis.T
+    bending = assumed_modes.Bending(elastic, centrifugal, np.eye(8), np.zeros((21, 4, 8)), (Z,))
+    value, lower, upper, _ = southwell_equation.squared(bending, beta, 1.3, 8)
+    exact = np.linalg.eigvalsh(elastic + 1.69 * centrifugal)
+    assert (lower <= exact + 1e-12).all()
+    assert (exact <= upper + 1e-12).all()
+    assert upper[0] == value[0]
+    assert upper[-1] == pytest.approx(exact[-1])
+
+
 @pytest.mark.parametrize("omega", [0.0, 4.0, 15.0])
 def test_southwells_bracket_of_a_twisted_blade(omega: float) -> None:
     found, truth = (code.solve(kinked(0.8, 0.0), omega, 16, 6) for code in (SOUTHWELL, ASSUMED))
@@ -261,6 +277,13 @@ def test_pitch_turns_a_blade_as_a_whole() -> None:
     turned = ASSUMED.solve(replace(blade, pitch=np.pi / 2), 8.0, 16, 6).frequencies
     swapped = uniform_blade("swapped", 1.0, 0.1, EA=4900.0, GJ=1.0, EI_y=1.0, EI_z=0.2, mass=1.0)
     np.testing.assert_allclose(turned, ASSUMED.solve(swapped, 8.0, 16, 6).frequencies, rtol=1e-11)
+
+
+def test_a_pitched_blade_bends_along_its_own_axes() -> None:
+    """Softest about its own y, it moves along its own z: the blade's z turned from y towards z, (−sin, cos)."""
+    shape = ASSUMED.solve(replace(slender(EI_y=0.2), pitch=0.7), 0.0, 16, 1).shapes[0].real
+    np.testing.assert_allclose(shape[:, Y], -np.tan(0.7) * shape[:, Z], atol=1e-10)
+    assert np.abs(shape[-1, Z]) > 0.1
 
 
 def test_twist_of_round_sections_changes_nothing() -> None:

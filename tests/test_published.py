@@ -16,11 +16,18 @@ from .straight_blades import X, Y, Z, family, park
 COLUMN = {"chordwise": Y, "flapwise": Z, "axial": X}
 
 DATA = [
-    pytest.param(name, series, datum, id=f"{name}-{series.name}-{datum.family}{datum.mode}-{datum.speed:g}")
+    (name, series, datum)
     for name in published.names()
     for series in published.load(name).series
     for datum in series.data
 ]
+SUSPECTS = [found for found in DATA if found[2].suspect]
+
+
+def ids(value: str | Series | Datum) -> str:
+    if isinstance(value, Datum):
+        return f"{value.family}{value.mode}-{value.speed:g}"
+    return value if isinstance(value, str) else value.name
 
 
 def blade_of(name: str, series: Series) -> Blade:
@@ -44,14 +51,14 @@ def computed(name: str, series: Series, datum: Datum) -> float:
     return float(family(found, COLUMN[datum.family])[datum.mode - 1])
 
 
-@pytest.mark.parametrize(("name", "series", "datum"), DATA)
+@pytest.mark.parametrize(("name", "series", "datum"), DATA, ids=ids)
 def test_a_datum_is_right_to_its_last_digit_or_suspect(name: str, series: Series, datum: Datum) -> None:
     """Within half a unit, or marked; and none is marked that is within."""
     off = abs(computed(name, series, datum) - datum.value) > datum.half_unit
     assert off == datum.suspect
 
 
-@pytest.mark.parametrize(("name", "series", "datum"), [p for p in DATA if p.values[2].suspect])
+@pytest.mark.parametrize(("name", "series", "datum"), SUSPECTS, ids=ids)
 def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Datum) -> None:
     value = computed(name, series, datum)
     assert any(f"{value:.{digits}f}" in datum.evidence for digits in (5, 6))

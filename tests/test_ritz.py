@@ -8,7 +8,7 @@ from scipy.integrate import newton_cotes, quad
 
 from southwell.core.blade import Blade, mass_at, section_stiffness
 from southwell.core.modes import STATIONS
-from southwell.references import assumed_modes, exact_beam, southwell_equation, spectral, straight_beam, yoo_shin
+from southwell.references import assumed_modes, exact_beam, ritz, southwell_equation, spectral, straight_beam, yoo_shin
 from southwell.references.interface import CodeError
 
 from .straight_blades import kinked, park, slender
@@ -50,6 +50,18 @@ def test_polynomials(ends: list[float], functions, terms: int) -> None:
     before, after = (functions(ends_, terms, s + d) for d in (-h, h))
     np.testing.assert_allclose((after[0] - before[0]) / (2 * h), slope, atol=1e-6)
     np.testing.assert_allclose((after[1] - before[1]) / (2 * h), second, atol=1e-4)
+
+
+@pytest.mark.parametrize("code", [YOO_SHIN, EXACT], ids=ids)
+def test_sparse_and_dense_solutions_agree(code, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
+    for size in (0, 10**9):
+        monkeypatch.setattr(ritz, "DENSE", size)
+        found.append(code.solve(kinked(), 5.0, 16, 8))
+    np.testing.assert_allclose(found[1].frequencies, found[0].frequencies, rtol=1e-11)
+    overlap = np.abs(np.einsum("msi,msi->m", found[0].shapes.conj(), found[1].shapes))
+    size = [np.linalg.norm(f.shapes.reshape(8, -1), axis=1) for f in found]
+    np.testing.assert_allclose(overlap, size[0] * size[1], rtol=1e-9)
 
 
 def test_stations_without_a_kink_are_no_intervals() -> None:
