@@ -6,7 +6,7 @@ Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so its ine
 mass lumped at the nodes there are no such points.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,7 @@ class Beams:
         stiffness: (n, 6, 6) for that measure.
         points: the inertia inside.
         preload: (n, 6) force conjugate to the strain, at zero strain.
+        eta: (n, 6) logarithm of ``rest``.
     """
 
     measure: Measure
@@ -58,6 +59,10 @@ class Beams:
     stiffness: Array
     points: Points
     preload: Array
+    eta: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "eta", sp.log(self.rest))
 
 
 @dataclass(frozen=True)
@@ -94,18 +99,11 @@ def riding(rest: Array, element: Index, pose: Array, shape: Array, mass: Array) 
     return Points(element=element, rest=zeta, shape=L, mass=mass)
 
 
-def place(beams: Beams, points: Points, x: Array) -> tuple[Array, Array]:
-    """Poses (q, 4, 4) of the points in the frames a, and their H (q, 6, 6), for relative poses ``x`` (n, 4, 4)."""
+def place(beams: Beams, points: Points, eta: Array) -> tuple[Array, Array]:
+    """Logarithms ζ (q, 6) of the points' poses in the frames a, and ∂ζ/∂ξ_b (q, 6, 6), from η (n, 6) of the ends."""
     e = points.element
-    eta = sp.log(x)
-    zeta = points.rest + (points.shape @ (eta - sp.log(beams.rest))[e][..., None])[..., 0]
-    return sp.exp(zeta), sp.tangent(zeta) @ points.shape @ sp.tangent_inverse(eta)[e]
-
-
-def internal_force(beams: Beams, x: Array) -> Array:
-    """Force (n, 6) conjugate to the strain."""
-    eps = elements.strain(beams.measure, beams.rest, x)
-    return beams.preload + (beams.stiffness @ eps[..., None])[..., 0]
+    zeta = points.rest + (points.shape @ (eta - beams.eta)[e][..., None])[..., 0]
+    return zeta, points.shape @ sp.tangent_inverse(eta)[e]
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
@@ -134,19 +132,21 @@ def pencil(beams: Beams, x: Array, frame: Array, gravity: Array, model: Model = 
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
         model: the effects kept (``geometric`` and ``coriolis`` matter here).
     """
-    n = len(x)
-    s = internal_force(beams, x)
-    E = elements.strain_rate(beams.measure, beams.rest, x)
+    eta = sp.log(x)
+    s, E = elements.force(beams.measure, beams.rest, x, beams.stiffness, beams.preload)
     Et = np.swapaxes(E, -1, -2)
     w = (Et @ s[..., None])[..., 0]
-    k = Et @ beams.stiffness @ E
-    none = np.zeros((n, 12, 12))
-    rest = none
+    spring = Et @ beams.stiffness @ E
     if model.geometric:
-        k = k + elements.wrench_derivative(beams.measure, beams.rest, x, s)
-        rest = on_ends(np.zeros_like(k), sp.cross(w))  # −ρ ×* w: components taken along with b
-    out = Pencil(np.concatenate([-w, w], axis=-1), none, none, rest, k)
-    return _with_inertia(out, beams, x, frame, gravity, model) if len(beams.points.element) else out
+        spring = spring + elements.wrench_derivative(beams.measure, beams.rest, x, s)
+    none = np.zeros((len(x), 12, 12))
+    out = Pencil(np.concatenate([-w, w], axis=-1), none, none, none, spring)
+    if len(beams.points.element):
+        out = _with_inertia(out, beams, eta, frame, gravity, model)
+    if not model.geometric:
+        return out
+    taken_along = on_ends(np.zeros_like(spring), sp.cross(out.residual[:, 6:]))  # −ρ ×* (wrench on b)
+    return replace(out, rest=out.rest + taken_along) if len(beams.points.element) else replace(out, rest=taken_along)
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:
@@ -157,39 +157,36 @@ def on_ends(on_a: Array, on_b: Array) -> Array:
     return out
 
 
-def _with_inertia(out: Pencil, beams: Beams, x: Array, frame: Array, gravity: Array, model: Model) -> Pencil:
+def _with_inertia(out: Pencil, beams: Beams, eta: Array, frame: Array, gravity: Array, model: Model) -> Pencil:
+    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H ρ acts as (I − H)ᵀ g on a and Hᵀ g on b."""
     points, e = beams.points, beams.points.element
-    pose, H = place(beams, points, x)
-    to_point = sp.adjoint(sp.inverse(pose))
-    own_frame, own_gravity = ((to_point @ v[e][..., None])[..., 0] for v in (frame, gravity))
-    g, C, K = inertia.carried(points.mass, own_frame, own_gravity, follow=model.geometric)
-    g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]
-    M = points.mass
-    ride = np.concatenate([np.eye(6) - H, H], axis=-1)  # ξ = ξ_a + H (ξ_b − ξ_a), in a's axes
-    force = np.swapaxes(ride, -1, -2) @ g[..., None]
-    ride = to_point @ ride
+    zeta, slope = place(beams, points, eta)
+    T = sp.tangent(zeta)
+    H = T @ slope
+    to_point = sp.adjoint(sp.exp(-zeta))
+    g, C, K = inertia.carried(
+        points.mass,
+        (to_point @ frame[e][..., None])[..., 0],
+        (to_point @ gravity[e][..., None])[..., 0],
+        follow=model.geometric,
+    )
+    g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]  # from here on in a's axes, at a
+    seen = np.concatenate([np.eye(6) - H, H], axis=-1)
+    ride = to_point @ seen
     rode = np.swapaxes(ride, -1, -2)
-    start = np.searchsorted(e, np.arange(len(x)))
+    start = np.searchsorted(e, np.arange(len(eta)))
 
     def total(a: Array) -> Array:
         return np.add.reduceat(a, start, axis=0)
 
-    stiffness = out.rest + total(rode @ K @ ride)
+    force = total((np.swapaxes(seen, -1, -2) @ g[..., None])[..., 0])
+    rest, spring = out.rest + total(rode @ K @ ride), out.spring
     if model.geometric:
-        eta = sp.log(x)
+        # D_a g = D_point g − cross(g) H ρ, and ∂(Hᵀg)/∂ρ acts on both ends like a spring, H = T(ζ) L T⁻¹(η)
+        swing = total(np.swapaxes(seen, -1, -2) @ (sp.cross(g) @ H))
+        rest = rest - np.concatenate([-swing, swing], axis=-1)
         E = sp.tangent_inverse(eta)
-        zeta = points.rest + (points.shape @ (eta - sp.log(beams.rest))[e][..., None])[..., 0]
-        Lt = np.swapaxes(points.shape, -1, -2)
-        y = (Lt @ np.swapaxes(sp.tangent(zeta), -1, -2) @ g[..., None])[..., 0]
-        bend = total(Lt @ sp.tangent_transpose_derivative(zeta, g) @ points.shape)
-        y_sum = total(y)
-        # ∂(Hᵀg)/∂ρ with H = tangent(ζ) L tangent⁻¹(η)
-        P = (np.swapaxes(E, -1, -2) @ bend + sp.tangent_inverse_transpose_derivative(eta, y_sum)) @ E
-        swing = sp.cross(g) @ H
-        on_a = total((np.eye(6) - np.swapaxes(H, -1, -2)) @ swing) + P
-        hg = (np.swapaxes(E, -1, -2) @ y_sum[..., None])[..., 0]
-        on_b = -total(np.swapaxes(H, -1, -2) @ swing) + P + sp.cross(hg)
-        stiffness = stiffness + on_ends(on_a, on_b)
-    return Pencil(
-        out.residual + total(force[..., 0]), total(rode @ M @ ride), total(rode @ C @ ride), stiffness, out.spring
-    )
+        conjugate = np.swapaxes(points.shape, -1, -2) @ np.swapaxes(T, -1, -2) @ g[..., None]
+        bend = np.swapaxes(slope, -1, -2) @ sp.tangent_transpose_derivative(zeta, g) @ slope
+        spring = spring + total(bend) + sp.tangent_inverse_transpose_derivative(eta, total(conjugate[..., 0])) @ E
+    return Pencil(out.residual + force, total(rode @ points.mass @ ride), total(rode @ C @ ride), rest, spring)

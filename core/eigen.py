@@ -15,7 +15,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from . import blocks
-from .blocks import Tridiagonal
+from .blocks import Factor, Tridiagonal
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -77,40 +77,32 @@ def lanczos(
         factor = blocks.cholesky(K)
     except np.linalg.LinAlgError:
         raise _unstable() from None
-    ms, cs, ks = blocks.sparse(M), blocks.sparse(C), blocks.sparse(K)
-
-    def product(v: Array) -> Array:  # A v
-        return np.concatenate([ks @ v[:n], ms @ v[n:]])
-
-    def apply(v: Array) -> Array:  # A⁻¹S v
-        return np.concatenate([factor.solve(cs @ v[:n] + ms @ v[n:]), -v[:n]])
-
-    rank = n + int((np.abs(blocks.dense(M)).sum(0) > 0).sum()) if n < 200 else 2 * n
-    limit = min(rank, max(200, 8 * count))
-    v = apply(np.random.default_rng(1921).normal(size=(2 * n, 2)))
-    basis, dual = np.zeros((2 * n, limit + 2)), np.zeros((2 * n, limit + 2))
+    ms, cs = blocks.sparse(M), blocks.sparse(C)
+    limit = min(2 * n, max(200, 8 * count))
+    basis, dual = np.zeros((2 * n, limit + 2)), np.zeros((2 * n, limit + 2))  # V and A V, VᵀAV = 1
     projected = np.zeros((limit + 2, limit + 2))
-    size = 0
+    start = np.random.default_rng(1921).normal(size=(2 * n, 2))
+    v, av = _step(factor, ms, cs, start)
+    size, look = 0, 2 * count + 16
     while True:
-        v, kept = _orthonormal(v, product, basis[:, :size], dual[:, :size])
+        v, av, kept = _orthonormal(v, av, basis[:, :size], dual[:, :size])
         new = slice(size, size + kept)
-        basis[:, new], dual[:, new] = v, product(v)
+        basis[:, new], dual[:, new] = v, av
         size += kept
-        w = apply(v)
-        projected[:size, new] = dual[:, :size].T @ w
-        t = projected[:size, :size]
-        done = kept == 0 or size + 2 > limit
-        if done or (size >= 2 * count + 4 and size % 8 < 2):
-            mu, z = np.linalg.eigh(1j * _skew(t))
+        w, aw = _step(factor, ms, cs, v)
+        projected[:size, new] = basis[:, :size].T @ aw
+        exhausted = kept == 0 or size + 2 > limit
+        if exhausted or size >= look:
+            look = size + 12
+            mu, z = np.linalg.eigh(1j * _skew(projected[:size, :size]))
             order = np.argsort(-mu)[: min(count, size // 2)]
             mu, z = mu[order], z[:, order]
-            rest = w - basis[:, :size] @ (dual[:, :size].T @ w)
-            error = (
-                np.linalg.norm(_norms(rest, product)[:, None] * np.abs(z[new]), axis=0) if kept else np.zeros(len(mu))
-            )
-            if done or (error < _TOLERANCE * np.abs(mu)).all():
+            rest = w - basis[:, :size] @ projected[:size, new]
+            a_rest = aw - dual[:, :size] @ projected[:size, new]
+            norms = np.sqrt(np.maximum((rest * a_rest).sum(0), 0.0))
+            if exhausted or (np.linalg.norm(norms[:, None] * np.abs(z[new]), axis=0) < _TOLERANCE * np.abs(mu)).all():
                 break
-        v = w
+        v, av = w, aw
     positive = mu > 1e-12 * mu.max()
     x = basis[:n, :size] @ z[:, positive].conj()  # i A⁻¹S has 1/ω at λ = −iω
     frequencies = 1.0 / mu[positive]
@@ -120,7 +112,7 @@ def lanczos(
         kappa = energy(x)
         root = np.sqrt(half**2 + m * kappa)
         frequencies = kappa / (root - half)
-    return _scaled(frequencies, x, ks)
+    return _scaled(frequencies, x, blocks.sparse(K))
 
 
 @dataclass(frozen=True)
@@ -168,22 +160,27 @@ def _skew(t: Array) -> Array:
     return upper - upper.T
 
 
-def _norms(v: Array, product: Callable[[Array], Array]) -> Array:
-    return np.sqrt(np.maximum((v * product(v)).sum(0), 0.0))
+def _step(factor: Factor, ms: Any, cs: Any, v: Array) -> tuple[Array, Array]:
+    """w = A⁻¹S v and A w = S v."""
+    n = len(v) // 2
+    x, y = v[:n], v[n:]
+    mass = ms @ np.hstack([x, y])
+    k = x.shape[1]
+    force = cs @ x + mass[:, k:]
+    return np.concatenate([factor.solve(force), -x]), np.concatenate([force, -mass[:, :k]])
 
 
-def _orthonormal(v: Array, product: Callable[[Array], Array], basis: Array, dual: Array) -> tuple[Array, int]:
+def _orthonormal(v: Array, av: Array, basis: Array, dual: Array) -> tuple[Array, Array, int]:
     """Make the columns orthonormal in the A product, to the basis and to each other; drop those that vanish."""
-    before = _norms(v, product)
+    before = np.abs((v * av).sum(0)).max()
     for _ in range(2):
-        v = v - basis @ (dual.T @ v)
-    gram = v.T @ product(v)
+        overlap = basis.T @ av
+        v, av = v - basis @ overlap, av - dual @ overlap
+    gram = v.T @ av
     value, turn = np.linalg.eigh(0.5 * (gram + gram.T))
-    keep = value > 1e-20 * max(before.max() ** 2, 1e-300)
-    v = v @ (turn[:, keep] / np.sqrt(value[keep]))
-    v = v - basis @ (dual.T @ v)
-    gram = v.T @ product(v)
-    return v @ np.linalg.inv(np.linalg.cholesky(0.5 * (gram + gram.T))).T if keep.any() else v, int(keep.sum())
+    keep = value > 1e-20 * max(before, 1e-300)
+    scale = turn[:, keep] / np.sqrt(value[keep])
+    return v @ scale, av @ scale, int(keep.sum())
 
 
 def _scaled(frequencies: Array, x: Numbers, K: Any) -> Eigen:

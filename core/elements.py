@@ -40,6 +40,12 @@ def strain_rate(measure: Measure, rest: Array, x: Array) -> Array:
     return rate @ local
 
 
+def force(measure: Measure, rest: Array, x: Array, stiffness: Array, preload: Array) -> tuple[Array, Array]:
+    """s = K ε + preload (n, 6), conjugate to the strain, and E (n, 6, 6)."""
+    s = preload + (stiffness @ strain(measure, rest, x)[..., None])[..., 0]
+    return s, strain_rate(measure, rest, x)
+
+
 def wrench_derivative(measure: Measure, rest: Array, x: Array, s: Array) -> Array:
     """∂(Eᵀ s)/∂ρ (n, 6, 6), s held: the geometric stiffness."""
     if measure == "corotational":

@@ -72,12 +72,12 @@ def balance(body: Chain, omega: float, gravity: Array, model: Model) -> tuple[Ch
 def mode_shapes(body: Chain, nodes: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) displacement and rotation about x at the common stations, from the nodes' twists (6n, m)."""
     x = sp.inverse(nodes[:-1]) @ nodes[1:]
-    pose, H = bm.place(body.beams, body.samples, x)
     e = body.samples.element
+    zeta, slope = bm.place(body.beams, body.samples, sp.log(x))
+    position = sp.exp(zeta)[:, :3, 3]
     twist = np.concatenate([np.zeros((1, 6, vectors.shape[1])), vectors.reshape(-1, 6, vectors.shape[1])])
     a = twist[:-1][e]
-    rho = sp.adjoint(x)[e] @ twist[1:][e] - a
-    moved = a + H @ rho
-    velocity = moved[:, :3] - sp.skew(pose[:, :3, 3]) @ moved[:, 3:]
+    moved = a + sp.tangent(zeta) @ slope @ (sp.adjoint(x)[e] @ twist[1:][e] - a)
+    velocity = moved[:, :3] - sp.skew(position) @ moved[:, 3:]
     turn = nodes[:-1, :3, :3][e]
     return np.concatenate([turn @ velocity, (turn @ moved[:, 3:])[:, :1]], axis=1).transpose(2, 0, 1)
