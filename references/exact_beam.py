@@ -21,6 +21,7 @@ torsion: a rod with such a diagonal stiffness has no trapeze effect, and neither
 Galerkin's method with the polynomials of ``spectral``, for u and φ of one degree less than for v and w.
 """
 
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
@@ -56,48 +57,91 @@ def steady(blade: Blade, at: Line, omega: float, terms: int) -> tuple[Array, Arr
     return 1.0 + strain @ q, bend @ q
 
 
+@dataclass(frozen=True)
 class Beam:
-    """Functions and steady state of one blade at one speed, from which both its uncoupled problems are made."""
+    """One blade at one speed: its functions at the quadrature points, about its steady state.
 
-    def __init__(self, blade: Blade, omega: float, terms: int) -> None:
-        self.at = line(blade, terms)
-        self.omega = omega
-        self.u, self.u_s, _ = pinned(self.at.ends, terms, self.at.s)
-        self.v, v_s, v_ss = clamped(self.at.ends, terms, self.at.s)
-        stretch, slope = steady(blade, self.at, omega, terms)
-        stretch, slope = stretch[:, None], slope[:, None]
-        self.turn = v_s / stretch
-        self.curvature = v_ss / stretch - v_s * slope / stretch**2
-        # ∫ N/λ v′², with N = E A (λ − 1)
-        self.tense = integral(self.at.weight * self.at.sections.EA * ((stretch - 1) * stretch)[:, 0], self.turn)
-        s = STATIONS * blade.length
-        self.u_shape, self.v_shape = pinned(self.at.ends, terms, s)[0], clamped(self.at.ends, terms, s)[0]
+    Attributes:
+        at: the blade at those points.
+        omega: rotor speed, rad/s.
+        u, u_s: (q, n) functions for stretch and torsion, and their slopes.
+        v: (q, n) functions for bending.
+        turn: (q, n) rotation of the section that each of them is, v′/λ.
+        curvature: (q, n) its slope.
+        tense: (n, n) stiffness by the steady tension, ``∫ N/λ v′²``.
+        u_shape, v_shape: (21, n) the functions at ``core.modes.STATIONS``.
+    """
 
-    def in_plane(self) -> tuple[Array, Array, Array, Array]:
-        """M, C, K of stretch and chordwise bending, and the shape (21, 4, n) of their coordinates."""
-        at, omega = self.at, self.omega
-        m_uu, m_vv = integral(at.mass, self.u), integral(at.mass, self.v)
-        gyro = 2 * omega * integral(at.mass, self.v, self.u)
-        M = apart(m_uu, m_vv + integral(at.I_z, self.turn))
-        K = apart(
-            integral(at.weight * at.sections.EA, self.u_s) - omega**2 * m_uu,
-            integral(at.weight * at.sections.EI_z, self.curvature) + self.tense - omega**2 * m_vv,
-        )
-        return M, skew(gyro), K, shape_of([(X, self.u_shape), (Y, self.v_shape)])
+    at: Line
+    omega: float
+    u: Array
+    u_s: Array
+    v: Array
+    turn: Array
+    curvature: Array
+    tense: Array
+    u_shape: Array
+    v_shape: Array
 
-    def out_of_plane(self, torsion: bool) -> tuple[Array, Array, Array, Array]:
-        """The same of torsion, if wanted, and flapwise bending."""
-        at, omega = self.at, self.omega
-        M = integral(at.mass, self.v) + integral(at.I_y, self.turn)
-        K = integral(at.weight * at.sections.EI_y, self.curvature) + self.tense
-        K -= omega**2 * integral(at.I_x - at.I_z, self.turn)
-        if not torsion:
-            return M, np.zeros_like(M), K, shape_of([(Z, self.v_shape)])
-        gyro = -omega * integral(at.I_x + at.I_y - at.I_z, self.turn, self.u)
-        M = apart(integral(at.I_x, self.u), M)
-        twisting = integral(at.weight * at.sections.GJ, self.u_s) + omega**2 * integral(at.I_z - at.I_y, self.u)
-        K = apart(twisting, K)
-        return M, skew(gyro), K, shape_of([(ROTATION_X, self.u_shape), (Z, self.v_shape)])
+
+def stretched(blade: Blade, omega: float, terms: int) -> Beam:
+    """The blade at ``omega`` (rad/s) with ``terms`` polynomials a field in each interval.
+
+    Raises:
+        CodeError: if it has no steady state.
+    """
+    at = line(blade, terms)
+    u, u_s, _ = pinned(at.ends, terms, at.s)
+    v, v_s, v_ss = clamped(at.ends, terms, at.s)
+    stretch, slope = steady(blade, at, omega, terms)
+    turn = v_s / stretch[:, None]
+    where = STATIONS * blade.length
+    return Beam(
+        at=at,
+        omega=omega,
+        u=u,
+        u_s=u_s,
+        v=v,
+        turn=turn,
+        curvature=(v_ss - turn * slope[:, None]) / stretch[:, None],
+        tense=integral(at.weight * at.sections.EA * (stretch - 1) * stretch, turn),  # N = E A (λ − 1)
+        u_shape=pinned(at.ends, terms, where)[0],
+        v_shape=clamped(at.ends, terms, where)[0],
+    )
+
+
+Problem = tuple[Array, Array, Array, Array]
+"""M, C, K (n, n) and the shape (21, 4, n) of the coordinates."""
+
+
+def in_plane(beam: Beam) -> Problem:
+    """Stretch and chordwise bending."""
+    at, square = beam.at, beam.omega**2
+    m_uu, m_vv = integral(at.mass, beam.u), integral(at.mass, beam.v)
+    M = apart(m_uu, m_vv + integral(at.I_z, beam.turn))
+    C = skew(2 * beam.omega * integral(at.mass, beam.v, beam.u))
+    K = apart(
+        integral(at.weight * at.sections.EA, beam.u_s) - square * m_uu,
+        integral(at.weight * at.sections.EI_z, beam.curvature) + beam.tense - square * m_vv,
+    )
+    return M, C, K, shape_of([(X, beam.u_shape), (Y, beam.v_shape)])
+
+
+def out_of_plane(beam: Beam, torsion: bool) -> Problem:
+    """Torsion, if wanted, and flapwise bending."""
+    at, square = beam.at, beam.omega**2
+    M = integral(at.mass, beam.v) + integral(at.I_y, beam.turn)
+    K = (
+        integral(at.weight * at.sections.EI_y, beam.curvature)
+        + beam.tense
+        - square * integral(at.I_x - at.I_z, beam.turn)
+    )
+    if not torsion:
+        return M, np.zeros_like(M), K, shape_of([(Z, beam.v_shape)])
+    twisting = integral(at.weight * at.sections.GJ, beam.u_s) + square * integral(at.I_z - at.I_y, beam.u)
+    C = skew(-beam.omega * integral(at.I_x + at.I_y - at.I_z, beam.turn, beam.u))
+    shape = shape_of([(ROTATION_X, beam.u_shape), (Z, beam.v_shape)])
+    return apart(integral(at.I_x, beam.u), M), C, apart(twisting, K), shape
 
 
 class ExactBeam:
@@ -131,9 +175,9 @@ class ExactBeam:
         """
         refuse(self.unsupported(blade))
         start = perf_counter()
-        beam = Beam(blade, omega, elements)
+        beam = stretched(blade, omega, elements)
         torsion = bool(beam.at.I_x.any() and np.isfinite(blade.stiffness[:, TORSION, TORSION]).all())
-        problems = (beam.in_plane(), beam.out_of_plane(torsion))
+        problems = (in_plane(beam), out_of_plane(beam, torsion))
         parts = [part(shape, *coupled_modes(M, C, K, count)) for M, C, K, shape in problems]
         return union(parts, omega, elements, count, perf_counter() - start)
 
