@@ -132,10 +132,10 @@ def given(head: Head, omega: float, reference: Reference, study: Study, order: i
     fine, _ = refined(head, omega, reference, study, order)
     cells = []
     for i, (cell, limit) in enumerate(zip(coarse, fine, strict=True)):
-        base = reference.core.settled[i].estimate
-        if cell.difference is not None and base is not None:
+        base, difference = reference.core.settled[i].estimate, cell.difference
+        if difference is not None and base is not None:
             cell = replace(cell, uncertainty=base.uncertainty)
-            verdict, reason = discretised(cell.difference, base.uncertainty, head.target, limit.difference, what)
+            verdict, reason = discretised(difference, base.uncertainty, head.target, limit.difference, what)
             if verdict != "fail":
                 lacking, why = _known(reference, i, head.target)
                 verdict, reason = verdict if lacking == "pass" else lacking, _join(reason, why)

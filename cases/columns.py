@@ -10,6 +10,7 @@ from importlib.metadata import version
 
 from ..core.blade import Blade
 from ..core.model import FULL, Model
+from ..core.modes import Modes
 from ..references.codes import cap
 from ..references.interface import Code
 from ..references.worker import Answer, Failure, answers
@@ -19,7 +20,7 @@ from .cells import Head, empty, given, refined, same
 from .reference import Reference, felt
 from .results import Cell, Level, Verdict
 from .schema import Case, Discretisation, Variant
-from .study import Refining, solve
+from .study import Refining, Wanted, solve
 from .tables import about, rows
 
 SAME = 1e-8
@@ -88,7 +89,12 @@ def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Co
     model = felt(code.model, blade)
     if code.shares == "discretisation":
         head = Head(head.case, head.code, head.version, "same discretisation", SAME)
-        return Column(code.name, model, head, partial(_same, head, name, blade, code.levels[-1], code.model, timeout))
+        return Column(
+            code.name,
+            model,
+            head,
+            partial(_same, head, name, blade, code.levels[len(code.levels) // 2], code.model, timeout),
+        )
     refining = Refining(tuple(code.levels), code.order, cap(code))
     return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
 
@@ -102,7 +108,7 @@ def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: f
         return answers(name, blade, runs, timeout)
 
     count = max(r.core.count for _, r in core)
-    studies = solve(ask, [omega for omega, _ in core], refining, count, [r.core.wanted for _, r in core])
+    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
     return _join(refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, studies, strict=True))
 
 
@@ -113,7 +119,7 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     n = source.elements
     refining = Refining((n, 2 * n, 4 * n), 2, 8 * n)
     count = max(r.core.count for _, r in core)
-    studies = solve(ask, [omega for omega, _ in core], refining, count, [r.core.wanted for _, r in core])
+    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
     return _join(
         given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, studies, strict=True)
     )
@@ -124,6 +130,12 @@ def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, time
     theirs = answers(name, blade, runs, timeout)
     mine = own.answers(blade, runs, "half_end", "parent", model)
     return _join(same(head, omega, r, a, b) for (omega, r), a, b in zip(core, theirs, mine, strict=True))
+
+
+def _wanted(core: References) -> Callable[[float, Sequence[Modes]], Wanted]:
+    """What a solver is asked for: core's modes, whatever it answered."""
+    by_speed = {omega: r.core.wanted for omega, r in core}
+    return lambda omega, _: by_speed[omega]
 
 
 def _join(parts: Iterable[Rows]) -> Rows:

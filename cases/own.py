@@ -22,11 +22,14 @@ from .study import Refining, Settled, Wanted, settle, solve
 SURE = 2e-5
 """Core is refined until its own uncertainty, relative, is no more than this: a tenth of what a code is allowed."""
 
-START, CAP = 20, 640
+START, CAP = 20, 960
 """Core's coarsest and finest reference discretisation, in elements."""
 
 MARGIN = 4
 """Modes solved beyond the highest one wanted, so that each has a chance of its partner."""
+
+DEEPER = 3
+"""How many times further up to look, once, where too few modes of those solved qualify."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ def refining(blade: Blade) -> Refining:
     fractions = blade.stations / blade.length
     fit = (n for n in range(START, 10 * START) if np.abs(n * fractions - np.round(n * fractions)).max() < 1e-6)
     start = next(fit, 3 * START)
-    return Refining((start, 2 * start, 4 * start), order=4, cap=CAP, sure=SURE)
+    return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
 
 
 def converged(blade: Blade, speeds: Sequence[float], compare: Compare, model: Model) -> list[Converged | Failure]:
@@ -74,37 +77,38 @@ def converged(blade: Blade, speeds: Sequence[float], compare: Compare, model: Mo
     Raises:
         CaseError: if the blade has fewer modes than the case compares.
     """
-    plan, weight = refining(blade), weights(blade)
-    return [_converged(blade, omega, compare, model, plan, weight) for omega in speeds]
+    weight, count = weights(blade), 2 * compare.modes + MARGIN
+    return [_converged(blade, omega, compare, model, weight, count) for omega in speeds]
 
 
 def _converged(
-    blade: Blade, omega: float, compare: Compare, model: Model, plan: Refining, weight: Array
+    blade: Blade, omega: float, compare: Compare, model: Model, weight: Array, count: int
 ) -> Converged | Failure:
     def ask(runs: Sequence[Run]) -> list[Answer]:
         return answers(blade, runs, model=model)
 
-    finest, count = plan.levels[-1], 2 * compare.modes + MARGIN
-    (first,) = ask([(omega, finest, count)])
-    while isinstance(first, Modes) and len(qualifying(first, weight, compare)) < compare.modes:
-        if len(first.frequencies) < count:
-            raise CaseError(
-                f"{blade.name}: compare.modes: {compare.modes}: the blade has fewer that move so at {omega:g} rad/s: lower it"
-            )
-        count *= 2
-        (first,) = ask([(omega, finest, count)])
-    if isinstance(first, Failure):
-        return first
-    wanted = Wanted(aligned(first, weight), qualifying(first, weight, compare), weight)
-    (study,) = solve(ask, [omega], plan, max(wanted.indices) + 1 + MARGIN, [wanted])
+    def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
+        finest = aligned(solved[-1], weight)
+        return Wanted(finest, qualifying(finest, weight, compare), weight)
+
+    plan = refining(blade)
+    (study,) = solve(ask, [omega], plan, count, wanted)
     if not study.answers:
         return study.failure or Failure("refused", "no answer")
-    settled = tuple(settle(study.answers, wanted, plan.order))
-    named = families(wanted.reference, weight)
-    return Converged(wanted, settled, tuple(named[k] for k in wanted.indices))
+    target = wanted(omega, study.answers)
+    if len(target.indices) < compare.modes:
+        if count > 2 * compare.modes + MARGIN:
+            raise CaseError(
+                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s {len(target.indices)} of the lowest "
+                f"{len(study.answers[-1].frequencies)} modes move so: lower it"
+            )
+        return _converged(blade, omega, compare, model, weight, DEEPER * count)
+    named = families(target.reference, weight)
+    settled = tuple(settle(study.answers, target, plan.order))
+    return Converged(target, settled, tuple(named[k] for k in target.indices))
 
 
 def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:
     """Indices of the lowest ``compare.modes`` modes with at least half their modal mass in ``compare.motions``."""
-    share = shares(aligned(modes, weight), weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
+    share = shares(modes, weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
     return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

@@ -54,7 +54,7 @@ def weights(blade: Blade) -> Array:
     """``W``: (21, 4, 4) mass at the common stations, kg, kg m and kg m², in blade axes; tip mass included."""
     s = STATIONS * blade.length
     angle = twist_at(blade, s) + blade.pitch
-    mass = mass_at(blade, s) * simpson(np.eye(len(s)), x=s, axis=1)[:, None, None]
+    mass = mass_at(blade, s) * np.asarray(simpson(np.eye(len(s)), x=s, axis=1))[:, None, None]
     mass[-1] += blade.tip_mass
     cos, sin = np.cos(angle), np.sin(angle)
     turn = np.zeros((len(s), 4, 4))  # section axes → blade axes, for (x, y, z, rotation about x)
@@ -159,8 +159,13 @@ def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
 
 
 def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:
-    """cos² of the largest principal angle between the spans of two sets of shapes (Björck and Golub, 1973)."""
+    """cos² of the largest principal angle between the spans of as many shapes each (Björck and Golub, 1973).
+
+    Shapes that do not span so many dimensions are like nothing: 0.
+    """
     values, vectors = np.linalg.eigh(weight)
     root = np.sqrt(values.clip(0.0))[:, :, None] * vectors.swapaxes(1, 2)  # rootᵀ root = W
     flat = [np.einsum("sij,msj->msi", root, shapes).reshape(len(shapes), -1).T for shapes in (a, b)]
+    if any(np.linalg.matrix_rank(columns) < len(a) for columns in flat):
+        return 0.0
     return float(np.cos(subspace_angles(*flat).max()) ** 2)

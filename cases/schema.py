@@ -144,7 +144,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         CaseError: one line with file, field, value, cause and remedy.
     """
     _finite(data, path, "")
-    text = _convert(data, data, path)
+    text = _convert(data, path)
     for table in text.compare.tables:
         if table not in published.names():
             raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
@@ -152,7 +152,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
         changed = {**data, "blade": {**data["blade"], **changes}}
-        blade = _convert(changed, changed, f"{path}: variants.{label}" if label else path).blade
+        blade = _convert(changed, f"{path}: variants.{label}" if label else path).blade
         name = f"{text.name}/{label}" if label else text.name
         variants.append(Variant(name, blade.blade(name, folder), speeds))
     return Case(path, text, tuple(variants))
@@ -171,7 +171,8 @@ def speed_range(text: str) -> NDArray[np.float64]:
         raise ValueError(f"{text!r} is neither a speed nor first:last:step, as in 0:30:5") from None
     if not (0 <= first <= last < math.inf and 0 < step < math.inf):
         raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
-    return first + step * np.arange(math.floor((last - first) / step * (1 + 1e-12)) + 1)
+    count = math.floor((last - first) / step * (1 + 1e-12)) + 1
+    return np.array([first + step * k for k in range(count)])
 
 
 def _speeds(text: CaseFile, path: str) -> NDArray[np.float64]:
@@ -204,12 +205,12 @@ def _finite(value: Any, path: str, field: str) -> None:
         raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
 
 
-def _convert(data: Mapping[str, Any], raw: Mapping[str, Any], path: str) -> CaseFile:
+def _convert(data: Mapping[str, Any], path: str) -> CaseFile:
     try:
         return msgspec.convert(data, CaseFile)
     except msgspec.ValidationError as error:
         message, _, where = str(error).partition(" - at `$")
-        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), raw)}") from error
+        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data)}") from error
 
 
 def _explain(message: str, field: str, raw: Mapping[str, Any]) -> str:

@@ -56,10 +56,31 @@ class Study:
     failure: Failure | None = None
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """The modes to look for at one speed: ``indices`` among the modes of ``reference``; ``weight`` as in ``pairing``."""
+
+    reference: Modes
+    indices: tuple[int, ...]
+    weight: Array
+
+
 def solve(
-    ask: Ask, speeds: Sequence[float], refining: Refining, count: int, targets: Sequence["Wanted"]
+    ask: Ask,
+    speeds: Sequence[float],
+    refining: Refining,
+    count: int,
+    wanted: Callable[[float, Sequence[Modes]], Wanted],
 ) -> list[Study]:
-    """Studies at each speed. Coarse refinements are asked for first, so that a time limit costs the fine ones."""
+    """Studies at each speed. Coarse refinements are asked for first, so that a time limit costs the fine ones.
+
+    Args:
+        ask: the solver.
+        speeds: rad/s.
+        refining: how it is refined.
+        count: how many modes to ask for.
+        wanted: what must be sure enough at a speed, given the answers there so far (one at least).
+    """
     levels = list(refining.levels)
     runs = [(omega, n, count) for n in levels for omega in speeds]
     solved: dict[float, list[Modes]] = {omega: [] for omega in speeds}
@@ -73,29 +94,19 @@ def solve(
                 solved[omega].append(answer)
         finer = 2 * levels[-1]
         levels.append(finer)
-        unsure = [
-            omega
-            for omega, wanted in zip(speeds, targets, strict=True)
-            if omega not in failed
-            and not all(_sure(s, refining.sure) for s in settle(solved[omega], wanted, refining.order))
-        ]
+        open_ = [omega for omega in speeds if omega not in failed]
+        unsure = [omega for omega in open_ if not _sure(solved[omega], wanted(omega, solved[omega]), refining)]
         runs = [(omega, finer, count) for omega in unsure] if finer <= refining.cap else []
     return [Study(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
 
 
-def _sure(settled: Settled, tolerance: float) -> bool:
-    if settled.bracketed or settled.estimate is None:
-        return True
-    return settled.estimate.uncertainty is not None and settled.estimate.uncertainty <= tolerance
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """The modes to look for at one speed: ``indices`` among the modes of ``reference``; ``weight`` as in ``pairing``."""
-
-    reference: Modes
-    indices: tuple[int, ...]
-    weight: Array
+def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
+    return all(
+        s.bracketed
+        or s.estimate is None
+        or (s.estimate.uncertainty is not None and s.estimate.uncertainty <= refining.sure)
+        for s in settle(answers, wanted, refining.order)
+    )
 
 
 def settle(answers: Sequence[Modes], wanted: Wanted, order: int) -> list[Settled]:

@@ -66,7 +66,7 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
     listed = f"{f[0]:.9g}, {f[1]:.9g}, {f[2]:.9g} rad/s"
     if (f[1] - f[0]) * (f[2] - f[1]) <= 0:
         return scattered if spread <= QUIET else Estimate(float(f[-1]), None, note=f"not monotone: {listed}")
-    observed = observed_order(n, f)
+    observed = observed_order(n.tolist(), f.tolist())
     if observed <= 0:
         return scattered if spread <= QUIET else Estimate(float(f[-1]), None, observed, f"not converging: {listed}")
     firm = abs(observed - order) <= NEAR_THEORY * order

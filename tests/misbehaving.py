@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+
 from southwell.core.blade import Blade
 from southwell.core.model import FULL, Model
 from southwell.core.modes import Modes

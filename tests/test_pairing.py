@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from southwell.cases.pairing import aligned, families, groups, mac, pair, shares, weights
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
@@ -101,6 +102,12 @@ def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:
     for found in pair(reference, other, range(2), WEIGHT):
         assert found.mode is None
         assert "no partner: its most similar mode, at 10 rad/s, has MAC" in found.note
+
+
+def test_shapes_that_are_one_and_the_same_twice_are_no_pair() -> None:
+    reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
+    mixed = shape(CHORD, 1) + shape(FLAP, 1)
+    assert [p.mode for p in pair(reference, modes([10.0, 10.0], [mixed, mixed]), range(2), WEIGHT)] == [None, None]
 
 
 def test_distinct_frequencies_are_not_excused_as_a_subspace() -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from southwell.cases import library
 from southwell.cases.errors import CaseError
 from southwell.cases.schema import read, speed_range

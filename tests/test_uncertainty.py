@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from southwell.cases.uncertainty import ROUNDING, from_bracket, from_print, from_refinement, observed_order
 
 LIMIT = 189.82

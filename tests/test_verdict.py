@@ -1,6 +1,7 @@
 """Verdicts at and around their borders, and the reasons that go with them."""
 
 import pytest
+
 from southwell.cases.verdict import Effect, bracketed, discretised, judge, known, percent
 
 TARGET = 1e-3

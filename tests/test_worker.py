@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import Modes
 from southwell.references import codes
