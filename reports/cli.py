@@ -11,7 +11,7 @@ from typing import Annotated
 
 import msgspec
 import numpy as np
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, Token
 from cyclopts.validators import Number
 from rich import box
 from rich.table import Table
@@ -45,6 +45,14 @@ app = App(
 )
 
 
+def _whole(_: type, tokens: Sequence[Token]) -> int:
+    """A whole number as typed (Cyclopts' own conversion rounds 1.5)."""
+    return int(tokens[0].value)
+
+
+Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+
+
 class UsageError(ValueError):
     """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
 
@@ -54,7 +62,7 @@ def verify(
     *case: str,
     codes: str | None = None,
     out: Path = Path("southwell-report"),
-    workers: Annotated[int | None, Parameter(validator=Number(gte=1))] = None,
+    workers: Whole | None = None,
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
@@ -126,8 +134,8 @@ def modes(
     *,
     omega: str | None = None,
     rpm: str | None = None,
-    elements: Annotated[int, Parameter(validator=Number(gte=1))] = 50,
-    modes: Annotated[int, Parameter(validator=Number(gte=1))] = 10,
+    elements: Whole = 50,
+    modes: Whole = 10,
     json: Annotated[bool, Parameter(negative=())] = False,
 ) -> int:
     """Natural frequencies by the in-house solver, with their families.

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
 from ..cases.results import Cell, Level, Run
-from .style import FAINT, Look, house, looks, spread
+from .style import FAINT, WIDTH, Look, band, house, key, looks, spread, title
 from .summary import column, columns, labels
 from .units import Units
 
@@ -36,29 +36,29 @@ def convergence(run: Run, case: str, units: Units) -> Figure | None:
         return None
     omega = max(v.omega for v in levels)
     levels = [v for v in levels if v.omega == omega]
-    modes = sorted({v.mode for v in levels})
     style, names = looks(columns(run.cells)), labels(rows)
+    at_omega = sorted((c for c in rows if c.omega == omega), key=lambda c: (c.reference != c.full, c.mode))
+    modes = list(dict.fromkeys(names[c] for c in at_omega if c.mode <= PANELS))[:PANELS]
     across = min(3, len(modes))
     down = -(-len(modes) // across)
+    drawn = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
     with house():
-        height = 1.15 + 2.3 * down
-        figure = Figure((7.6, height))
+        low = band(len(drawn))
+        height = low + 0.62 + 2.05 * down
+        figure = Figure((WIDTH, height))
         grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
-        figure.subplots_adjust(0.105, 0.85 / height, 0.985, 1 - 0.62 / height, 0.08, 0.22)
+        figure.subplots_adjust(0.095, low / height, 0.985, 1 - 0.62 / height, 0.08, 0.22)
         _frame(grid[0, 0], levels, cells)
         for axes, mode in zip(grid.flat, modes, strict=False):
-            mine = [c for (o, m, _), c in cells.items() if (o, m) == (omega, mode)]
-            _panel(axes, mine, [v for v in levels if v.mode == mode], style)
-            axes.set_title(names[next((c for c in mine if c.reference == c.full), mine[0])], size=9, pad=4)
-        for axes in grid.flat[len(modes) :]:
-            axes.set_visible(False)
-        title = f"{case}: distance from core's converged answer, {units.at(omega)}"
-        figure.text(0.015, 1 - 0.26 / height, title, weight="bold", size=10.5)
-        figure.text(0.545, 0.4 / height, "elements, or terms of a series; numbers: observed order", ha="center")
-        figure.text(0.012, 0.5, "|difference|, relative", rotation=90, va="center")
-        drawn = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
-        keys = [_line(style[name], label=name) for name in drawn]
-        figure.legend(handles=keys, loc="lower left", bbox_to_anchor=(0.09, 0.0), ncols=5, columnspacing=1.4)
+            _panel(axes, [c for c in at_omega if names[c] == mode], levels, style)
+            axes.set_title(mode, size=9, pad=4)
+        for k, axes in enumerate(grid.flat):
+            axes.set_visible(k < len(modes))
+            axes.tick_params(labelbottom=k + across >= len(modes))
+        title(figure, f"{case}: distance from core's converged answer, {units.at(omega)}")
+        figure.text(0.54, (low - 0.42) / height, "elements, or terms of a series; numbers: observed order", ha="center")
+        figure.text(0.012, 0.55, "|difference|, relative", rotation=90, va="center")
+        key(figure, [_line(style[name], label=name) for name in drawn], 0.095)
     return figure
 
 
@@ -74,7 +74,7 @@ def _frame(axes: Axes, levels: Sequence[Level], cells: dict[tuple[float, int, st
     axes.set_yscale("log")
     axes.set_xlim(0.8 * min(refinements), 1.9 * max(refinements))
     axes.set_ylim(10.0 ** np.floor(np.log10(min(errors)) - 0.1), 10.0 ** np.ceil(np.log10(max(errors)) + 0.1))
-    ticks = [n for n in (2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000) if min(refinements) <= n <= max(refinements)]
+    ticks = [n for n in (1, 3, 10, 30, 100, 300, 1000, 3000) if min(refinements) <= n <= max(refinements)]
     axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}"))
@@ -89,7 +89,7 @@ def _panel(axes: Axes, cells: Sequence[Cell], levels: Sequence[Level], style: di
     axes.axhline(max(c.target for c in cells), color=FAINT, lw=1.2, zorder=1)
     ends = []
     for cell in cells:
-        mine = sorted((v for v in levels if v.code == cell.code), key=lambda v: v.elements)
+        mine = sorted((v for v in levels if (v.code, v.mode) == (cell.code, cell.mode)), key=lambda v: v.elements)
         if not mine:
             continue
         look, errors = style[column(cell)], [_error(v, cell) for v in mine]
@@ -97,7 +97,7 @@ def _panel(axes: Axes, cells: Sequence[Cell], levels: Sequence[Level], style: di
         if cell.order is not None:
             ends.append((mine[-1].elements, errors[-1], f"{cell.order:.1f}", look.colour))
     low, high = np.log10(axes.get_ylim())
-    points = 2.3 * 72 / 1.35 / (high - low)  # of a decade, about
+    points = 1.7 * 72 / (high - low)  # of a decade: panels are about 1.7 inches high
     heights = spread([np.log10(y) * points for _, y, _, _ in ends], 9.0)
     for (x, y, text, colour), h in zip(ends, heights, strict=True):
         shift = h - np.log10(y) * points

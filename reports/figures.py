@@ -11,15 +11,12 @@ from matplotlib.ticker import LogLocator
 
 from ..cases.results import Cell, Run, Verdict
 from ..cases.verdict import unsigned
-from .style import FAINT, INK, LINES, MUTED, Look, beside, house, looks
-from .summary import column, columns, labels
+from .style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, house, key, looks, title
+from .summary import amount, column, columns, labels
 from .units import Units
 
-ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 24, 30, 40, 50)
+ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 """Multiples of the rotor's speed that are worth a ray."""
-
-FLOOR = 1e-12
-"""Differences below this are rounding, and are drawn here."""
 
 
 def campbell(run: Run, case: str, units: Units) -> Figure | None:
@@ -33,30 +30,33 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
     speeds = sorted({omega for line in lines.values() for omega in line})
     if len(speeds) < 2:
         return None
+    answers = [c.frequency for c in cells if c.frequency is not None]
+    shown = columns([c for c in cells if c.frequency is not None])
     with house():
-        figure = Figure((7.6, 5.2))
-        axes = figure.add_axes((0.085, 0.17, 0.76, 0.74))
-        x = [omega * units.speeds for omega in speeds]
-        top = 1.06 * max(f for line in lines.values() for f in line.values()) * units.frequencies
-        axes.set_xlim(0, 1.03 * x[-1])
-        axes.set_ylim(0, top)
+        low = band(len(shown) + 1)
+        height = 4.6 + low
+        figure = Figure((WIDTH, height))
+        axes = figure.add_axes((0.08, low / height, 0.78, 1 - (low + 0.68) / height))
+        axes.set_xlim(0, 1.03 * speeds[-1] * units.speeds)
+        axes.set_ylim(
+            0, 1.05 * max([*answers, *(f for line in lines.values() for f in line.values())]) * units.frequencies
+        )
         _rays(axes, units)
         ends = []
         for name, line in lines.items():
             omega = np.array(sorted(line))
-            squares = np.array([line[o] for o in omega]) ** 2
-            fine = np.linspace(omega[0], omega[-1], 200)
-            curve = np.sqrt(np.interp(fine**2, omega**2, squares))
+            fine = np.linspace(omega[0], omega[-1], 120)
+            curve = np.sqrt(np.interp(fine**2, omega**2, np.square([line[o] for o in omega]))) * units.frequencies
             style = LINES.get(name.split()[0], "-")
-            axes.plot(fine * units.speeds, curve * units.frequencies, color=INK, lw=1.0, ls=style, zorder=3)
-            ends.append((curve[-1] * units.frequencies, name))
-        handles = _markers(axes, run, cells, units)
+            axes.plot(fine * units.speeds, curve, color=INK, lw=1.0, ls=style, zorder=3)
+            ends.append((float(curve[-1]), name))
+        handles = _markers(axes, run, cells, shown, units)
         beside(axes, ends)
-        axes.set_xticks(x)
+        axes.set_xticks([omega * units.speeds for omega in speeds])
         axes.set_xlabel(units.speed_label)
         axes.set_ylabel(units.frequency_label)
-        figure.text(0.015, 0.96, f"{case}: natural frequencies against rotor speed", weight="bold", size=10.5)
-        figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.07, 0.0), ncols=4, columnspacing=1.6)
+        title(figure, f"{case}: natural frequencies against rotor speed")
+        key(figure, handles, 0.08)
     return figure
 
 
@@ -99,14 +99,13 @@ def _rays(axes: Axes, units: Units) -> None:
         )
 
 
-def _markers(axes: Axes, run: Run, cells: Sequence[Cell], units: Units) -> list[Line2D]:
+def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], units: Units) -> list[Line2D]:
     """Hollow markers, nested: the first code's is the largest, so that codes that agree can all be seen."""
     style = looks(columns(run.cells))
-    shown = [name for name in columns(cells) if any(c.frequency for c in cells if column(c) == name)]
     handles = [Line2D([], [], color=INK, lw=1.0, label="core, converged")]
     for rank, name in enumerate(shown):
         mine = [c for c in cells if column(c) == name and c.frequency is not None]
-        (line,) = axes.plot(
+        handles += axes.plot(
             [c.omega * units.speeds for c in mine],
             [(c.frequency or 0.0) * units.frequencies for c in mine],
             ls="",
@@ -119,8 +118,14 @@ def _markers(axes: Axes, run: Run, cells: Sequence[Cell], units: Units) -> list[
             clip_on=False,
             zorder=4,
         )
-        handles.append(line)
     return handles
+
+
+FACES: dict[Verdict, str] = {"pass": "full", "known difference": "left", "inconclusive": "none", "fail": "full"}
+"""How a marker is filled; a failure is a cross."""
+
+BELOW = 1e-5
+"""Differences smaller than this part of the smallest target are drawn at the left edge."""
 
 
 def differences(run: Run, case: str, units: Units) -> Figure | None:
@@ -131,9 +136,9 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
     names, style, modes = columns(cells), looks(columns(run.cells)), labels(cells)
     tracks = max(c.mode for c in cells)
     with house():
-        height = 1.6 + 0.62 * len(names)
-        figure = Figure((7.6, height))
-        axes = figure.add_axes((0.205, 0.9 / height, 0.775, 1 - 1.5 / height))
+        low, height = band(1), 1.36 + 0.6 * len(names)
+        figure = Figure((WIDTH, height))
+        axes = figure.add_axes((0.2, low / height, 0.58, 1 - (low + 0.55) / height))
         axes.set_xscale("log")
         axes.set_xlim(*_decades(cells))
         axes.set_ylim(len(names) - 0.5, -0.5)
@@ -142,21 +147,20 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
             if row % 2:
                 axes.axhspan(row - 0.5, row + 0.5, color="#f5f5f5", lw=0, zorder=0)
             _row(axes, row, mine, tracks, style[name])
-            _targets(axes, row, mine)
-            _worst(axes, row, mine, tracks, units, modes)
+            worst = max(mine, key=lambda c: abs(c.difference or 0.0))
+            text = f"{amount(worst.difference or 0.0, worst.target)}\n{modes[worst]}, {units.at(worst.omega)}"
+            axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
         axes.set_yticks(range(len(names)), names)
-        axes.tick_params(axis="y", length=0)
+        axes.tick_params(axis="y", length=0, pad=8)
         axes.xaxis.set_major_locator(LogLocator(numticks=20))
-        axes.set_xlabel(f"|difference| from core, relative, ± uncertainty; in each row from above: modes 1 to {tracks}")
-        figure.text(0.015, 1 - 0.24 / height, f"{case}: differences, every mode and speed", weight="bold", size=10.5)
+        axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
+        axes.annotate("largest", (1.02, -0.5), (0, 4), ("axes fraction", "data"), "offset points", size=8, color=MUTED)
+        title(figure, f"{case}: differences, every mode and speed")
         present: list[Verdict] = [v for v in FACES if v in {c.verdict for c in cells}]
         keys = [Line2D([], [], ls="", color=INK, ms=5, label=v, **_face(v, "o", INK)) for v in present]
-        figure.legend(handles=keys, loc="lower left", bbox_to_anchor=(0.19, 0.0), ncols=4, handletextpad=0.1)
+        tracked = Line2D([], [], ls="", label=f"in each row, from above: modes 1 to {tracks}")
+        key(figure, [*keys, *([tracked] if tracks > 1 else [])], 0.2, across=5)
     return figure
-
-
-FACES: dict[Verdict, str] = {"pass": "full", "known difference": "left", "inconclusive": "none", "fail": "full"}
-"""How a marker is filled; a failure is a cross."""
 
 
 def _face(verdict: Verdict, marker: str, colour: str) -> dict[str, Any]:
@@ -171,45 +175,25 @@ def _face(verdict: Verdict, marker: str, colour: str) -> dict[str, Any]:
 
 
 def _decades(cells: Sequence[Cell]) -> tuple[float, float]:
-    sizes = [max(abs(c.difference or 0.0), FLOOR) for c in cells] + [c.target for c in cells]
-    return 10.0 ** np.floor(np.log10(min(sizes)) - 0.2), 10.0 ** np.ceil(np.log10(2 * max(sizes)))
-
-
-def _height(row: int, mode: int, tracks: int) -> float:
-    return row + 0.32 * (2 * (mode - 1) / max(tracks - 1, 1) - 1)
+    floor = BELOW * min(c.target for c in cells)
+    sizes = [abs(c.difference or 0.0) for c in cells] + [c.target for c in cells]
+    low = 10.0 ** np.floor(np.log10(max(min(sizes), floor)) + 1e-9)
+    return low, 10.0 ** np.ceil(np.log10(2 * max(sizes)))
 
 
 def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -> None:
+    """The targets as upright lines, a bar and a marker a cell."""
     left = axes.get_xlim()[0]
-    for c in cells:
-        d, u, y = abs(c.difference or 0.0), c.uncertainty or 0.0, _height(row, c.mode, tracks)
-        axes.plot([max(d - u, left), max(d + u, left)], [y, y], color=look.colour, lw=0.7, alpha=0.5, zorder=2)
-        axes.plot([max(d, FLOOR)], [y], ls="", ms=4.5, zorder=3, **_face(c.verdict, look.marker, look.colour))
-
-
-def _targets(axes: Axes, row: int, cells: Sequence[Cell]) -> None:
-    for target in sorted({c.target for c in cells}):
-        axes.plot([target, target], [row - 0.5, row + 0.5], color=INK, lw=1.2, zorder=4)
+    d = np.array([abs(c.difference or 0.0) for c in cells])
+    u = np.array([c.uncertainty or 0.0 for c in cells])
+    y = row + 0.32 * np.array([2 * (c.mode - 1) / max(tracks - 1, 1) - 1 for c in cells])
+    axes.hlines(y, np.maximum(d - u, left), np.maximum(d + u, left), color=look.colour, lw=0.7, alpha=0.5, zorder=2)
+    for verdict in dict.fromkeys(c.verdict for c in cells):
+        k = np.array([c.verdict == verdict for c in cells])
+        face = _face(verdict, look.marker, look.colour)
+        axes.plot(np.maximum(d, left)[k], y[k], ls="", ms=4.5, zorder=3, clip_on=False, **face)
+    targets = sorted({c.target for c in cells})
+    axes.vlines(targets, row - 0.5, row + 0.5, color=INK, lw=1.2, zorder=4)
     if row == 0:
-        text = ", ".join(unsigned(t) for t in sorted({c.target for c in cells}))
-        axes.annotate(
-            f"target {text}", (cells[0].target, -0.5), (0, 4), textcoords="offset points", ha="center", size=8
-        )
-
-
-def _worst(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, units: Units, modes: dict[Cell, str]) -> None:
-    c = max(cells, key=lambda c: abs(c.difference or 0.0))
-    d = max(abs(c.difference or 0.0), FLOOR)
-    low, high = np.log10(axes.get_xlim())
-    leftwards = (np.log10(d) - low) / (high - low) > 0.72
-    axes.annotate(
-        f"{modes[c]}, {units.at(c.omega)}",
-        (d if leftwards else d + (c.uncertainty or 0.0), _height(row, c.mode, tracks)),
-        (-6 if leftwards else 6, 0),
-        textcoords="offset points",
-        ha="right" if leftwards else "left",
-        va="center",
-        size=7.5,
-        color=INK,
-        zorder=5,
-    )
+        text = f"target {', '.join(unsigned(t) for t in targets)}"
+        axes.annotate(text, (targets[0], -0.5), (0, 4), textcoords="offset points", ha="center", size=8)

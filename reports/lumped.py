@@ -9,7 +9,7 @@ from matplotlib.ticker import MultipleLocator, NullLocator
 
 from ..cases.lumping import CASE, MASSES, OMEGA, STIFFNESSES, variant
 from ..cases.results import Run
-from .style import COLOURS, FAINT, INK, MUTED, beside, house
+from .style import COLOURS, FAINT, INK, WIDTH, beside, house, title
 
 PAPER = 50
 """Elements of the paper's cantilever."""
@@ -70,15 +70,14 @@ def lumping(run: Run) -> Figure | None:
     if found is None:
         return None
     with house():
-        figure = Figure((7.6, 4.0))
-        left = figure.add_axes((0.125, 0.14, 0.36, 0.62))
-        right = figure.add_axes((0.605, 0.14, 0.2, 0.62))
+        figure = Figure((WIDTH, 4.0))
+        left = figure.add_axes((0.115, 0.125, 0.4, 0.64))
+        right = figure.add_axes((0.62, 0.125, 0.21, 0.64))
         _parts(left, found)
         _falling(right, found)
         shares = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
-        figure.text(0.015, 0.945, f"How much of the error is the lumped mass? {shares}", weight="bold", size=10.5)
         about = f"{CASE}, {OMEGA:g} rad/s, chordwise modes 1 to {len(found.shares)}; from core with its switches"
-        figure.text(0.015, 0.895, about, size=8.5, color=MUTED)
+        title(figure, f"How much of the error is the lumped mass? {shares}", about)
     return figure
 
 

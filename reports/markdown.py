@@ -13,12 +13,11 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from ..cases.verdict import unsigned
 from . import lumped, summary
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
-from .summary import SYMBOL, column, columns
+from .summary import SYMBOL, amount, broad, column, columns
 from .units import BY_KEY, Units
 
 FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
@@ -116,11 +115,11 @@ def headline(run: Run) -> list[str]:
 
 def heat(run: Run) -> str:
     """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it."""
-    names = columns(run.cells)
+    names = columns(run.cells, broad)
     rows = []
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
-        rows.append({"case": plain(case)} | {plain(n): _heat([c for c in mine if column(c) == n]) for n in names})
+        rows.append({"case": plain(case)} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
     return table(rows)
 
 
@@ -129,7 +128,8 @@ def _heat(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    return f"{SYMBOL[verdict]} {verdict}" + (f"<br>{unsigned(size)}" if size is not None else "")
+    shown = f"<br>{amount(size, worst.target)}" if worst and size is not None else ""
+    return f"{SYMBOL[verdict]} {verdict}{shown}"
 
 
 @dataclass(frozen=True)
@@ -138,6 +138,7 @@ class Section:
 
     name: str
     setting: Setting | None
+    first: bool
     facts: str
     focus: str
     main: str
@@ -160,6 +161,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     return Section(
         name=case,
         setting=setting,
+        first=case == next((c for c in summary.cases(run) if c.partition("/")[0] == case.partition("/")[0]), case),
         facts="; ".join(f"{k}: {v}" for k, v in setting.facts.items()) if setting else "",
         focus=unit.at(focus) if focus is not None else "",
         main=tables[focus] if focus is not None else "",

@@ -13,6 +13,7 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
@@ -69,6 +70,35 @@ def looks(codes: Sequence[str]) -> dict[str, Look]:
         code: Look(COLOURS[k % len(COLOURS)], MARKERS[(k + k // len(COLOURS)) % len(MARKERS)])
         for k, code in enumerate(codes)
     }
+
+
+WIDTH = 8.6
+"""Of every figure, inches."""
+
+
+def key(figure: Figure, handles: Sequence[Line2D], left: float, across: int = 4) -> None:
+    """The legend, in a band along the lower edge that ``band`` says the height of."""
+    figure.legend(
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(left - 0.02, 0.0),
+        ncols=across,
+        columnspacing=1.6,
+        handletextpad=0.5,
+        labelspacing=0.35,
+    )
+
+
+def band(count: int, across: int = 4) -> float:
+    """Height (inches) of the band that holds a legend of ``count`` entries, and of the axis' label above it."""
+    return 0.62 + 0.185 * -(-count // across)
+
+
+def title(figure: Figure, text: str, below: str = "") -> None:
+    """The figure's title in its upper left corner, and a quieter line under it."""
+    height = figure.get_figheight()
+    figure.text(0.012, 1 - 0.25 / height, text, weight="bold", size=10.5)
+    figure.text(0.012, 1 - 0.44 / height, below, size=8.5, color=MUTED)
 
 
 def save(figure: Figure, path: Path) -> None:

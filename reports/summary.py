@@ -4,11 +4,10 @@ Pure functions of a run, shared by terminal, Markdown and figures, so that all t
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import get_args
 
 from ..cases.results import Cell, Run, Verdict
-from ..cases.verdict import percent, unsigned
 
 SYMBOL: dict[Verdict, str] = {
     "pass": "✔",
@@ -21,6 +20,9 @@ SYMBOL: dict[Verdict, str] = {
 """A sign beside each verdict's name; never instead of it."""
 
 GRAVEST_FIRST: tuple[Verdict, ...] = ("fail", "inconclusive", "known difference", "pass", "not run", "not applicable")
+
+TINY = 1e-6
+"""Targets below this are those of the same discretisation, and percent is no unit for them."""
 
 BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
 """Verdicts that make a run end with status 1."""
@@ -38,8 +40,12 @@ def gravest(cells: Iterable[Cell]) -> Verdict:
 
 
 def size(cell: Cell) -> float | None:
-    """How far the code is from the answer, relative: from core with all effects where the difference is a known one."""
-    if cell.verdict == "known difference" and cell.frequency is not None and cell.full is not None:
+    """How far the code is from the answer, relative.
+
+    Where it agrees with core lacking the same effects, its known difference is that from core with all of them.
+    """
+    agrees = cell.difference is not None and abs(cell.difference) <= cell.target
+    if cell.verdict == "known difference" and agrees and cell.frequency is not None and cell.full is not None:
         return cell.frequency / cell.full - 1.0
     return cell.difference
 
@@ -68,14 +74,19 @@ def cases(run: Run) -> list[str]:
     return list(dict.fromkeys(c.case for c in run.cells))
 
 
-def columns(cells: Iterable[Cell]) -> list[str]:
-    """Names of columns, in the run's order: a code's name, with its role where that is not simply to be a code."""
-    return list(dict.fromkeys(column(c) for c in cells))
-
-
 def column(cell: Cell) -> str:
     """The column a cell stands in."""
-    return {"discretisation": "source's discretisation", "table": f"{cell.code} (table)"}.get(cell.role, cell.code)
+    return "core as in source" if cell.role == "discretisation" else cell.code
+
+
+def broad(cell: Cell) -> str:
+    """The column a cell stands in where cases share a table: all printed tables in one."""
+    return "printed tables" if cell.role == "table" else column(cell)
+
+
+def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[str]:
+    """Names of columns, in the run's order."""
+    return list(dict.fromkeys(of(c) for c in cells))
 
 
 def labels(cells: Sequence[Cell]) -> dict[Cell, str]:
@@ -100,10 +111,29 @@ def _basis(cell: Cell) -> tuple[str, float, str]:
     return cell.case, cell.omega, "" if cell.reference == cell.full else column(cell)
 
 
+def amount(value: float, target: float) -> str:
+    """The size of a relative number, as short as a table wants: in percent, or as it is where the target is tiny."""
+    if target < TINY:
+        return f"{abs(value):.0e}"
+    size = 100 * abs(value)
+    if 0 < size < 5e-5:
+        return "<0.0001 %"
+    return (
+        f"{size:.4f} %"
+        if size < 0.1
+        else f"{size:.3f} %"
+        if size < 1
+        else f"{size:.2f} %"
+        if size < 10
+        else f"{size:.0f} %"
+    )
+
+
 def plus_minus(cell: Cell) -> str:
     """``+0.0021 % ± 0.0004 %``; an unknown uncertainty is said to be unknown."""
     shown = size(cell)
     if shown is None:
         return ""
-    known = f"± {unsigned(cell.uncertainty)}" if cell.uncertainty is not None else "± unknown"
-    return f"{percent(shown)} {known}"
+    text = amount(shown, cell.target)
+    sign = "" if text.startswith("<") else "−" if shown < 0 else "+"
+    return f"{sign}{text} ± {'unknown' if cell.uncertainty is None else amount(cell.uncertainty, cell.target)}"

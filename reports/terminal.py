@@ -1,5 +1,6 @@
 """What the command line shows while a run goes on and when it is done."""
 
+import re
 import time
 from collections.abc import Sequence
 from types import TracebackType
@@ -13,7 +14,7 @@ from ..cases.matrix import Progress as Step
 from ..cases.results import Cell, Run, Verdict
 from ..cases.sweep import Named
 from . import summary
-from .summary import SYMBOL, column, columns
+from .summary import SYMBOL, amount, broad, columns
 from .units import Units
 
 COLOUR: dict[Verdict, str] = {
@@ -76,16 +77,16 @@ class Watch:
 
 
 def matrix(run: Run) -> Table:
-    """Case × code: sign and largest difference in percent; the gravest verdict of all modes and speeds."""
+    """Case × code: sign and largest difference; the gravest verdict of all modes and speeds."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    out = Table(box=box.SIMPLE_HEAD, caption=f"largest difference from core, %; {signs}", caption_justify="left")
+    out = Table(box=box.SIMPLE_HEAD, caption=f"largest difference from core; {signs}", caption_justify="left")
     out.add_column("case", overflow="fold")
-    names = columns(run.cells)
+    names = columns(run.cells, broad)
     for name in names:
-        out.add_column(name, min_width=7, overflow="fold")
+        out.add_column(re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name), overflow="fold")
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
-        out.add_row(case, *[_field([c for c in mine if column(c) == name]) for name in names])
+        out.add_row(case.replace("/", "/\n "), *[_field([c for c in mine if broad(c) == name]) for name in names])
     return out
 
 
@@ -94,7 +95,7 @@ def _field(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    number = f" {100 * abs(size):.2g}" if size is not None else ""
+    number = f" {amount(size, worst.target)}" if worst and size is not None else ""
     return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
 
 

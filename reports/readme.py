@@ -1,0 +1,77 @@
+"""The README's table, written from a run by a command: ``python -m southwell.reports.readme [results.jsonl]``.
+
+The few rows that the table needs are kept beside this module, so that anyone can see that the table says what they say.
+"""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from ..cases import results
+from ..cases.lumping import CASE, OMEGA
+from ..cases.results import Cell, Run
+from . import summary
+from .markdown import comparison, heat, units
+from .summary import SYMBOL, broad, columns
+
+ROWS = Path(__file__).with_name("readme.jsonl")
+README = Path(__file__).parents[1] / "README.md"
+
+BEGIN, END = "<!-- table: begin, written by `make readme` -->", "<!-- table: end -->"
+
+
+def condense(run: Run) -> Run:
+    """The rows that ``block`` needs: of each case and column the worst cell, and all of the paper's Table 1."""
+    cells: list[Cell] = []
+    for case in summary.cases(run):
+        mine = [c for c in run.cells if c.case == case]
+        for name in columns(mine, broad):
+            group = [c for c in mine if broad(c) == name]
+            grave = summary.gravest(group)
+            cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
+    cells += [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
+    kept = dict.fromkeys(replace(c, seconds=None) for c in cells)
+    return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings)
+
+
+def block(run: Run) -> str:
+    """The README's part between its markers."""
+    table1 = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
+    made = ", ".join(f"{name} {version}" for name, version in run.versions.items())
+    return f"""{heat(run)}
+
+In each field the gravest verdict of all modes and speeds, and the largest difference from core behind it (of a known
+difference: from core with all effects). {", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())}.
+
+`{CASE}` at {units(run, CASE).at(OMEGA)}, Table 1 of the paper:
+
+{comparison(table1, units(run, CASE))}
+
+From `{run.command}` with {made}.
+"""
+
+
+def put(text: str, new: str) -> str:
+    """``text`` with ``new`` between the markers.
+
+    Raises:
+        ValueError: if the markers are not there.
+    """
+    head, begin, rest = text.partition(BEGIN)
+    _, end, tail = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"README: the markers {BEGIN} and {END} are missing: put them where the table shall stand")
+    return f"{head}{BEGIN}\n\n{new}\n{END}{tail}"
+
+
+def main() -> None:
+    """Take the rows from a results file, if one is given, and write the README's table."""
+    if sys.argv[1:]:
+        ROWS.unlink(missing_ok=True)
+        kept = condense(results.read(Path(sys.argv[1])))
+        results.append(ROWS, kept.cells, run=kept)
+    README.write_text(put(README.read_text(encoding="utf-8"), block(results.read(ROWS))), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
