@@ -26,8 +26,9 @@ lint: $(INSTALLED)
 	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
+# from the results of the last make verify
 readme: $(INSTALLED)
-	$(BIN)/southwell readme
+	$(BIN)/python -m southwell.reports.readme reports/out/results.jsonl
 
 $(INSTALLED): pyproject.toml
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))

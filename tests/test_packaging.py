@@ -1,0 +1,119 @@
+"""What is installed is what is here: packages, their data, and nothing that belongs to one machine."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from packaging.version import Version
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+SETUPTOOLS = PROJECT["tool"]["setuptools"]
+
+ELSEWHERE = {"tests"}
+"""Folders with an ``__init__.py`` that are not installed."""
+
+
+def tracked() -> list[Path]:
+    """Files under version control; in an unpacked source distribution, all files."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a checkout")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True).stdout
+    return [ROOT / name for name in listed.split("\0") if name and (ROOT / name).is_file()]
+
+
+def folder(package: str) -> Path:
+    return ROOT.joinpath(*package.split(".")[1:])
+
+
+def data_files() -> set[str]:
+    """Paths, from the root, of what ``package-data`` names."""
+    globs = SETUPTOOLS["package-data"].items()
+    return {str(p.relative_to(ROOT)) for package, names in globs for n in names for p in folder(package).glob(n)}
+
+
+def test_every_folder_that_is_a_package_is_listed_and_no_other() -> None:
+    found = {
+        ".".join(("southwell", *path.relative_to(ROOT).parent.parts))
+        for path in tracked()
+        if path.name == "__init__.py" and path.relative_to(ROOT).parts[0] not in ELSEWHERE
+    }
+    assert set(SETUPTOOLS["packages"]) == found
+
+
+def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
+    floors = {"core", "references", "cases", "reports"}
+    beside = {
+        str(p.relative_to(ROOT))
+        for p in tracked()
+        if p.relative_to(ROOT).parts[0] in floors and p.suffix not in {".py", ".md"}
+    }
+    assert beside - data_files() == {"reports/readme.jsonl"}  # for the README alone
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
+    """Names of the files in a wheel built from a copy of the checkout, without the network."""
+    needed = Version(re.search(r"setuptools>=(\d+)", PROJECT["build-system"]["requires"][0])[1])  # type: ignore[index]
+    if Version(version("setuptools")) < needed:
+        pytest.skip(f"setuptools {version('setuptools')} is older than {needed}: pip install -e '.[dev]'")
+    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
+    for path in tracked():
+        copy = source / path.relative_to(ROOT)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, copy)
+    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out), "."]
+    built = subprocess.run(command, cwd=source, capture_output=True, text=True, env={**os.environ, "PIP_NO_INDEX": "1"})
+    assert built.returncode == 0, built.stderr
+    (file,) = out.glob("*.whl")
+    return set(zipfile.ZipFile(file).namelist())
+
+
+def test_the_wheel_has_every_module_and_every_data_file(wheel: set[str]) -> None:
+    modules = {
+        f"southwell/{path.relative_to(ROOT)}"
+        for path in tracked()
+        if path.suffix == ".py" and path.relative_to(ROOT).parts[0] not in ELSEWHERE
+    }
+    assert modules <= wheel
+    assert {f"southwell/{name}" for name in data_files()} <= wheel
+    assert any(name.endswith(".jinja") for name in data_files())
+    assert any(name.endswith(".csv") for name in data_files())
+
+
+def test_the_wheel_has_neither_tests_nor_anything_else(wheel: set[str]) -> None:
+    assert not [name for name in wheel if "/tests/" in name or not name.startswith("southwell")]
+    assert any(name.endswith("licenses/LICENSE") for name in wheel)
+
+
+HOME = re.compile(r"(?<![\w.:/])/(?:home|root|tmp|work|Users|mnt|farm)/\w|[A-Z]:\\\\Users")
+
+
+def test_no_file_speaks_of_one_machine() -> None:
+    found = []
+    for path in tracked():
+        text = path.read_text(encoding="utf-8", errors="replace")
+        found += [f"{path.name}:{k}" for k, line in enumerate(text.splitlines(), 1) if HOME.search(line)]
+        if path != ROOT / ".ci" / "run":  # which looks beside the checkout for blades, and does without
+            found += [f"{path.name}: ../ outside" for line in text.splitlines() if re.search(r"\.\./sha[r]ed", line)]
+    assert not found
+
+
+def test_the_patterns_of_that_test_find_such_paths() -> None:
+    assert HOME.search("see " + "/".join(["", "home", "someone", "x"]))
+    assert not HOME.search("https://example.org/home/page")
+    assert not HOME.search("kg/m or N/work")
+
+
+def test_versions_and_entry_point_are_those_of_the_project() -> None:
+    assert version("southwell") == PROJECT["project"]["version"]
+    assert f"## [{PROJECT['project']['version']}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    module, _, function = PROJECT["project"]["scripts"]["southwell"].partition(":")
+    assert callable(getattr(__import__(module, fromlist=[function]), function))

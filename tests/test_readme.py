@@ -1,0 +1,91 @@
+"""The README says what is so: its table is that of a run, its examples work."""
+
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases import library, results
+from southwell.cases.lumping import CASE, OMEGA
+from southwell.cases.schema import decode
+from southwell.core.model import Model
+from southwell.core.solve import modes
+from southwell.references import codes
+from southwell.reports import cli, readme, summary
+
+from . import samples
+
+TEXT = readme.README.read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.S)
+
+
+def test_the_table_is_that_of_the_rows_beside_it() -> None:
+    assert readme.put(TEXT, readme.block(results.read(readme.ROWS))) == TEXT, "run `make readme`"
+
+
+def test_the_rows_are_of_all_cases_and_codes_there_are() -> None:
+    run = results.read(readme.ROWS)
+    assert set(summary.cases(run)) == {v.name for name in library.names() for v in library.load(name).variants}
+    assert {codes.code(name).name for name in codes.OURS} <= {c.code for c in run.cells}
+
+
+def test_cores_frequencies_in_the_table_are_those_that_core_gives() -> None:
+    cells = [c for c in results.read(readme.ROWS).cells if c.case == CASE and c.omega == OMEGA and c.full]
+    blade = library.load(CASE).variants[0].blade
+    found = modes(blade, OMEGA, 160, 10).frequencies
+    for cell in cells:
+        assert np.abs(found / cell.full - 1.0).min() < 1e-7
+    assert len({round(c.full or 0.0, 6) for c in cells}) == 6
+
+
+def test_the_papers_own_discretisation_in_the_table_rounds_to_the_printed_digits() -> None:
+    cells = [c for c in results.read(readme.ROWS).cells if (c.case, c.omega, c.role) == (CASE, OMEGA, "discretisation")]
+    chordwise = [c.frequency for c in cells if c.family == "chordwise"]
+    assert [f"{f:.4g}" for f in sorted(f for f in chordwise if f)] == ["11.71", "70.37", "189.7"]
+    blade = library.load(CASE).variants[0].blade
+    model = Model(rotary_inertia=False)
+    found = modes(blade, OMEGA, 50, 6, mass="half_end", stiffness="parent", model=model).frequencies
+    np.testing.assert_allclose(sorted({c.frequency for c in cells if c.frequency}), found, rtol=1e-9)
+
+
+def test_condensed_rows_give_the_same_heat_table_as_all_rows() -> None:
+    whole = samples.run()
+    assert readme.heat(readme.condense(whole)) == readme.heat(whole)
+    assert len(readme.condense(whole).cells) < len(whole.cells)
+
+
+def test_without_markers_there_is_no_place_for_a_table() -> None:
+    with pytest.raises(ValueError, match="markers"):
+        readme.put("# A README without them", "table")
+
+
+def test_the_example_of_a_case_is_one() -> None:
+    (text,) = (b for b in blocks("toml") if "[blade]" in b)
+    case = decode(tomllib.loads(text), "README.md", Path())
+    assert case.name == "my-beam"
+    assert len(case.variants[0].speeds) == 4
+
+
+def test_the_entry_point_of_the_readme_is_the_one_that_is_read() -> None:
+    assert any(codes.GROUP in b for b in blocks("toml"))
+
+
+def test_the_commands_of_the_readme_are_commands() -> None:
+    lines = [line for b in blocks("console") for line in b.splitlines() if line.startswith("southwell ")]
+    assert len(lines) >= 6
+    for line in lines:
+        command, *_ = cli.app.parse_args(shlex.split(line)[1:], exit_on_error=False, print_error=False)
+        assert command.__name__ == line.split()[1]
+
+
+def test_targets_of_make_in_the_readme_are_in_the_makefile() -> None:
+    makefile = (readme.README.parent / "Makefile").read_text(encoding="utf-8")
+    targets = re.findall(r"^make (\w+)", "\n".join(blocks("console")), re.M)
+    assert targets
+    assert all(re.search(rf"^{t}:", makefile, re.M) for t in targets)
