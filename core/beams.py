@@ -29,16 +29,19 @@ class Points:
         element: (q,) the element each rides on.
         rest: (q, 6) ζ₀, logarithm of the rest pose in the frame of end a.
         shape: (q, 6, 6) L, ζ from η.
+        bubble: (q, 6, 6) ζ from the element's internal coordinates β.
         mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
     """
 
     element: Index
     rest: Array
     shape: Array
+    bubble: Array
     mass: Array
 
 
-NO_POINTS = Points(np.zeros(0, dtype=np.intp), np.zeros((0, 6)), np.zeros((0, 6, 6)), np.zeros((0, 6, 6)))
+_NONE = np.zeros((0, 6, 6))
+NO_POINTS = Points(np.zeros(0, dtype=np.intp), np.zeros((0, 6)), _NONE, _NONE, _NONE)
 
 
 @dataclass(frozen=True)
@@ -49,28 +52,37 @@ class Beams:
         measure: of strain, see ``elements``.
         rest: (n, 4, 4) rest pose of end b in the frame of end a.
         stiffness: (n, 6, 6) for that measure.
+        shortening: (n, 6, 6) G of the corotational measure.
         points: the inertia inside.
         preload: (n, 6) force conjugate to the strain, at zero strain.
+        inner_preload: (n, 6) force conjugate to β, at β = 0.
         eta: (n, 6) logarithm of ``rest``.
     """
 
     measure: Measure
     rest: Array
     stiffness: Array
+    shortening: Array
     points: Points
     preload: Array
+    inner_preload: Array
     eta: Array = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "eta", sp.log(self.rest))
 
+    @property
+    def inner(self) -> int:
+        """How many internal coordinates an element has: six where it has mass inside, else none."""
+        return 6 if len(self.points.element) else 0
+
 
 @dataclass(frozen=True)
 class Pencil:
-    """Residual wrench (n, 12) on ends (a, b) and its linearisation M ξ̈ + C ξ̇ + K ξ, each (n, 12, 12).
+    """Residual (n, d) on ends a, b and internal coordinates β, and its linearisation M, C, K, each (n, d, d); d = 12 or 18.
 
     Twists and wrenches are in a snapshot of each element's frame a; variations of wrenches are taken along with the body
-    they act on, and ξ is seen in the rotating frame. K is split into ``rest`` (n, 12, 12) and the ``spring`` (n, 6, 6) that
+    they act on, and ξ is seen in the rotating frame. K is split into ``rest`` (n, d, d) and the ``spring`` (n, 6, 6) that
     acts on ρ = ξ_b − ξ_a: kept apart, its energy loses no digits to cancellation.
     """
 
@@ -83,7 +95,9 @@ class Pencil:
     @property
     def K(self) -> Array:
         """The whole stiffness."""
-        return self.rest + on_ends(self.spring, self.spring)
+        K = self.rest.copy()
+        K[:, :12, :12] += on_ends(self.spring, self.spring)
+        return K
 
 
 def end_stiffness(measure: Measure, rest: Array, twist_stiffness: Array) -> Array:
@@ -92,23 +106,37 @@ def end_stiffness(measure: Measure, rest: Array, twist_stiffness: Array) -> Arra
     return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
 
 
-def riding(rest: Array, element: Index, pose: Array, shape: Array, mass: Array) -> Points:
-    """Points at rest poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b."""
+def riding(rest: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
+    """Points at rest poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b plus ``bubble`` β."""
     zeta = sp.log(pose)
-    L = sp.tangent_inverse(zeta) @ shape @ sp.tangent(sp.log(rest))[element]
-    return Points(element=element, rest=zeta, shape=L, mass=mass)
+    slope = sp.tangent_inverse(zeta)
+    L = slope @ shape @ sp.tangent(sp.log(rest))[element]
+    return Points(element=element, rest=zeta, shape=L, bubble=slope @ bubble, mass=mass)
 
 
-def place(beams: Beams, points: Points, eta: Array) -> tuple[Array, Array]:
-    """Logarithms ζ (q, 6) of the points' poses in the frames a, and ∂ζ/∂ξ_b (q, 6, 6), from η (n, 6) of the ends."""
+def place(beams: Beams, points: Points, eta: Array, beta: Array) -> tuple[Array, Array]:
+    """Logarithms ζ (q, 6) of the points' poses in the frames a, and ∂ζ/∂(ρ, β) (q, 6, 12), from η and β (n, 6)."""
     e = points.element
-    zeta = points.rest + (points.shape @ (eta - beams.eta)[e][..., None])[..., 0]
-    return zeta, points.shape @ sp.tangent_inverse(eta)[e]
+    zeta = points.rest + (points.shape @ (eta - beams.eta)[e][..., None] + points.bubble @ beta[e][..., None])[..., 0]
+    return zeta, np.concatenate([points.shape @ sp.tangent_inverse(eta)[e], points.bubble], axis=-1)
+
+
+def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational") -> Beams:
+    """One massless element with a given 6×6 stiffness for its strain, between frames at relative pose ``rest`` (4, 4).
+
+    Raises:
+        ValueError: if the stiffness is not a symmetric 6×6 matrix.
+    """
+    k = np.asarray(stiffness, float)
+    if k.shape != (6, 6) or not np.allclose(k, k.T, rtol=1e-9, atol=1e-12 * np.abs(k).max()):
+        raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
+    load = np.zeros(6) if preload is None else np.asarray(preload, float)
+    return Beams(measure, rest[None], k[None], np.zeros((1, 6, 6)), NO_POINTS, load[None], np.zeros((1, 6)))
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
     """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, at rest."""
-    rate = elements.strain_rate(beams.measure, beams.rest, beams.rest)
+    rate = elements.strain_rate(beams.measure, beams.rest, beams.shortening, beams.rest)
     return (beams.stiffness @ rate @ rho[..., None])[..., 0]
 
 
@@ -117,36 +145,36 @@ def massless(beams: Beams) -> Beams:
     return replace(beams, points=NO_POINTS)
 
 
-def prestressed(beams: Beams, preload: Array) -> Beams:
-    """The same elements with another preload."""
-    return replace(beams, preload=preload)
-
-
-def pencil(beams: Beams, x: Array, frame: Array, gravity: Array, model: Model = FULL) -> Pencil:
+def pencil(beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, model: Model = FULL) -> Pencil:
     """Assemble residual and matrices of all elements.
 
     Args:
         beams: the elements.
         x: (n, 4, 4) pose of b in the frame of a.
+        beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
         model: the effects kept (``geometric`` and ``coriolis`` matter here).
     """
+    law = beams.measure, beams.rest, beams.shortening
     eta = sp.log(x)
-    s, E = elements.force(beams.measure, beams.rest, x, beams.stiffness, beams.preload)
+    s = beams.preload + (beams.stiffness @ elements.strain(*law, x)[..., None])[..., 0]
+    E = elements.strain_rate(*law, x)
     Et = np.swapaxes(E, -1, -2)
     w = (Et @ s[..., None])[..., 0]
     spring = Et @ beams.stiffness @ E
     if model.geometric:
-        spring = spring + elements.wrench_derivative(beams.measure, beams.rest, x, s)
-    none = np.zeros((len(x), 12, 12))
-    out = Pencil(np.concatenate([-w, w], axis=-1), none, none, none, spring)
-    if len(beams.points.element):
-        out = _with_inertia(out, beams, eta, frame, gravity, model)
+        spring = spring + elements.wrench_derivative(*law, x, s)
+    d = 12 + beams.inner
+    none = np.zeros((len(x), d, d))
+    out = Pencil(np.concatenate([-w, w, np.zeros((len(x), d - 12))], axis=-1), none, none, none, spring)
+    if beams.inner:
+        out = _with_inertia(out, beams, eta, beta, frame, gravity, model)
     if not model.geometric:
         return out
-    taken_along = on_ends(np.zeros_like(spring), sp.cross(out.residual[:, 6:]))  # −ρ ×* (wrench on b)
-    return replace(out, rest=out.rest + taken_along) if len(beams.points.element) else replace(out, rest=taken_along)
+    rest = out.rest.copy()
+    rest[:, :12, :12] += on_ends(np.zeros_like(spring), sp.cross(out.residual[:, 6:12]))  # −ρ ×* (wrench on b)
+    return replace(out, rest=rest)
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:
@@ -157,10 +185,12 @@ def on_ends(on_a: Array, on_b: Array) -> Array:
     return out
 
 
-def _with_inertia(out: Pencil, beams: Beams, eta: Array, frame: Array, gravity: Array, model: Model) -> Pencil:
-    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H ρ acts as (I − H)ᵀ g on a and Hᵀ g on b."""
+def _with_inertia(
+    out: Pencil, beams: Beams, eta: Array, beta: Array, frame: Array, gravity: Array, model: Model
+) -> Pencil:
+    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts as Hᵀ g on them, and the rest on a."""
     points, e = beams.points, beams.points.element
-    zeta, slope = place(beams, points, eta)
+    zeta, slope = place(beams, points, eta, beta)
     T = sp.tangent(zeta)
     H = T @ slope
     to_point = sp.adjoint(sp.exp(-zeta))
@@ -171,7 +201,7 @@ def _with_inertia(out: Pencil, beams: Beams, eta: Array, frame: Array, gravity: 
         follow=model.geometric,
     )
     g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]  # from here on in a's axes, at a
-    seen = np.concatenate([np.eye(6) - H, H], axis=-1)
+    seen = np.concatenate([np.eye(6) - H[..., :6], H], axis=-1)  # from (ξ_a, ξ_b, β)
     ride = to_point @ seen
     rode = np.swapaxes(ride, -1, -2)
     start = np.searchsorted(e, np.arange(len(eta)))
@@ -179,14 +209,22 @@ def _with_inertia(out: Pencil, beams: Beams, eta: Array, frame: Array, gravity: 
     def total(a: Array) -> Array:
         return np.add.reduceat(a, start, axis=0)
 
-    force = total((np.swapaxes(seen, -1, -2) @ g[..., None])[..., 0])
+    residual = out.residual + total((np.swapaxes(seen, -1, -2) @ g[..., None])[..., 0])
+    residual[:, 12:] += beams.inner_preload + beta
     rest, spring = out.rest + total(rode @ K @ ride), out.spring
+    rest[:, 12:, 12:] += np.eye(6)
     if model.geometric:
-        # D_a g = D_point g − cross(g) H ρ, and ∂(Hᵀg)/∂ρ acts on both ends like a spring, H = T(ζ) L T⁻¹(η)
-        swing = total(np.swapaxes(seen, -1, -2) @ (sp.cross(g) @ H))
-        rest = rest - np.concatenate([-swing, swing], axis=-1)
+        # D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β, H = T(ζ) ∂ζ/∂(ρ, β)
         E = sp.tangent_inverse(eta)
-        conjugate = np.swapaxes(points.shape, -1, -2) @ np.swapaxes(T, -1, -2) @ g[..., None]
-        bend = np.swapaxes(slope, -1, -2) @ sp.tangent_transpose_derivative(zeta, g) @ slope
-        spring = spring + total(bend) + sp.tangent_inverse_transpose_derivative(eta, total(conjugate[..., 0])) @ E
-    return Pencil(out.residual + force, total(rode @ points.mass @ ride), total(rode @ C @ ride), rest, spring)
+        conjugate = total((np.swapaxes(points.shape, -1, -2) @ np.swapaxes(T, -1, -2) @ g[..., None])[..., 0])
+        bend = total(np.swapaxes(slope, -1, -2) @ sp.tangent_transpose_derivative(zeta, g) @ slope)
+        bend[:, :6, :6] += sp.tangent_inverse_transpose_derivative(eta, conjugate) @ E
+        swing = -total(np.swapaxes(seen, -1, -2) @ (sp.cross(g) @ H))
+        swing[:, 6:] += bend
+        swing[:, :6] -= bend[:, :6]
+        spring = spring + bend[:, :6, :6]
+        swing[:, 6:12, :6] -= bend[:, :6, :6]  # this part is kept in the spring
+        swing[:, :6, :6] += bend[:, :6, :6]
+        rest[:, :, 6:] += swing
+        rest[:, :, :6] -= swing[:, :, :6]
+    return Pencil(residual, total(rode @ points.mass @ ride), total(rode @ C @ ride), rest, spring)

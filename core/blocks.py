@@ -1,4 +1,8 @@
-"""Block-tridiagonal matrices with 6×6 blocks: what a chain of bodies gives."""
+"""Block-tridiagonal matrices: what a chain of bodies gives.
+
+A block holds the internal coordinates β of one element and then the six of the node beyond it, so a block is coupled to the
+next only through its last six rows.
+"""
 
 from dataclasses import dataclass
 
@@ -9,12 +13,10 @@ from scipy.linalg import cho_solve_banded, cholesky_banded, solve_banded
 
 Array = NDArray[np.float64]
 
-_WIDTH = 11  # sub-diagonals of two neighbouring 6×6 blocks
-
 
 @dataclass(frozen=True)
 class Tridiagonal:
-    """Blocks on the diagonal (n, 6, 6), above it (n−1, 6, 6) and below it (n−1, 6, 6)."""
+    """Blocks on the diagonal (n, d, d), above it (n−1, 6, d) and below it (n−1, d, 6), from the last six rows of each block."""
 
     diagonal: Array
     upper: Array
@@ -23,26 +25,33 @@ class Tridiagonal:
     @property
     def size(self) -> int:
         """Number of scalar rows."""
-        return 6 * len(self.diagonal)
+        return len(self.diagonal) * self.block
+
+    @property
+    def block(self) -> int:
+        """Rows of a block, 6 or 12."""
+        return self.diagonal.shape[-1]
 
 
 def from_elements(on_ends: Array, on_nodes: Array) -> Tridiagonal:
-    """Sum element matrices (n, 12, 12) and nodal ones (n+1, 6, 6); node 0 is clamped and dropped."""
-    diagonal = on_nodes[1:] + on_ends[:, 6:, 6:]
-    diagonal[:-1] += on_ends[1:, :6, :6]
-    return Tridiagonal(diagonal, on_ends[1:, :6, 6:], on_ends[1:, 6:, :6])
+    """Sum element matrices (n, d+6, d+6), ordered a, b, β, and nodal ones (n+1, 6, 6); node 0 is clamped and dropped."""
+    own = np.r_[12 : on_ends.shape[-1], 6:12]  # β, then b
+    diagonal = on_ends[:, own[:, None], own]
+    diagonal[:, -6:, -6:] += on_nodes[1:]
+    diagonal[:-1, -6:, -6:] += on_ends[1:, :6, :6]
+    return Tridiagonal(diagonal, on_ends[1:, :6][:, :, own], on_ends[1:, own, :6])
 
 
 def sparse(t: Tridiagonal) -> scipy.sparse.bsr_array:
     """Block compressed sparse rows, for products."""
-    n = len(t.diagonal)
+    n, d = len(t.diagonal), t.block
     column = np.arange(n)[:, None] + np.array([-1, 0, 1])
-    data = np.zeros((n, 3, 6, 6))
-    data[1:, 0], data[:, 1], data[:-1, 2] = t.lower, t.diagonal, t.upper
+    data = np.zeros((n, 3, d, d))
+    data[1:, 0, :, -6:], data[:, 1], data[:-1, 2, -6:] = t.lower, t.diagonal, t.upper
     inside = ((column >= 0) & (column < n)).ravel()
     pointer = np.concatenate([[0], np.cumsum(inside.reshape(n, 3).sum(1))])
     return scipy.sparse.bsr_array(
-        (data.reshape(-1, 6, 6)[inside], column.ravel()[inside], pointer), shape=(6 * n, 6 * n)
+        (data.reshape(-1, d, d)[inside], column.ravel()[inside], pointer), shape=(d * n, d * n)
     )
 
 
@@ -53,7 +62,8 @@ def dense(t: Tridiagonal) -> Array:
 
 def solve(t: Tridiagonal, b: Array) -> Array:
     """Solve t x = b by a banded LU factorisation. Raises ``numpy.linalg.LinAlgError`` if t is singular."""
-    return solve_banded((_WIDTH, _WIDTH), _banded(t, lower=True), b, overwrite_ab=True, check_finite=False)
+    width = t.block + 5
+    return solve_banded((width, width), _banded(t, lower=True), b, overwrite_ab=True, check_finite=False)
 
 
 @dataclass(frozen=True)
@@ -77,15 +87,18 @@ def cholesky(t: Tridiagonal) -> Factor:
 
 
 def _banded(t: Tridiagonal, lower: bool) -> Array:
-    n = t.size
-    band = np.zeros((2 * _WIDTH + 1 if lower else _WIDTH + 1, n))
-    i, j = np.indices((6, 6))
-    start = 6 * np.arange(len(t.diagonal))[:, None, None]
-    on = np.ones((6, 6), bool) if lower else i <= j
-    band[(_WIDTH + i - j)[on], (start + j)[:, on]] = t.diagonal[:, on]
-    band[_WIDTH + i - j - 6, start[1:] + j] = t.upper
+    n, d = t.size, t.block
+    width = d + 5
+    band = np.zeros((2 * width + 1 if lower else width + 1, n))
+    i, j = np.indices((d, d))
+    start = d * np.arange(len(t.diagonal))[:, None, None]
+    on = np.ones((d, d), bool) if lower else i <= j
+    band[(width + i - j)[on], (start + j)[:, on]] = t.diagonal[:, on]
+    i, j = np.indices((6, d))  # the last six rows of a block against the next block
+    band[width + i - 6 - j, start[1:] + j] = t.upper
     if lower:
-        band[_WIDTH + i - j + 6, start[:-1] + j] = t.lower
+        i, j = np.indices((d, 6))
+        band[width + i - j + 6, start[1:] - 6 + j] = t.lower
     return band
 
 

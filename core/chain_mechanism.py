@@ -31,5 +31,14 @@ def one(beams: Beams, k: int) -> Beams:
     """The k-th element alone."""
     mine = beams.points.element == k
     p = beams.points
-    points = Points(np.zeros(int(mine.sum()), dtype=np.intp), p.rest[mine], p.shape[mine], p.mass[mine])
-    return Beams(beams.measure, beams.rest[k : k + 1], beams.stiffness[k : k + 1], points, beams.preload[k : k + 1])
+    none = np.zeros(int(mine.sum()), dtype=np.intp)
+    at = slice(k, k + 1)
+    return Beams(
+        measure=beams.measure,
+        rest=beams.rest[at],
+        stiffness=beams.stiffness[at],
+        shortening=beams.shortening[at],
+        points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine]),
+        preload=beams.preload[at],
+        inner_preload=beams.inner_preload[at],
+    )

@@ -59,7 +59,8 @@ def discretize(blade: Blade, elements: int, mass: Mass = "consistent", stiffness
     rest = sp.inverse(nodes[:-1]) @ nodes[1:]
     lumps = np.zeros((elements + 1, 6, 6))
     if mass == "consistent":
-        inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.weight[:, None, None] * mass_at(blade, seg.s))
+        mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
+        inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
     else:
         inside = bm.NO_POINTS
         lumps += _half_end(blade, s)
@@ -71,8 +72,10 @@ def discretize(blade: Blade, elements: int, mass: Mass = "consistent", stiffness
             measure=stiffness,
             rest=rest,
             stiffness=bm.end_stiffness(stiffness, rest, np.linalg.inv(seg.flexibility)),
+            shortening=seg.shortening,
             points=inside,
             preload=np.zeros((elements, 6)),
+            inner_preload=np.zeros((elements, 6)),
         ),
         samples=_samples(blade, s, nodes, rest),
         scale=blade.length,
@@ -97,5 +100,6 @@ def _samples(blade: Blade, nodes_s: Array, nodes: Array, rest: Array) -> Points:
     k = np.searchsorted(seg.break_s, at[:-1] - 1e-9 * blade.length)
     element = np.append(seg.break_element[k], len(rest) - 1)
     shape = np.concatenate([seg.break_shape[k], np.eye(6)[None]])
+    bubble = np.concatenate([seg.break_bubble[k], np.zeros((1, 6, 6))])
     pose = sp.inverse(nodes[:-1])[element] @ sections.frames(blade, at)
-    return bm.riding(rest, element, pose, shape, np.zeros((len(at), 6, 6)))
+    return bm.riding(rest, element, pose, shape, bubble, np.zeros((len(at), 6, 6)))

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Cartesian:
-    """Total wrench g (b, 6) and its linearisation M, C, K, each (6b, 6b).
+    """Total wrench g (b + m, 6) and its linearisation M, C, K, each square; rows as those of B, beams' internal forces last.
 
     ``springs`` are the stiffnesses (6, 6) that act on ρ = ξ_b − ξ_a between two bodies, kept out of K: ``B_b − B_a`` is exact
     where the difference of their products would cancel.
@@ -46,14 +46,20 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
     """
-    b = len(tree.bodies)
+    b = len(k.B)
     zero = np.zeros((6 * b, 6 * b))
     out = Cartesian(np.zeros((b, 6)), zero, zero.copy(), zero.copy(), [])
     _bodies(tree, k, out)
     for spring in tree.mechanism.springs:
         _spring(tree, k, spring, out)
-    for beam in tree.mechanism.beams:
-        _beam(tree, k, beam, out)
+    behind = len(tree.bodies)
+    for beam, inner in zip(tree.mechanism.beams, tree.inner, strict=True):
+        ends = (tree.body(beam.body_a), tree.body(beam.body_b))
+        if inner < 0:
+            _beam(tree, k, beam, ends, np.zeros(0), out)
+        else:
+            _beam(tree, k, beam, (*ends, behind), k.q[inner : inner + 6], out)
+            behind += 1
     if multipliers is not None:
         for (body, copy), w in zip(tree.welds, multipliers, strict=True):
             _weld(body, copy, w, out)
@@ -72,7 +78,7 @@ def _bodies(tree: Tree, k: Kinematics, out: Cartesian) -> None:
     fall = np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     turn = sp.ad(k.Y)
     momentum = (M @ k.Y[..., None])[..., 0]
-    out.g[:] = (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
+    out.g[: len(M)] = (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
     mt = M @ turn
     C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
     for i in range(len(M)):
@@ -80,9 +86,9 @@ def _bodies(tree: Tree, k: Kinematics, out: Cartesian) -> None:
         out.M[at, at], out.C[at, at], out.K[at, at] = M[i], C[i], -M[i] @ sp.ad(fall)
 
 
-def _add(out: Cartesian, ends: tuple[int, int], pencil: Pencil) -> None:
-    """Add a two-ended element's wrenches (12,) and matrices (12, 12); the ground takes up what acts on it."""
-    out.springs.append((*ends, pencil.spring))
+def _add(out: Cartesian, ends: tuple[int, ...], pencil: Pencil) -> None:
+    """Add an element's wrenches (d,) and matrices (d, d) on two ends and β; the ground takes up what acts on it."""
+    out.springs.append((ends[0], ends[1], pencil.spring))
     for i, end in enumerate(ends):
         if end < 0:
             continue
@@ -141,9 +147,8 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: Cartesian) -> None:
     _add(out, ends, _between(tension * line, kk, c))
 
 
-def _beam(tree: Tree, k: Kinematics, beam: Beam, out: Cartesian) -> None:
-    ends = tree.body(beam.body_a), tree.body(beam.body_b)
-    (xa, ya, aa), (xb, yb, _) = (_state(k, e, x) for e, x in zip(ends, (beam.at_a, beam.at_b), strict=True))
+def _beam(tree: Tree, k: Kinematics, beam: Beam, ends: tuple[int, ...], beta: Array, out: Cartesian) -> None:
+    (xa, ya, aa), (xb, yb, _) = (_state(k, e, x) for e, x in zip(ends[:2], (beam.at_a, beam.at_b), strict=True))
     massive = len(beam.beams.points.element) > 0
     scale = max(float(np.abs(ya).max()), 1e-30)
     if massive and (np.abs(yb - ya).max() > 1e-9 * scale or np.abs(aa).max() > 1e-9 * scale**2):
@@ -155,17 +160,19 @@ def _beam(tree: Tree, k: Kinematics, beam: Beam, out: Cartesian) -> None:
     frame = to_a @ ya
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     x = sp.inverse(xa) @ xb
-    p = beam_pencil(beam.beams, x[None], frame[None], fall[None])
+    p = beam_pencil(beam.beams, x[None], beta[None], frame[None], fall[None])
     M, C, K = p.M[0], p.C[0], p.rest[0]
     if beam.damping.any():
-        E = strain_rate(beam.beams.measure, beam.beams.rest, x[None])
+        E = strain_rate(beam.beams.measure, beam.beams.rest, beam.beams.shortening, x[None])
         d = np.swapaxes(E, -1, -2) @ beam.damping @ E
-        C = C + on_ends(d, d)[0]
+        C = C.copy()
+        C[:12, :12] += on_ends(d, d)[0]
     # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
-    turn = np.kron(np.eye(2), sp.ad(frame))
+    turn, own = np.zeros_like(K), np.eye(len(K))
+    turn[:6, :6] = turn[6:12, 6:12] = sp.ad(frame)
+    own[:6, :6] = own[6:12, 6:12] = to_a
     K = K - C @ turn + M @ turn @ turn
     C = C - 2.0 * M @ turn
-    own = np.kron(np.eye(2), to_a)
     spring = to_a.T @ p.spring[0] @ to_a
     _add(out, ends, Pencil(own.T @ p.residual[0], own.T @ M @ own, own.T @ C @ own, own.T @ K @ own, spring))
 
@@ -206,7 +213,7 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     MB1 = c.M @ B1
     M = B.T @ c.M @ B
     C = B.T @ (2.0 * MB1 + c.C @ B)
-    carried = tree.carries.T.astype(float) @ c.g  # f_j
+    carried = tree.carries.T.astype(float) @ c.g[: len(tree.bodies)]  # f_j
     force = -(np.swapaxes(sp.ad(k.J.T), -1, -2) @ carried[..., None])[..., 0]  # J_j ×* f_j
     below = (tree.above.astype(float) - np.eye(n)).T  # below[k, j]: j hangs beyond k
     K = B.T @ (c.M @ B2 + c.C @ B1 + c.K @ B) + below * (k.J.T @ force.T)

@@ -42,22 +42,29 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     Raises:
         UnstableError: if K is not positive definite.
     """
+    k, m = np.diagonal(K), np.diagonal(M)
+    usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
+    if (k <= 1e-14 * usual * m).any():  # a coordinate that nothing holds, but for rounding
+        raise _unstable()
+    scale = 1.0 / np.sqrt(np.diagonal(K))  # coordinates of unlike units made alike
+    M, C, K = (scale[:, None] * a * scale for a in (M, C, K))
     try:
-        k = np.linalg.cholesky(K)
+        root = np.linalg.cholesky(K)
     except np.linalg.LinAlgError:
         raise _unstable() from None
     values, vectors = np.linalg.eigh(M)
     keep = values > 1e-14 * max(values[-1], 0.0)
-    f = scipy.linalg.solve_triangular(k, vectors[:, keep] * np.sqrt(values[keep]), lower=True)
-    g = scipy.linalg.solve_triangular(k, scipy.linalg.solve_triangular(k, C, lower=True).T, lower=True).T
+    f = scipy.linalg.solve_triangular(root, vectors[:, keep] * np.sqrt(values[keep]), lower=True)
+    g = scipy.linalg.solve_triangular(root, scipy.linalg.solve_triangular(root, C, lower=True).T, lower=True).T
     n, r = f.shape
     h = np.zeros((n + r, n + r), complex)  # i A⁻¹S in the basis (k⁻ᵀ x, Fᵀ y) with M = F Fᵀ
     h[:n, :n], h[:n, n:], h[n:, :n] = 1j * g, 1j * f, -1j * f.T
     wanted = r if count is None else min(count, r)
     mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
     order = np.argsort(-mu)
-    x = scipy.linalg.solve_triangular(k.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
-    return _scaled(1.0 / mu[order], x, K)
+    x = scipy.linalg.solve_triangular(root.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
+    found = _scaled(1.0 / mu[order], x, K)
+    return Eigen(found.frequencies, scale[:, None] * found.vectors)
 
 
 def lanczos(
@@ -137,16 +144,19 @@ class Damped:
 def damped(M: Array, C: Array, K: Array, count: int | None = None) -> Damped:
     """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none."""
     n = len(M)
-    scale = (
-        np.sqrt(max(np.linalg.norm(K), 1e-300) / max(np.linalg.norm(M), 1e-300)) or 1.0
-    )  # time scale (Fan, Lin, Van Dooren)
+    k, m = np.abs(np.diagonal(K)), np.diagonal(M)
+    both = (k > 0) & (m > 0)
+    time = 1.0 / np.sqrt(np.median(k[both] / m[both])) if both.any() else 1.0
+    weight = k * time**2 + m
+    unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # coordinates of unlike units made alike, and time too
+    M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
     zero, one = np.zeros((n, n)), np.eye(n)
-    a = np.block([[zero, one], [-K / scale**2, -C / scale]])
+    a = np.block([[zero, one], [-K, -C]])
     b = np.block([[one, zero], [zero, M]])
     pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
     alpha, beta = pair
     finite = np.abs(beta) > 1e-12 * np.abs(alpha)
-    values, x = scale * alpha[finite] / beta[finite], z[:n, finite]
+    values, x = alpha[finite] / beta[finite] / time, unit[:, None] * z[:n, finite]
     largest = np.abs(values).max(initial=0.0)
     one_of_each = values.imag >= -1e-12 * largest
     values, x = values[one_of_each], x[:, one_of_each]

@@ -6,9 +6,9 @@ to ρ is ``Eᵀ K E + ∂(Eᵀ s)/∂ρ``: material and geometric stiffness, bot
 
 Two measures:
 
-* ``corotational``: ε = log X − log X₀, the helicoidal strain of a frame moving from a to b. Bending into an arc
-  stretches nothing, so the tension's stiffening is that of the cubic beam element to the order kept (Sonneville, Cardona,
-  Brüls 2014, sec. 4, with the stiffness of the exact static solution in place of their one-point quadrature);
+* ``corotational``: ε = δ + (δᵀGδ) x̂ with δ = log X − log X₀, the helicoidal strain of a frame moving from a to b (Sonneville,
+  Cardona, Brüls 2014, sec. 4). Bending into an arc stretches nothing by itself; G adds the shortening by what the static shape
+  deviates from the arc, which makes the tension's stiffening that of the cubic beam element;
 * ``parent``: displacement and Cardan angles (x, y, z) of b from its rest pose, in axes fixed in a. Linear in the parent's
   body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
 """
@@ -24,33 +24,37 @@ Array = NDArray[np.float64]
 Measure = Literal["corotational", "parent"]
 
 
-def strain(measure: Measure, rest: Array, x: Array) -> Array:
-    """Strains (n, 6) of relative poses ``x`` (n, 4, 4) from the rest poses ``rest``."""
+def strain(measure: Measure, rest: Array, shortening: Array, x: Array) -> Array:
+    """Strains (n, 6) of relative poses ``x`` (n, 4, 4) from the rest poses ``rest``; ``shortening`` is G (n, 6, 6)."""
     if measure == "corotational":
-        return sp.log(x) - sp.log(rest)
+        delta = sp.log(x) - sp.log(rest)
+        out = delta.copy()
+        out[..., 0] += (delta * (shortening @ delta[..., None])[..., 0]).sum(-1)
+        return out
     y = sp.inverse(rest) @ x
     return np.concatenate([y[..., :3, 3], _cardan(y[..., :3, :3])], axis=-1)
 
 
-def strain_rate(measure: Measure, rest: Array, x: Array) -> Array:
+def strain_rate(measure: Measure, rest: Array, shortening: Array, x: Array) -> Array:
     """E = ∂ε/∂ρ (n, 6, 6)."""
     if measure == "corotational":
-        return sp.tangent_inverse(sp.log(x))
+        eta = sp.log(x)
+        E = sp.tangent_inverse(eta)
+        slope = 2.0 * (shortening @ (eta - sp.log(rest))[..., None])[..., 0]
+        E[..., 0, :] += (slope[..., None, :] @ E)[..., 0, :]
+        return E
     local, rate = _parent(rest, x)[1:]
     return rate @ local
 
 
-def force(measure: Measure, rest: Array, x: Array, stiffness: Array, preload: Array) -> tuple[Array, Array]:
-    """s = K ε + preload (n, 6), conjugate to the strain, and E (n, 6, 6)."""
-    s = preload + (stiffness @ strain(measure, rest, x)[..., None])[..., 0]
-    return s, strain_rate(measure, rest, x)
-
-
-def wrench_derivative(measure: Measure, rest: Array, x: Array, s: Array) -> Array:
+def wrench_derivative(measure: Measure, rest: Array, shortening: Array, x: Array, s: Array) -> Array:
     """∂(Eᵀ s)/∂ρ (n, 6, 6), s held: the geometric stiffness."""
     if measure == "corotational":
         eta = sp.log(x)
-        return sp.tangent_inverse_transpose_derivative(eta, s) @ sp.tangent_inverse(eta)
+        E = sp.tangent_inverse(eta)
+        bow = 2.0 * s[..., :1, None] * shortening
+        conjugate = s + (bow @ (eta - sp.log(rest))[..., None])[..., 0]
+        return (sp.tangent_inverse_transpose_derivative(eta, conjugate) + np.swapaxes(E, -1, -2) @ bow) @ E
     z, local, rate = _parent(rest, x)
     curvature = np.zeros((*s.shape, 6))
     curvature[..., 3:, :3] = -sp.skew(s[..., :3])
@@ -60,7 +64,7 @@ def wrench_derivative(measure: Measure, rest: Array, x: Array, s: Array) -> Arra
 
 def _parent(rest: Array, x: Array) -> tuple[Array, Array, Array]:
     """Coordinates z, the twist ρ brought to the rest frame, and ∂z/∂(twist in the rest frame)."""
-    z = strain("parent", rest, x)
+    z = strain("parent", rest, np.zeros((6, 6)), x)
     rate = np.zeros((*z.shape, 6))
     rate[..., :3, :3] = np.eye(3)
     rate[..., :3, 3:] = -sp.skew(z[..., :3])

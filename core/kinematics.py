@@ -21,12 +21,15 @@ class Kinematics:
     """A tree's state and its velocity transformation; b bodies, n coordinates.
 
     Attributes:
+        q: (n,) coordinates.
         poses: (b, 4, 4) of the bodies.
         J: (6, n) screws.
-        B, B1, B2: (b, 6, n) velocity transformation, its first and second rates along the motion.
+        B, B1, B2: (b + m, 6, n) velocity transformation, its first and second rates along the motion; the last m rows pick
+            the internal coordinates of the m beams that have them.
         Y, A: (b, 6) twists of the bodies and their rates, ``A = B v̇ + Ḃ v``.
     """
 
+    q: Array
     poses: Array
     J: Array
     B: Array
@@ -58,7 +61,10 @@ def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
     J2 = _cross(A, J) + _cross(Y, J1)
     carries = tree.carries.astype(float)
     B, B1, B2 = (carries[:, None, :] * j for j in (J, J1, J2))
-    return Kinematics(x, J, B, B1, B2, B @ v, B @ a + B1 @ v)
+    Y, A = B @ v, B @ a + B1 @ v
+    pick = np.array([np.eye(len(q))[i : i + 6] for i in tree.inner if i >= 0]).reshape(-1, 6, len(q))
+    none = np.zeros_like(pick)
+    return Kinematics(q, x, J, np.concatenate([B, pick]), np.concatenate([B1, none]), np.concatenate([B2, none]), Y, A)
 
 
 def _cross(Y: Array, J: Array) -> Array:

@@ -115,6 +115,8 @@ class Mechanism:
 class Tree:
     """A mechanism's spanning tree as arrays, one link a coordinate.
 
+    The internal coordinates of beams with mass come last, as links that move nothing.
+
     Attributes:
         mechanism: where it comes from.
         coordinates: (n) names.
@@ -127,6 +129,7 @@ class Tree:
         inertia: (b, 6, 6) in the bodies' own frames.
         welds: pairs (body, copy) of body indices that a cut joint makes one.
         weld_names: the cut joints' names.
+        inner: for each beam the first of its six internal coordinates, −1 if it has none.
         above: (n, n) above[j, k]: link k lies on the way from the ground to link j, or is j.
         carries: (b, n) carries[i, k]: coordinate k moves body i.
     """
@@ -142,6 +145,7 @@ class Tree:
     inertia: Array
     welds: tuple[tuple[int, int], ...]
     weld_names: tuple[str, ...]
+    inner: tuple[int, ...]
     above: NDArray[np.bool_]
     carries: NDArray[np.bool_]
 
@@ -215,6 +219,14 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertias.append(np.zeros((6, 6)))
         bodies.append(f"{joint.child} beyond {joint.name}")
         welds.append((names.index(joint.child) if joint.child != GROUND else -1, len(bodies) - 1))
+    inner = []
+    for i, beam in enumerate(mechanism.beams):
+        inner.append(len(before) if beam.beams.inner else -1)
+        for j in range(beam.beams.inner):
+            before.append(-1)
+            fixed.append(np.eye(4))
+            screw.append(np.zeros(6))
+            coordinates.append(f"beam {i + 1}.{j + 1}")
     n = len(before)
     above = np.zeros((n, n), bool)
     for j in range(n):
@@ -234,6 +246,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertia=np.array(inertias),
         welds=tuple(welds),
         weld_names=tuple(j.name for j in cuts),
+        inner=tuple(inner),
         above=above,
         carries=np.vstack([above, np.zeros((1, n), bool)])[link],
     )

@@ -5,7 +5,9 @@ its compliance, and turns and moves all beyond it, so the twist of the section a
 
     ρ(s) = f(s) w,   f(s) = ∫ Ad(F) c Ad(F)ᵀ ds   from a to s,
 
-for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. Gauss
+for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. What loads
+between the nodes add to that, six bubbles describe: the element clamped at both ends under uniform loads along its sections'
+axes. They do no work with the shape functions, and make axial, torsional and shear motion as accurate as bending. Gauss
 quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
 """
 
@@ -73,6 +75,10 @@ class Segments:
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
         break_s: (m,) all ends of quadrature intervals that begin in an element.
         break_element, break_shape: (m,), (m, 6, 6) the same at those.
+        bubble, break_bubble: (q, 6, 6), (m, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit
+            stiffness; a load that moves nothing has a zero column.
+        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫|y′|² of its displacement y across, than
+            the logarithmic strain δ of its ends tells.
     """
 
     element: Index
@@ -84,6 +90,9 @@ class Segments:
     break_s: Array
     break_element: Index
     break_shape: Array
+    bubble: Array
+    break_bubble: Array
+    shortening: Array
 
 
 def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segments:
@@ -99,25 +108,66 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     pose = sp.inverse(first)[element][:, None] @ frames(blade, s.ravel()).reshape(*s.shape, 4, 4)
     lever = sp.adjoint(pose)
     turn = lever @ compliance(blade, s.ravel()).reshape(*s.shape, 6, 6) @ np.swapaxes(lever, -1, -2)
-    whole = h[:, None, None] * np.einsum("j,ijkl->ikl", b, turn)
     start = np.searchsorted(element, np.arange(len(nodes) - 1))
-    flexibility = np.add.reduceat(whole, start, axis=0)
-    before = np.cumsum(whole, axis=0) - whole
-    before -= before[start][element]
-    within = before[:, None] + h[:, None, None, None] * np.einsum("qj,ijkl->iqkl", a, turn)
+
+    def running(values: Array) -> tuple[Array, Array, Array]:
+        """Integral from the element's start to its Gauss points and to the intervals' starts, and over all of it."""
+        parts = h[:, None, None] * np.einsum("j,ijkl->ikl", b, values)
+        begun = np.cumsum(parts, axis=0) - parts
+        begun -= begun[start][element]
+        inside = begun[:, None] + h[:, None, None, None] * np.einsum("qj,ijkl->iqkl", a, values)
+        return inside, begun, np.add.reduceat(parts, start, axis=0)
+
+    within, before, flexibility = running(turn)
     stiffness = np.linalg.inv(flexibility)
     q = np.repeat(element, GAUSS)
+    shape, break_shape = within.reshape(-1, 6, 6) @ stiffness[q], before @ stiffness[element]
+    size = np.repeat([1.0, np.mean(np.diff(nodes))], 3)
+    load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
+    inside, _, total = running(load)
+    carried = total[element][:, None] - inside  # beyond each point
+    loose, loose_break, tip = running(turn @ carried)
+    bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
+    break_bubble = loose_break - break_shape @ tip[element]
+    work = running(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))[2]
+    unit = _unit_stiffness(work)
+    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
+    ends_move = sp.tangent(last)[element][:, None]
+    static = _across(pose, shape.reshape(turn.shape) @ ends_move, turn @ stiffness[element][:, None] @ ends_move)
+    length = np.diff(nodes)[element][:, None, None]
+    part = (s - nodes[element][:, None])[..., None] / length
+    along = part * last[element][:, None]
+    helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
+    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear shortens nothing along its axis
+    bow = 0.5 * sum(sign * np.swapaxes(y, -1, -2) @ y for sign, y in ((1, static), (-1, helicoid), (1, slip)))
     return Segments(
         element=q,
         s=s.ravel(),
         weight=(h[:, None] * b).ravel(),
         pose=pose.reshape(-1, 4, 4),
         flexibility=flexibility,
-        shape=within.reshape(-1, 6, 6) @ stiffness[q],
+        shape=shape,
         break_s=ends[:-1],
         break_element=element,
-        break_shape=before @ stiffness[element],
+        break_shape=break_shape,
+        bubble=bubble @ unit[q],
+        break_bubble=break_bubble @ unit[element],
+        shortening=running(bow)[2],
     )
+
+
+def _across(pose: Array, moved: Array, rate: Array) -> Array:
+    """(…, 2, 6) slope across the axis of the displaced reference curve, from twists at a and their rates along the arc."""
+    p, x = pose[..., :3, 3], pose[..., :3, 0]
+    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ moved[..., 3:, :]
+    return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
+
+
+def _unit_stiffness(work: Array) -> Array:
+    """(n, 6, 6) T with Tᵀ work T = 1 over the loads that do work, zero columns for those that do none."""
+    value, vector = np.linalg.eigh(0.5 * (work + np.swapaxes(work, -1, -2)))
+    active = value > 1e-9 * value[:, -1:]
+    return vector * np.where(active, 1.0 / np.sqrt(np.where(active, value, 1.0)), 0.0)[:, None, :]
 
 
 def collocation(n: int) -> tuple[Array, Array, Array]:

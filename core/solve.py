@@ -9,6 +9,7 @@ from . import beams as bm
 from . import blocks, chain, eigen
 from . import spatial as sp
 from .blade import Blade, without_rotary_inertia
+from .chain import Shape
 from .discretize import Chain, Mass, discretize
 from .elements import Measure
 from .model import FULL, Model
@@ -53,31 +54,37 @@ def modes(
         raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
     begun = time.perf_counter()
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness)
-    body, nodes = balance(body, omega, gravity, model)
-    p = chain.linearize(body, nodes, omega, gravity, model)
+    body, shape = balance(body, omega, gravity, model)
+    p = chain.linearize(body, shape, omega, gravity, model)
     found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, lambda x: chain.strain_energy(p, x))
-    shapes = mode_shapes(body, nodes, found.vectors)
+    shapes = mode_shapes(body, shape, found.vectors)
     return Modes(omega, found.frequencies, shapes, elements, seconds=time.perf_counter() - begun)
 
 
-def balance(body: Chain, omega: float, gravity: Array, model: Model) -> tuple[Chain, Array]:
-    """The chain with the internal forces, and at the node poses, that the model's steady state has."""
+def balance(body: Chain, omega: float, gravity: Array, model: Model) -> tuple[Chain, Shape]:
+    """The chain with the internal forces, and in the shape, that the model's steady state has."""
     if not model.geometric:
-        return body, body.nodes
+        return body, chain.rest(body)
     if not model.prestretch:
-        return chain.prestress_at_rest(body, omega, gravity), body.nodes
+        return chain.prestress_at_rest(body, omega, gravity), chain.rest(body)
     return body, chain.steady(body, omega, gravity)
 
 
-def mode_shapes(body: Chain, nodes: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) displacement and rotation about x at the common stations, from the nodes' twists (6n, m)."""
+def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
+    nodes, e = shape.nodes, body.samples.element
     x = sp.inverse(nodes[:-1]) @ nodes[1:]
-    e = body.samples.element
-    zeta, slope = bm.place(body.beams, body.samples, sp.log(x))
+    m = vectors.shape[1]
+    parts = vectors.reshape(len(x), -1, m)
+    beta, inner = (
+        (np.zeros((len(x), 6, m)), np.zeros((len(x), 6))) if parts.shape[1] == 6 else (parts[:, :6], shape.beta)
+    )
+    zeta, slope = bm.place(body.beams, body.samples, sp.log(x), inner)
     position = sp.exp(zeta)[:, :3, 3]
-    twist = np.concatenate([np.zeros((1, 6, vectors.shape[1])), vectors.reshape(-1, 6, vectors.shape[1])])
+    twist = np.concatenate([np.zeros((1, 6, m)), parts[:, -6:]])
     a = twist[:-1][e]
-    moved = a + sp.tangent(zeta) @ slope @ (sp.adjoint(x)[e] @ twist[1:][e] - a)
+    rho = sp.adjoint(x)[e] @ twist[1:][e] - a
+    moved = a + sp.tangent(zeta) @ slope @ np.concatenate([rho, beta[e]], axis=1)
     velocity = moved[:, :3] - sp.skew(position) @ moved[:, 3:]
     turn = nodes[:-1, :3, :3][e]
     return np.concatenate([turn @ velocity, (turn @ moved[:, 3:])[:, :1]], axis=1).transpose(2, 0, 1)

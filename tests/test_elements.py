@@ -6,6 +6,7 @@ import pytest
 from southwell.core import beams as bm
 from southwell.core import elements
 from southwell.core import spatial as sp
+from southwell.core.blade import uniform_blade
 from southwell.core.discretize import discretize
 from southwell.tests.beams import curved
 
@@ -13,34 +14,55 @@ MEASURES = ["corotational", "parent"]
 
 
 @pytest.fixture(scope="module")
-def bent() -> tuple[np.ndarray, np.ndarray]:
+def bent() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rest poses, shortening, and poses some way off."""
     rng = np.random.default_rng(4)
     rest = sp.exp(rng.normal(size=(5, 6)) * [1, 0.2, 0.2, 0.1, 0.1, 0.1])
-    return rest, sp.exp(0.3 * rng.normal(size=(5, 6))) @ rest
+    g = rng.normal(size=(5, 6, 6))
+    return rest, g + np.swapaxes(g, -1, -2), sp.exp(0.3 * rng.normal(size=(5, 6))) @ rest
 
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_strain_rate_is_the_derivative_of_the_strain(measure, bent) -> None:
-    rest, x = bent
+    rest, g, x = bent
     h = 1e-6
-    steps = [
-        (elements.strain(measure, rest, sp.exp(h * e) @ x) - elements.strain(measure, rest, sp.exp(-h * e) @ x))
-        / (2 * h)
-        for e in np.eye(6)
-    ]
-    np.testing.assert_allclose(elements.strain_rate(measure, rest, x), np.stack(steps, axis=-1), atol=1e-8)
+
+    def strain(step: np.ndarray) -> np.ndarray:
+        return elements.strain(measure, rest, g, sp.exp(step) @ x)
+
+    steps = [(strain(h * e) - strain(-h * e)) / (2 * h) for e in np.eye(6)]
+    np.testing.assert_allclose(elements.strain_rate(measure, rest, g, x), np.stack(steps, axis=-1), atol=1e-8)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
 def test_geometric_stiffness_is_the_derivative_of_the_wrench(measure, bent) -> None:
-    rest, x = bent
+    rest, g, x = bent
     h, s = 1e-6, np.random.default_rng(5).normal(size=(5, 6))
 
-    def wrench(x: np.ndarray) -> np.ndarray:
-        return np.einsum("nij,ni->nj", elements.strain_rate(measure, rest, x), s)
+    def wrench(step: np.ndarray) -> np.ndarray:
+        return np.einsum("nij,ni->nj", elements.strain_rate(measure, rest, g, sp.exp(step) @ x), s)
 
-    steps = [(wrench(sp.exp(h * e) @ x) - wrench(sp.exp(-h * e) @ x)) / (2 * h) for e in np.eye(6)]
-    np.testing.assert_allclose(elements.wrench_derivative(measure, rest, x, s), np.stack(steps, axis=-1), atol=1e-8)
+    steps = [(wrench(h * e) - wrench(-h * e)) / (2 * h) for e in np.eye(6)]
+    np.testing.assert_allclose(elements.wrench_derivative(measure, rest, g, x, s), np.stack(steps, axis=-1), atol=2e-8)
+
+
+def test_tension_stiffens_like_the_cubic_beam_element() -> None:
+    """Stretch of an end moved across by d and turned by θ: ½ [d θ] (1/30l) [36, −3l; −3l, 4l²] [d θ]ᵀ, in both planes.
+
+    Times the tension this is the cubic element's geometric stiffness (Przemieniecki 1968, eq. 15.36).
+    """
+    length, h = 2.0, 1e-3
+    beam = uniform_blade("b", length, 0.0, EA=1e6, GJ=1.0, EI_y=3.0, EI_z=5.0, mass=1.0)
+    b = discretize(beam, 1).beams
+    cubic = np.array([[36, -3 * length], [-3 * length, 4 * length**2]]) / (30 * length)
+    for axis, place, sign in ((2, 1, 1.0), (1, 2, -1.0)):
+        for d, theta in ((1.0, 0.0), (0.0, 1.0), (0.7, -0.4)):
+            position = np.array([length, 0.0, 0.0])
+            position[place] = h * d
+            x = sp.pose(sp.rotation(axis, np.array(sign * h * theta)), position)[None]
+            stretch = elements.strain("corotational", b.rest, b.shortening, x)[0, 0]
+            z = np.array([d, theta])
+            assert stretch / h**2 == pytest.approx(0.5 * z @ cubic @ z, rel=2e-6)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
@@ -54,33 +76,28 @@ def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> No
     b = a @ beams.rest @ sp.exp(small)
     frame, fall = np.array([0.3, -0.2, 5.0, 0.4, -0.3, 1.2]), np.array([1.0, 2.0, -9.0, 0, 0, 0])
 
-    def residual(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """Components in each end's own axes, so that the difference is the variation taken along."""
-        to_a = sp.adjoint(sp.inverse(a))
-        r = bm.pencil(beams, sp.inverse(a) @ b, to_a @ frame, to_a @ fall).residual
-        own_b = np.swapaxes(sp.adjoint(sp.inverse(a) @ b), -1, -2) @ r[:, 6:, None]
-        return np.concatenate([r[:, :6], own_b[..., 0]], axis=-1)
+    inner = 0.3 * rng.normal(size=(4, beams.inner))
 
-    to_a = sp.adjoint(sp.inverse(a))
-    K = bm.pencil(beams, sp.inverse(a) @ b, to_a @ frame, to_a @ fall).K
-    lever = sp.adjoint(sp.inverse(a) @ b)
-    own = np.zeros((4, 12, 12))
-    own[:, :6, :6], own[:, 6:, 6:] = np.eye(6), lever
-    analytic = np.swapaxes(own, -1, -2) @ K @ own
-    columns = []
-    for j in range(12):
-        step = np.zeros(12)
-        step[j] = h
-        columns.append(
-            (
-                residual(a @ sp.exp(step[:6]), b @ sp.exp(step[6:]))
-                - residual(a @ sp.exp(-step[:6]), b @ sp.exp(-step[6:]))
-            )
-            / (2 * h)
-        )
-    quotient = np.stack(columns, axis=-1)
-    scale = np.abs(quotient).max(axis=(1, 2), keepdims=True)
-    np.testing.assert_allclose(analytic / scale, quotient / scale, atol=2e-8)
+    def pencil(a: np.ndarray, b: np.ndarray, inner: np.ndarray) -> bm.Pencil:
+        to_a = sp.adjoint(sp.inverse(a))
+        return bm.pencil(beams, sp.inverse(a) @ b, inner, to_a @ frame, to_a @ fall)
+
+    def residual(step: np.ndarray) -> np.ndarray:
+        """Components in each end's own axes, so that the difference is the variation taken along."""
+        a_, b_ = a @ sp.exp(step[:6]), b @ sp.exp(step[6:12])
+        r = pencil(a_, b_, inner + step[12:]).residual.copy()
+        r[:, 6:12] = (np.swapaxes(sp.adjoint(sp.inverse(a_) @ b_), -1, -2) @ r[:, 6:12, None])[..., 0]
+        return r
+
+    d = 12 + beams.inner
+    own = np.zeros((4, d, d))
+    own[:, range(d), range(d)] = 1.0
+    own[:, 6:12, 6:12] = sp.adjoint(sp.inverse(a) @ b)
+    analytic = np.swapaxes(own, -1, -2) @ pencil(a, b, inner).K @ own
+    quotient = np.stack([(residual(h * e) - residual(-h * e)) / (2 * h) for e in np.eye(d)], axis=-1)
+    for rows in (slice(0, 12), slice(12, d)):  # forces on the ends and on β differ in size
+        scale = np.abs(quotient[:, rows]).max(axis=(1, 2), keepdims=True, initial=1e-300)
+        np.testing.assert_allclose(analytic[:, rows] / scale, quotient[:, rows] / scale, atol=3e-8)
 
 
 def test_mass_points_weigh_what_the_blade_weighs() -> None:
@@ -88,7 +105,8 @@ def test_mass_points_weigh_what_the_blade_weighs() -> None:
     blade = curved()
     beams = discretize(blade, 3).beams
     n = len(beams.rest)
-    M = bm.pencil(beams, beams.rest, np.zeros((n, 6)), np.zeros((n, 6))).M
+    zero = np.zeros((n, 6))
+    M = bm.pencil(beams, beams.rest, zero, zero, zero).M[:, :12, :12]
     along = np.tile(np.eye(6)[:, 2:3], (2, 1))
     total = sum(float((along.T @ m @ along)[0, 0]) for m in M)
     s = blade.stations

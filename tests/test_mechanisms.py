@@ -420,7 +420,7 @@ def test_point_spring_tangents_match_difference_quotients() -> None:
     rng = np.random.default_rng(8)
     rest = sp.exp(0.1 * rng.normal(size=(1, 6)))
     k6 = np.cov(rng.normal(size=(6, 30))) * 50
-    bushing = bm.Beams("corotational", rest, k6[None], bm.NO_POINTS, rng.normal(size=(1, 6)))
+    bushing = bm.bushing(rest[0], k6, rng.normal(size=6))
     m = Mechanism(
         (Body("a", inertia(1.0, 0.3, (0.1, 0.2, 0))), Body("b", inertia(2.0, 0.2, (0, 0.3, 0.1)))),
         (Joint("p", "spherical", "ground", "a", at(0.2)), Joint("q", "free", "a", "b", at(0.5, 0.1, 0.3))),
