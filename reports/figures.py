@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator
 from ..cases.results import Cell, Run, Verdict
 from ..cases.verdict import unsigned
 from .style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, house, key, looks, title
-from .summary import amount, column, columns, labels
+from .summary import amount, column, columns, counts, labels
 from .units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
@@ -156,8 +156,8 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
         axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
         axes.annotate("largest", (1.02, -0.5), (0, 4), ("axes fraction", "data"), "offset points", size=8, color=MUTED)
         title(figure, f"{case}: differences, every mode and speed")
-        present: list[Verdict] = [v for v in FACES if v in {c.verdict for c in cells}]
-        keys = [Line2D([], [], ls="", color=INK, ms=5, label=v, **_face(v, "o", INK)) for v in present]
+        present = counts(cells)
+        keys = [Line2D([], [], ls="", color=INK, ms=5, label=v, **_face(v, "o", INK)) for v in FACES if present[v]]
         tracked = Line2D([], [], ls="", label=f"in each row, from above: modes 1 to {tracks}")
         key(figure, [*keys, *([tracked] if tracks > 1 else [])], 0.2, across=5)
     return figure
@@ -188,7 +188,7 @@ def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -
     u = np.array([c.uncertainty or 0.0 for c in cells])
     y = row + 0.32 * np.array([2 * (c.mode - 1) / max(tracks - 1, 1) - 1 for c in cells])
     axes.hlines(y, np.maximum(d - u, left), np.maximum(d + u, left), color=look.colour, lw=0.7, alpha=0.5, zorder=2)
-    for verdict in dict.fromkeys(c.verdict for c in cells):
+    for verdict in FACES:
         k = np.array([c.verdict == verdict for c in cells])
         face = _face(verdict, look.marker, look.colour)
         axes.plot(np.maximum(d, left)[k], y[k], ls="", ms=4.5, zorder=3, clip_on=False, **face)

@@ -1,14 +1,19 @@
 """Figures: the same bytes for the same numbers, lines through core's values, labels that do not lie on each other."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from numpy.typing import NDArray
 
 from southwell.cases.library import load
 from southwell.cases.lumping import lumping
@@ -17,7 +22,7 @@ from southwell.reports.convergence import convergence
 from southwell.reports.figures import campbell, differences
 from southwell.reports.lumped import BOTH, EXACT, FRAME, MASS, Taken, taken
 from southwell.reports.lumped import lumping as lumping_figure
-from southwell.reports.style import COLOURS, MARKERS, looks, save, spread
+from southwell.reports.style import COLOURS, INK, MARKERS, looks, save, spread
 from southwell.reports.units import GAMMA, RAD_S, RPM, Units
 
 from . import samples
@@ -40,6 +45,11 @@ def drawn(figure: Figure | None) -> Figure:
     return figure
 
 
+def points(line: Line2D) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """x and y of a line's points."""
+    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
+
+
 def all_figures(run: Run) -> list[Figure]:
     return [drawn(draw(run, "beam", RAD_S)) for draw in (campbell, differences, convergence)]
 
@@ -55,8 +65,6 @@ def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path, lumped
 
 
 def test_a_users_own_settings_of_matplotlib_change_nothing(tmp_path: Path) -> None:
-    import matplotlib as mpl
-
     save(drawn(campbell(samples.run(), "beam", RAD_S)), tmp_path / "a.svg")
     with mpl.rc_context({"font.size": 30, "lines.linewidth": 9, "axes.facecolor": "black", "svg.hashsalt": "other"}):
         save(drawn(campbell(samples.run(), "beam", RAD_S)), tmp_path / "b.svg")
@@ -66,10 +74,10 @@ def test_a_users_own_settings_of_matplotlib_change_nothing(tmp_path: Path) -> No
 @pytest.mark.parametrize("units", [RAD_S, RPM, GAMMA])
 def test_campbell_lines_run_through_cores_values_and_markers_are_the_codes(units: Units) -> None:
     axes = drawn(campbell(samples.run(), "beam", units)).axes[0]
-    lines = [line for line in axes.lines if line.get_color() == "#1a1a1a" and len(line.get_xdata()) > 2]
+    lines = [line for line in axes.lines if line.get_color() == INK and len(points(line)[0]) > 2]
     assert len(lines) == len(samples.BEAM)
     for (_, rest, coefficient), line in zip(samples.BEAM, lines, strict=True):
-        x, y = np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+        x, y = points(line)
         exact = [samples.frequency(rest, coefficient, v / units.speeds) * units.frequencies for v in x]
         np.testing.assert_allclose(
             y, exact, rtol=1e-9
@@ -78,16 +86,17 @@ def test_campbell_lines_run_through_cores_values_and_markers_are_the_codes(units
     assert set(marks) == set(samples.CODES)
     for code, line in marks.items():
         mine = [c for c in samples.run().cells if c.code == code and c.case == "beam"]
-        np.testing.assert_allclose(np.asarray(line.get_ydata(), float), [c.frequency * units.frequencies for c in mine])
-        np.testing.assert_allclose(np.asarray(line.get_xdata(), float), [c.omega * units.speeds for c in mine])
+        x, y = points(line)
+        np.testing.assert_allclose(y, [(c.frequency or 0.0) * units.frequencies for c in mine])
+        np.testing.assert_allclose(x, [c.omega * units.speeds for c in mine])
 
 
 def test_rays_are_multiples_of_the_rotors_speed() -> None:
     figure = drawn(campbell(samples.run(), "beam", RPM))
     axes = figure.axes[0]
     named = sorted(int(t.get_text()[:-1]) for t in axes.texts if t.get_text().endswith("P"))
-    rays = [line for line in axes.lines if len(line.get_xdata()) == 2 and line.get_xdata()[0] == 0]
-    slopes = sorted(float(r.get_ydata()[1] / r.get_xdata()[1]) for r in rays)
+    rays = [points(line) for line in axes.lines if len(points(line)[0]) == 2 and points(line)[0][0] == 0]
+    slopes = sorted(float(y[1] / x[1]) for x, y in rays)
     np.testing.assert_allclose(slopes, np.array(named) / 60.0)  # n per revolution: n rpm / 60 in Hz
     assert named[0] == 1
 
@@ -104,7 +113,7 @@ def test_convergence_shows_the_order_and_the_errors_of_the_rows() -> None:
     assert sorted(t.get_text() for t in panel.texts) == ["2.0", "2.0", "4.0"]
     slopes = []
     for line in panel.lines[1:]:
-        n, error = np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+        n, error = points(line)
         slopes.append(-np.polyfit(np.log(n), np.log(error), 1)[0])
     np.testing.assert_allclose(sorted(slopes), [2.0, 2.0, 4.0], rtol=0.01)
 
@@ -122,31 +131,39 @@ def test_convergence_puts_a_code_with_fewer_effects_into_the_panel_of_the_modes_
     figure = drawn(convergence(Run(tuple(cells), tuple(levels)), "beam", RAD_S))
     first = figure.axes[0]
     assert first.get_title(loc="left") == "chordwise 1"
-    np.testing.assert_allclose([line.get_ydata()[0] for line in first.lines[1:]], [0.1, 0.2])
+    np.testing.assert_allclose([points(line)[1][0] for line in first.lines[1:]], [0.1, 0.2])
 
 
 def test_differences_draw_every_number_and_each_rows_target() -> None:
     axes = drawn(differences(samples.run(), "beam", RAD_S)).axes[0]
-    count = sum(len(line.get_xdata()) for line in axes.lines)
+    count = sum(len(points(line)[0]) for line in axes.lines)
     assert count == sum(c.case == "beam" and c.difference is not None for c in samples.run().cells)
     assert "target 0.10 %" in {t.get_text() for t in axes.texts}
     assert [t.get_text() for t in axes.get_yticklabels()] == list(samples.CODES)
 
 
 @pytest.mark.parametrize("draw", [campbell, differences, convergence])
-def test_nothing_to_draw_is_no_figure(draw) -> None:
+def test_nothing_to_draw_is_no_figure(draw: Callable[[Run, str, Units], Figure | None]) -> None:
     assert draw(Run((samples.empty("not run", "not installed"),)), "beam", RAD_S) is None
     assert draw(samples.run(), "no such case", RAD_S) is None
+
+
+def labels(axes: Axes) -> list[Text]:
+    """The texts that are drawn: annotations, the title, the numbers within an axis' limits."""
+    ticks = []
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = sorted(axis.get_view_interval())
+        ticks += [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high and t.label1.get_visible()]
+    return [t for t in (*axes.texts, axes.title, axes._left_title, *ticks) if t.get_text().strip()]  # type: ignore[attr-defined]
 
 
 def test_labels_do_not_lie_on_each_other(lumped: Run) -> None:
     for figure in [*all_figures(samples.run()), drawn(lumping_figure(lumped))]:
         figure.draw_without_rendering()
-        renderer = figure._get_renderer()  # type: ignore[attr-defined]
-        texts = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip() and t.axes is not None]
-        boxes = [(t.get_text(), t.get_window_extent(renderer).padded(-1.5)) for t in texts if t.axes.get_visible()]
-        clashes = [(a, b) for k, (a, p) in enumerate(boxes) for b, q in boxes[:k] if p.overlaps(q) and a != b]
-        assert not clashes
+        texts = [t for axes in figure.axes if axes.get_visible() for t in labels(axes)]
+        assert len(texts) > 8
+        boxes = [(t.get_text(), t.get_window_extent().padded(-1.5)) for t in texts]
+        assert not [(a, b) for k, (a, p) in enumerate(boxes) for b, q in boxes[:k] if p.overlaps(q)]
 
 
 @given(st.lists(st.floats(-100, 100), max_size=8), st.floats(0.1, 30))
