@@ -22,10 +22,11 @@ ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 def campbell(run: Run, case: str, units: Units) -> Figure | None:
     """Frequencies against rotor speed: core's as lines, every code's as markers, rays of n per revolution.
 
-    Core's lines run straight in the squares between its points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). None if the
-    case has numbers at fewer than two speeds.
+    Core's lines run straight in the squares between its points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). Codes that are
+    given core's discretisation are not shown: theirs is not a converged answer. None if the case has numbers at fewer
+    than two speeds.
     """
-    cells = [c for c in run.cells if c.case == case]
+    cells = [c for c in run.cells if c.case == case and c.role != "same discretisation"]
     lines = _lines(cells)
     speeds = sorted({omega for line in lines.values() for omega in line})
     if len(speeds) < 2:

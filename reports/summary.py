@@ -85,8 +85,10 @@ def broad(cell: Cell) -> str:
 
 
 def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[str]:
-    """Names of columns, in the run's order."""
-    return list(dict.fromkeys(of(c) for c in cells))
+    """Names of columns: the source's own discretisation, printed tables, then the codes in the run's order."""
+    first = ("discretisation", "table")
+    ranked = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
+    return list(dict.fromkeys(of(c) for c in ranked))
 
 
 def labels(cells: Sequence[Cell]) -> dict[Cell, str]:

@@ -79,11 +79,12 @@ class Watch:
 def matrix(run: Run) -> Table:
     """Case × code: sign and largest difference; the gravest verdict of all modes and speeds."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    out = Table(box=box.SIMPLE_HEAD, caption=f"largest difference from core; {signs}", caption_justify="left")
-    out.add_column("case", overflow="fold")
+    caption = f"largest difference from core in % (as 2e-14: relative); {signs}"
+    out = Table(box=box.SIMPLE_HEAD, caption=caption, caption_justify="left", padding=(0, 1, 0, 0), pad_edge=False)
+    out.add_column("case", no_wrap=True)
     names = columns(run.cells, broad)
     for name in names:
-        out.add_column(re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name), overflow="fold")
+        out.add_column(re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name))
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
         out.add_row(case.replace("/", "/\n "), *[_field([c for c in mine if broad(c) == name]) for name in names])
@@ -95,7 +96,7 @@ def _field(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    number = f" {amount(size, worst.target)}" if worst and size is not None else ""
+    number = f" {amount(size, worst.target).removesuffix(' %')}" if worst and size is not None else ""
     return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
 
 
