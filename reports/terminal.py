@@ -71,7 +71,7 @@ class Watch:
         """Bring the bar up to date."""
         running = ", ".join(step.running)
         self.bar.update(self.task, completed=step.done, total=step.total, description=running)
-        if self.bar.disable and time.monotonic() - self.spoke > SILENCE:
+        if self.bar.disable and running and time.monotonic() - self.spoke > SILENCE:
             self.spoke = time.monotonic()
             self.console.print(f"{step.done} of {step.total} done; running: {running}", markup=False, soft_wrap=True)
 
