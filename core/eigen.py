@@ -84,19 +84,20 @@ def lanczos(
         factor = blocks.cholesky(K)
     except np.linalg.LinAlgError:
         raise _unstable() from None
-    ms, cs = blocks.sparse(M), blocks.sparse(C)
+    ms, cs, ks = blocks.sparse(M), blocks.sparse(C), blocks.sparse(K)
     limit = min(2 * n, max(200, 8 * count))
     basis, dual = np.zeros((2 * n, limit + 2)), np.zeros((2 * n, limit + 2))  # V and A V, VᵀAV = 1
     projected = np.zeros((limit + 2, limit + 2))
     start = np.random.default_rng(1921).normal(size=(2 * n, 2))
-    v, av = _step(factor, ms, cs, start)
+    v, av = _step(factor, cs, start, ms @ _side_by_side(start))
     size, look = 0, 2 * count + 16
     while True:
         v, av, kept = _orthonormal(v, av, basis[:, :size], dual[:, :size])
         new = slice(size, size + kept)
-        basis[:, new], dual[:, new] = v, av
+        mass = ms @ _side_by_side(v)
+        basis[:, new], dual[:n, new], dual[n:, new] = v, ks @ v[:n], mass[:, kept:]  # afresh: a recurrence would drift
         size += kept
-        w, aw = _step(factor, ms, cs, v)
+        w, aw = _step(factor, cs, v, mass)
         projected[:size, new] = basis[:, :size].T @ aw
         exhausted = kept == 0 or size + 2 > limit
         if exhausted or size >= look:
@@ -119,7 +120,9 @@ def lanczos(
         kappa = energy(x)
         root = np.sqrt(half**2 + m * kappa)
         frequencies = kappa / (root - half)
-    return _scaled(frequencies, x, blocks.sparse(K))
+        if (np.abs(frequencies * mu[positive] - 1.0) > 1e-2).any():
+            raise ArithmeticError("Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes")
+    return _scaled(frequencies, x, ks)
 
 
 @dataclass(frozen=True)
@@ -170,12 +173,16 @@ def _skew(t: Array) -> Array:
     return upper - upper.T
 
 
-def _step(factor: Factor, ms: Any, cs: Any, v: Array) -> tuple[Array, Array]:
-    """w = A⁻¹S v and A w = S v."""
+def _side_by_side(v: Array) -> Array:
+    """(n, 2k) from x over y (2n, k)."""
     n = len(v) // 2
-    x, y = v[:n], v[n:]
-    mass = ms @ np.hstack([x, y])
-    k = x.shape[1]
+    return np.hstack([v[:n], v[n:]])
+
+
+def _step(factor: Factor, cs: Any, v: Array, mass: Array) -> tuple[Array, Array]:
+    """w = A⁻¹S v and A w = S v; ``mass`` is M x beside M y."""
+    n, k = len(v) // 2, v.shape[1]
+    x = v[:n]
     force = cs @ x + mass[:, k:]
     return np.concatenate([factor.solve(force), -x]), np.concatenate([force, -mass[:, :k]])
 

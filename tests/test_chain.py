@@ -73,6 +73,15 @@ def test_banded_chain_and_dense_mechanism_agree(blade, omega, elements, mass, me
     np.testing.assert_allclose(lz.modes(dense, 10).frequencies, banded.frequencies, rtol=1e-10)
 
 
+@pytest.mark.parametrize("count", [10, 40, 80])
+def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
+    """A basis of hundreds of vectors in a semi-definite product must not drift: Lanczos against LAPACK."""
+    body = discretize(yoo_shin(0.0), 40, "half_end", "parent")
+    dense = lz.modes(lz.linearize(mechanism(body, 2.0)), count).frequencies
+    found = modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="parent").frequencies
+    np.testing.assert_allclose(found, dense, rtol=1e-9)
+
+
 def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
     body, n = discretize(curved(), 5), 5
