@@ -25,7 +25,7 @@ from ..cases.settings import settings
 from ..cases.sweep import Named, sweep
 from ..references import codes as registry
 from ..references.codes import UnknownCodeError
-from . import markdown, summary, terminal
+from . import summary, terminal
 from .units import BY_KEY, RAD_S, RPM, Units
 
 PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
@@ -92,10 +92,13 @@ def verify(
     path = _fresh(out)
     results.append(path, run=about)
     run, complete = _solve(chosen, names, about, path, workers or os.cpu_count() or 1)
-    report = markdown.write(run, out)
-    _show(run, report)
+    if run.cells:
+        _show(run, out)
     if not complete:
-        print(f"southwell: interrupted: the report has the {len(run.cells)} cells that were finished", file=sys.stderr)
+        kept = (
+            f"the report has the {len(run.cells)} cells that were finished" if run.cells else "nothing was finished yet"
+        )
+        print(f"southwell: interrupted: {kept}", file=sys.stderr)
         return INTERRUPTED
     return summary.status(run)
 
@@ -211,7 +214,7 @@ def report(folder: Path, /) -> int:
         raise UsageError(str(error)) from error
     if not run.cells:
         raise UsageError(f"{path}: no results in it: the run was cut short before its first; run `southwell verify`")
-    _show(run, markdown.write(run, folder))
+    _show(run, folder)
     return PASSED
 
 
@@ -276,12 +279,16 @@ def _fresh(out: Path) -> Path:
     return path
 
 
-def _show(run: Run, report: Path) -> None:
+def _show(run: Run, folder: Path) -> None:
+    """Write the report, and print what it says first."""
+    from . import markdown  # with its figures half of a command's time to start, and of every worker's
+
+    report = markdown.write(run, folder)
     console = terminal.output()
     for line in markdown.headline(run):
         console.print(line.replace("**", ""), markup=False)
     console.print(terminal.matrix(run))
-    console.print(f"{report}, {report.parent / RESULTS}", markup=False, soft_wrap=True)
+    console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

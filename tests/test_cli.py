@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from southwell.cases import library, results
+from southwell.cases import library, matrix, results
 from southwell.core.solve import modes
 from southwell.references.codes import names
 from southwell.reports import cli
@@ -267,6 +267,18 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert kept.versions
     assert f"**{len(kept.cells)} cells**" in (out / "report.md").read_text()
     assert not _running(tmp_path)
+
+
+def test_interrupted_before_anything_is_finished_there_is_no_report(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(matrix, "run", interrupt)
+    status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
+    assert (status, out, err) == (130, "", "southwell: interrupted: nothing was finished yet\n")
+    assert not (tmp_path / "out" / "report.md").exists()
 
 
 def _running(mark: Path) -> list[str]:
