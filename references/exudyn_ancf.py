@@ -25,6 +25,9 @@ from . import exudyn_system as ex
 from .interface import CodeError, Shares
 from .quadratic import gyroscopic_modes
 
+ROUNDING = 2e-15
+"""What rounding leaves of an axial force, of EA times the number of elements (their stiffness is EA over their length)."""
+
 CLAMPED = [0, 1, 2, 4, 5]
 """Coordinates of the root node that a clamp holds: position, and the slope across; the slope along is free to stretch."""
 
@@ -112,7 +115,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
             )
         )
         mbs.Assemble()
-        ex.settle(exu, mbs, omega)
+        ex.settle(exu, mbs, omega, rounding=ROUNDING * section.EA[0] * elements)
         _, _, K = ex.linearized(exu, mbs)
     return M, 2 * omega * M @ B, K
 

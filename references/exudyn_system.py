@@ -43,16 +43,19 @@ def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:
         mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, held]))
 
 
-def settle(exu: Any, mbs: Any, omega: float) -> None:
+def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:
     """Move an assembled system to its static equilibrium, and its initial values with it.
 
-    The initial values matter: it is about them that Exudyn linearises.
+    The initial values matter: it is about them that Exudyn linearises. ``rounding`` (N or N m) is what rounding leaves of
+    the stiffest forces: a residual below it cannot be had, and Newton's method would not end.
 
     Raises:
         CodeError: Newton's method found none.
     """
     try:
-        mbs.SolveStatic(_settings(exu), updateInitialValues=True, showCausingItems=False)
+        settings = _settings(exu)
+        settings.staticSolver.newton.absoluteTolerance = max(settings.staticSolver.newton.absoluteTolerance, rounding)
+        mbs.SolveStatic(settings, updateInitialValues=True, showCausingItems=False)
     except exu.ExudynError as error:
         raise CodeError(f"omega: {omega:g} rad/s: Exudyn finds no steady state ({error}): lower the speed") from error
 
