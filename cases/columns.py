@@ -93,7 +93,7 @@ def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Co
             code.name,
             model,
             head,
-            partial(_same, head, name, blade, code.levels[len(code.levels) // 2], code.model, timeout),
+            partial(_same, head, name, blade, code.levels[-1], code.model, timeout),
         )
     refining = Refining(tuple(code.levels), code.order, cap(code))
     return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))

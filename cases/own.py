@@ -1,5 +1,6 @@
 """Core as one more solver: its answers in the form of a foreign code's, refined until they can serve as reference."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,10 +20,10 @@ from .pairing import MOTIONS, Array, aligned, families, shares, weights
 from .schema import Compare
 from .study import Refining, Settled, Wanted, settle, solve
 
-SURE = 2e-5
-"""Core is refined until its own uncertainty, relative, is no more than this: a tenth of what a code is allowed."""
+SURE = 5e-5
+"""Core is refined until its own uncertainty, relative, is no more than this: a quarter of what a code is allowed."""
 
-START, CAP = 20, 960
+START, CAP = 15, 960
 """Core's coarsest and finest reference discretisation, in elements."""
 
 MARGIN = 4
@@ -64,21 +65,19 @@ def answers(
 
 
 def refining(blade: Blade) -> Refining:
-    """How core is refined: with every station at a node if that can be had, since kinks inside elements cost order."""
-    fractions = blade.stations / blade.length
-    fit = (n for n in range(START, 10 * START) if np.abs(n * fractions - np.round(n * fractions)).max() < 1e-6)
-    start = next(fit, 3 * START)
+    """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations."""
+    shortest = float(np.diff(blade.stations).min()) / blade.length
+    start = max(START, math.ceil(1.0 / shortest - 1e-9))
     return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
 
 
-def converged(blade: Blade, speeds: Sequence[float], compare: Compare, model: Model) -> list[Converged | Failure]:
-    """Core's converged modes at each speed, with the effects of ``model``.
+def converged(blade: Blade, omega: float, compare: Compare, model: Model) -> Converged | Failure:
+    """Core's converged modes at one speed, with the effects of ``model``.
 
     Raises:
         CaseError: if the blade has fewer modes than the case compares.
     """
-    weight, count = weights(blade), 2 * compare.modes + MARGIN
-    return [_converged(blade, omega, compare, model, weight, count) for omega in speeds]
+    return _converged(blade, omega, compare, model, weights(blade), 2 * compare.modes + MARGIN)
 
 
 def _converged(

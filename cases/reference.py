@@ -1,7 +1,8 @@
 """What a code is compared with: core with the effects that the code keeps, and what the missing ones would change."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cache
 
 from ..core.blade import Blade
 from ..core.model import FULL, Model
@@ -21,7 +22,8 @@ class Reference:
         core: converged modes.
         full: the same modes' frequencies with all effects, rad/s; None where no mode with all effects resembles them.
         likeness: MAC of each mode with the one with all effects.
-        effects: for each mode, what leaving out each effect that the model lacks does to it.
+        effects: for each mode, what leaving out each effect that the model lacks does to it; empty where all of them
+            together do no more than the target.
     """
 
     core: Converged
@@ -37,9 +39,13 @@ References = dict[Model, list[Reference | Failure]]
 """By model, at each speed."""
 
 
-def felt(model: Model, blade: Blade) -> Model:
-    """The model as this blade feels it: rotary inertia is not lacking where the blade has none."""
-    return replace(model, rotary_inertia=model.rotary_inertia or not blade.mass[:, 3:, 3:].any())
+def felt(model: Model, blade: Blade, omega: float = 1.0) -> Model:
+    """The model as this blade feels it at this speed: what could make no difference is not lacking.
+
+    A blade without rotary inertia cannot lack it; at rest only rotary inertia is left to lack.
+    """
+    inertia = model.rotary_inertia or not blade.mass[:, 3:, 3:].any()
+    return replace(model if omega else FULL, rotary_inertia=inertia)
 
 
 def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Model]) -> References:
@@ -49,35 +55,39 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: 
         CaseError: if with all effects there is no stable steady state at one of the speeds, or too few modes.
     """
     models = set(models) | {FULL}
-    lacking = {f.name for model in models for f in fields(model) if not getattr(model, f.name)}
-    without = {effect: replace(FULL, **{effect: False}) for effect in lacking}
-    solved = {model: converged(blade, speeds, compare, model) for model in {*models, *without.values()}}
-    for omega, full in zip(speeds, solved[FULL], strict=True):
-        if isinstance(full, Failure):
-            raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
-    return {
-        model: [
-            mine
-            if isinstance(mine, Failure)
-            else _reference(
-                mine,
-                solved[FULL][k],
-                {name: solved[m][k] for name, m in without.items() if not getattr(model, name)},
-            )
-            for k, mine in enumerate(solved[model])
-        ]
-        for model in models
-    }
+    by_speed = [_at(blade, omega, compare, models) for omega in speeds]
+    return {model: [solved[model] for solved in by_speed] for model in models}
 
 
-def _reference(mine: Converged, full: Converged | Failure, without: dict[str, Converged | Failure]) -> Reference:
+def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Model]) -> dict[Model, Reference | Failure]:
+    @cache
+    def solve(model: Model) -> Converged | Failure:
+        return converged(blade, omega, compare, model)
+
+    full = solve(FULL)
+    if isinstance(full, Failure):
+        raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
+    out: dict[Model, Reference | Failure] = {}
+    for model in models:
+        keeps = felt(model, blade, omega)
+        mine = solve(keeps)
+        out[model] = mine if isinstance(mine, Failure) else _reference(mine, full, compare.target, keeps, solve)
+    return out
+
+
+def _reference(
+    mine: Converged, full: Converged, target: float, model: Model, solve: Callable[[Model], Converged | Failure]
+) -> Reference:
     whole, likeness = _partners(mine, full)
-    changes = {name: _partners(mine, other)[0] for name, other in without.items()}
-    effects = tuple(
-        tuple(Effect(name.replace("_", " "), _change(f[i], reference)) for name, f in changes.items())
-        for i, reference in enumerate(whole)
-    )
-    return Reference(mine, whole, likeness, effects)
+    values = [s.estimate.value if s.estimate else None for s in mine.settled]
+    shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
+    effects: list[list[Effect]] = [[] for _ in values]
+    if any(shift is None or abs(shift) > target for shift in shifts):  # each effect alone is worth solving for
+        for name in (f.name for f in fields(model) if not getattr(model, f.name)):
+            without, _ = _partners(mine, solve(replace(FULL, **{name: False})))
+            for found, f, reference in zip(effects, without, whole, strict=True):
+                found.append(Effect(name.replace("_", " "), _change(f, reference)))
+    return Reference(mine, whole, likeness, tuple(map(tuple, effects)))
 
 
 def _change(without: float | None, whole: float | None) -> float | None:

@@ -1,0 +1,93 @@
+"""What each code can do, and what each case's blades ask for: the one table that drives the verification matrix.
+
+It is written by hand and independently of the adapters' own declarations, so that an adapter that starts to drop a property,
+or to refuse a blade it used to solve, is seen.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Can:
+    """What a code solves, and what it leaves out by construction.
+
+    Attributes:
+        taper: sections that vary along the span.
+        twist: structural twist.
+        unlike: different bending stiffness in the two planes.
+        stretch: has axial motion, so axial modes too.
+        lacks: physical effects it leaves out.
+        estimate: gives a bracket instead of a converged number.
+        twin: is given core's own discretisation and held to rounding.
+    """
+
+    taper: bool = True
+    twist: bool = True
+    unlike: bool = True
+    stretch: bool = True
+    lacks: tuple[str, ...] = ()
+    estimate: bool = False
+    twin: bool = False
+
+
+CODES = {
+    "exudyn-ancf": Can(unlike=False, twist=False, lacks=("rotary inertia",)),
+    "exudyn-tree": Can(),
+    "scikit-fem": Can(),
+    "pinocchio": Can(twin=True),
+    "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
+    "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
+    "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
+    "exact-beam": Can(twist=False),
+}
+
+
+@dataclass(frozen=True)
+class Asks:
+    """What a blade needs of a code; ``gentle``: no effect that a code may leave out shifts any mode by more than 0.1 %."""
+
+    taper: bool = False
+    twist: bool = False
+    unlike: bool = False
+    gentle: bool = True
+
+
+BLADES = {
+    "park-cantilever": Asks(),
+    "park-blade/windpact": Asks(taper=True, twist=True, unlike=True),
+    "park-blade/surrogate": Asks(taper=True, twist=True, unlike=True),
+    "park-blade/surrogate-untwisted": Asks(taper=True, unlike=True),
+    "yoo-shin-chordwise/delta-0": Asks(gentle=False),
+    "yoo-shin-chordwise/delta-0.1": Asks(gentle=False),
+    "yoo-shin-chordwise/delta-1": Asks(gentle=False),
+    "yoo-shin-chordwise/delta-5": Asks(gentle=False),
+    "wright-flapwise": Asks(),
+}
+
+TABLES = {
+    "park2010/present": "park-cantilever",
+    "park2010/ref-3": "park-cantilever",
+    "wright1982/four-decimals": "wright-flapwise",
+    "wright1982/bir2009": "wright-flapwise",
+    "yoo_shin1998/p-version": "yoo-shin-chordwise/delta-0",
+    "yoo_shin1998/coupled": "yoo-shin-chordwise/delta-0",
+    "yoo_shin1998/uncoupled": "yoo-shin-chordwise/delta-0",
+}
+"""Printed series, and the blade they are about."""
+
+
+def solves(can: Can, asks: Asks) -> bool:
+    """Whether a code can be expected to solve a blade."""
+    return all(getattr(can, need) or not getattr(asks, need) for need in ("taper", "twist", "unlike"))
+
+
+def allowed(can: Can, asks: Asks, omega: float) -> set[str]:
+    """Verdicts that are right for a code that solves the blade; ``fail`` and ``inconclusive`` never are."""
+    verdicts = {"pass"}
+    if can.estimate and omega > 0:
+        verdicts.add("known difference")
+    if can.lacks and not asks.gentle and omega > 0:
+        verdicts.add("known difference")
+    if not can.stretch and not asks.gentle:
+        verdicts.add("not applicable")  # the axial modes
+    return verdicts
