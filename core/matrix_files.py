@@ -1,0 +1,209 @@
+"""Stiffness (and mass) matrices that other codes export as text, with the freedoms they belong to.
+
+Read are, told apart by what is in them (the last by name):
+
+* CalculiX and Abaqus ``*SUBSTRUCTURE MATRIX OUTPUT, OUTPUT FILE=USER DEFINED``: a ``*USER ELEMENT`` with its nodes in
+  comments, lines of the freedoms that are active from each node on, and ``*MATRIX, TYPE=STIFFNESS`` or ``MASS`` with the
+  lower triangle row by row. CalculiX 2.20 names a node once for each of its freedoms;
+* Abaqus ``*MATRIX OUTPUT``: lines ``node, freedom, node, freedom, value`` (FORMAT=MATRIX INPUT) or ``row column value``
+  (FORMAT=COORDINATE, no freedoms named), either triangle or both, commas or blanks between;
+* Nastran ``DMIG`` in fixed fields, small (8) or large (16, ``DMIG*``), as punched by EXTSEOUT(DMIGPCH); real matrices that
+  are square (1) or symmetric (6, either triangle), exponents with ``E``, ``D`` or a bare sign;
+* Matrix Market, coordinate or array, by scipy (no freedoms named);
+* CalculiX ``*FREQUENCY, SOLVER=MATRIXSTORAGE`` by ``stored``: ``row column value`` in ``.sti`` and ``.mas``, with the freedoms
+  ``node.component`` of the rows beside them in ``.dof``.
+
+Freedoms 1–3 are displacements along x, y, z and 4–6 rotations about them.
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+import scipy.sparse as ss
+
+from .exported import Exported, MatrixFileError, assembled, labelled
+
+REAL = (1, 2)
+SQUARE, SYMMETRIC = 1, 6
+
+
+def read(path: Path, what: str = "stiffness") -> Exported:
+    """Read one matrix.
+
+    Args:
+        path: of the file, of a form listed above.
+        what: which matrix, where the file has several: the TYPE of a user element's ``*MATRIX`` (stiffness, mass), or the
+            name of a DMIG (KAAX, MAAX). A file with one matrix is read whatever its name.
+
+    Raises:
+        MatrixFileError: not one of these forms, broken off, or without that matrix.
+        OSError: if there is no such file.
+    """
+    text = path.read_text(errors="replace")
+    if text.startswith("%%MatrixMarket"):
+        return _matrix_market(path)
+    lines = text.upper().splitlines()
+    if any(line.startswith("*USER ELEMENT") for line in lines):
+        return _user_element(path.name, lines, what.upper())
+    if any(line.startswith("DMIG") for line in lines):
+        return _dmig(path.name, lines, what.upper())
+    return _triplets(path.name, lines)
+
+
+def stored(path: Path) -> Exported:
+    """A matrix that CalculiX stored, with the freedoms from the ``.dof`` file beside it.
+
+    Raises:
+        MatrixFileError: as ``read``, or another number of freedoms than of rows.
+        OSError: if either file is missing.
+    """
+    matrix: Any = read(path).matrix
+    words = [w.split(".") for w in path.with_suffix(".dof").read_text().split()]
+    rows = matrix.shape[0]
+    if len(words) != rows:
+        raise MatrixFileError(f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: of another run?")
+    freedoms = np.array([[_whole(path.with_suffix(".dof").name, k, v) for v in w] for k, w in enumerate(words, 1)])
+    return labelled(path.name, matrix, freedoms)
+
+
+def _matrix_market(path: Path) -> Exported:
+    try:
+        matrix: Any = scipy.io.mmread(path)
+    except (ValueError, OverflowError) as error:
+        raise MatrixFileError(f"{path.name}: not a Matrix Market file: {error}") from error
+    rows, columns = matrix.shape
+    if rows != columns:
+        raise MatrixFileError(f"{path.name}: a matrix of {rows} × {columns}: a stiffness is square")
+    return Exported(path.name, ss.csr_array(matrix))
+
+
+def _user_element(name: str, lines: list[str], what: str) -> Exported:
+    nodes: list[int] = []
+    active: dict[int, list[int]] = {}  # position among the nodes → freedoms from there on
+    triangles: dict[str, list[float]] = {}
+    card = ""
+    for number, line in enumerate(lines, 1):
+        words = re.findall(r"[^\s,]+", line)
+        if line.startswith("**"):
+            if "ELEMENT NODES" in line:
+                card = "nodes"
+            elif card == "nodes" and re.fullmatch(r"[*\s\d,]+", line):
+                nodes += [int(v) for v in re.findall(r"\d+", line)]
+        elif line.startswith("*"):
+            kind = re.search(r"^\*MATRIX\s*,\s*TYPE\s*=\s*(\w+)", line)
+            card = kind[1] if kind else ""
+            if kind:
+                triangles[card] = []
+        elif card == "nodes":
+            given = [_whole(name, number, w) for w in words]
+            active[given[0] if active else 1] = given[1:] if active else given
+        elif card:
+            triangles[card] += [_real(name, number, w) for w in words]
+    key = _chosen(name, "*MATRIX, TYPE", list(triangles), what)
+    freedoms: list[tuple[int, int]] = []
+    now: list[int] = []
+    for position, node in enumerate(nodes, 1):
+        now = active.get(position, now)
+        freedoms += [(node, f) for f in now]
+    n, values = len(freedoms), triangles[key]
+    if len(values) != n * (n + 1) // 2:
+        raise MatrixFileError(
+            f"{name}: {len(values)} values, expected {n * (n + 1) // 2} for the triangle of {n} freedoms: broken off?"
+        )
+    dense = np.zeros((n, n))
+    dense[np.tril_indices(n)] = values
+    return labelled(name, ss.csr_array(dense + np.tril(dense, -1).T), np.array(freedoms, dtype=np.intp).reshape(-1, 2))
+
+
+def _triplets(name: str, lines: list[str]) -> Exported:
+    labels: list[list[int]] = []
+    values: list[float] = []
+    for number, line in enumerate(lines, 1):
+        words = re.findall(r"[^\s,]+", line)
+        if not words or words[0][0] in "*%#$":
+            continue
+        width = len(labels[0]) + 1 if labels else len(words)
+        if len(words) != width or width not in (3, 5):
+            raise MatrixFileError(
+                f"{name}, line {number}: {len(words)} columns: each line has row, column, value, or node, freedom, node, "
+                "freedom, value; broken off, or another form?"
+            )
+        labels.append([_whole(name, number, w) for w in words[:-1]])
+        values.append(_real(name, number, words[-1]))
+    if not labels:
+        raise MatrixFileError(f"{name}: no matrix in it: see core.matrix_files for the forms that are read")
+    at = np.array(labels, dtype=np.intp)
+    if at.shape[1] == 4:
+        return assembled(name, at[:, :2], at[:, 2:], np.array(values))
+    rows, columns = (np.column_stack([at[:, k], np.ones(len(at), np.intp)]) for k in (0, 1))
+    found = assembled(name, rows, columns, np.array(values))
+    if (found.nodes != 1 + np.arange(len(found.nodes))).any():
+        raise MatrixFileError(
+            f"{name}: rows {found.nodes.tolist()[:3]}…: not all from 1 to the last: rows without entries?"
+        )
+    return Exported(name, found.matrix)
+
+
+def _dmig(name: str, lines: list[str], what: str) -> Exported:
+    forms: dict[str, tuple[int, int]] = {}
+    entries: dict[str, list[tuple[int, int, int, int]]] = {}
+    values: dict[str, list[float]] = {}
+    matrix, column = "", (0, 0)
+    for number, line in enumerate(lines, 1):
+        width = 16 if "*" in line[:8] else 8
+        words = [line[k : k + width].strip() for k in range(8, max(len(line), 9), width)]
+        words += [""] * (8 - len(words))
+        if line.startswith("DMIG"):
+            matrix = words[0]
+            if words[1] == "0":
+                forms[matrix] = _whole(name, number, words[2]), _whole(name, number, words[3])
+                entries[matrix], values[matrix] = [], []
+                continue
+            if matrix not in forms:
+                raise MatrixFileError(
+                    f"{name}, line {number}: column of {matrix} before its header: was the start cut off?"
+                )
+            column = _whole(name, number, words[1]), _whole(name, number, words[2])
+            words = words[4:] if width == 8 else []
+        elif not matrix or line[:1] not in "+* " or not line.strip():
+            matrix = matrix if not line.strip() or line.startswith("$") else ""
+            continue
+        for k in range(0, len(words) - 2, 4):
+            if words[k]:
+                row = _whole(name, number, words[k]), _whole(name, number, words[k + 1])
+                entries[matrix].append((*row, *column))
+                values[matrix].append(_real(name, number, words[k + 2]))
+    key = _chosen(name, "DMIG", list(entries), what)
+    form, numbers = forms[key]
+    if form not in (SQUARE, SYMMETRIC) or numbers not in REAL:
+        raise MatrixFileError(
+            f"{name}: DMIG {key} has form {form}, type {numbers}: form 1 (square) or 6 (symmetric), type 1 or 2 (real) is read"
+        )
+    at = np.array(entries[key], dtype=np.intp).reshape(-1, 4)
+    return assembled(name, at[:, :2], at[:, 2:], np.array(values[key]), mirror=form == SYMMETRIC)
+
+
+def _chosen(name: str, kind: str, there: list[str], what: str) -> str:
+    if not there:
+        raise MatrixFileError(f"{name}: no {kind} in it: was the output broken off?")
+    if what not in there and len(there) > 1:
+        raise MatrixFileError(f"{name}: {kind} {what} is not in it; there are {', '.join(there)}")
+    return what if what in there else there[0]
+
+
+def _whole(name: str, number: int, word: str) -> int:
+    try:
+        return int(word)
+    except ValueError:
+        raise MatrixFileError(f"{name}, line {number}: {word!r} is not a whole number: columns shifted?") from None
+
+
+def _real(name: str, number: int, word: str) -> float:
+    """Fortran's and Nastran's way of writing included: 1.5D+03, 1.5+3."""
+    try:
+        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word.replace("D", "E")))
+    except ValueError:
+        raise MatrixFileError(f"{name}, line {number}: {word!r} is not a number: columns shifted?") from None
