@@ -1,1 +1,17 @@
 """Southwell: are these natural frequencies of a rotating blade right?"""
+
+from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
+from .core.model import Model
+from .core.modes import Modes
+from .core.solve import modes
+
+__all__ = [
+    "Blade",
+    "BladeError",
+    "Model",
+    "Modes",
+    "modes",
+    "section_mass",
+    "section_stiffness",
+    "uniform_blade",
+]
