@@ -121,7 +121,9 @@ def lanczos(
         root = np.sqrt(half**2 + m * kappa)
         frequencies = kappa / (root - half)
         if (np.abs(frequencies * mu[positive] - 1.0) > 1e-2).any():
-            raise ArithmeticError("Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes")
+            raise ArithmeticError(
+                "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
+            )
     return _scaled(frequencies, x, ks)
 
 
