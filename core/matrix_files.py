@@ -50,7 +50,7 @@ def read(path: Path, what: str = "stiffness") -> Exported:
         return _user_element(path.name, lines, what.upper())
     if any(line.startswith("DMIG") for line in lines):
         return _dmig(path.name, lines, what.upper())
-    return _triplets(path.name, lines)
+    return _triplets(path.name, text.splitlines())
 
 
 def stored(path: Path) -> Exported:
@@ -204,6 +204,6 @@ def _whole(name: str, number: int, word: str) -> int:
 def _real(name: str, number: int, word: str) -> float:
     """Fortran's and Nastran's way of writing included: 1.5D+03, 1.5+3."""
     try:
-        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word.replace("D", "E")))
+        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word.upper().replace("D", "E")))
     except ValueError:
         raise MatrixFileError(f"{name}, line {number}: {word!r} is not a number: columns shifted?") from None

@@ -150,12 +150,17 @@ def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.co
         nodes: (n, 3), with a layer of them at every station along x; rotations are about the line y = z = 0.
         weights: (n,) share of its section that each node stands for.
         u: (3, n, m) displacements along x, y, z.
+
+    Raises:
+        CodeError: if a station has no nodes.
     """
     root, tip = nodes[:, 0].min(), nodes[:, 0].max()
     out = np.zeros((u.shape[2], len(STATIONS), 4), complex)
     directions = np.arange(3)
     for k, at in enumerate(root + STATIONS * (tip - root)):
         here = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
+        if not len(here):
+            raise CodeError(f"mesh: no layer of nodes at x = {at:g} m, a station: make the layers a multiple of ten")
         frame = np.eye(4)
         frame[0, 3] = at
         R = ties.motion(np.tile(nodes[here], (3, 1)), np.repeat(directions, len(here)), frame)

@@ -204,7 +204,7 @@ def torsion(length: float, how: str) -> float:
     """G J that a piece of the rectangular bar shows, relative to St Venant's; in place: between neighbours of one chord."""
     layers = round(length / LAYER)
     margin = round(CHORD / LAYER) if how == "in place" else 0
-    x = np.arange(-margin, layers + margin + 1) * LAYER
+    x = np.linspace(-margin * LAYER, (layers + margin) * LAYER, layers + 2 * margin + 1)
     bricks = blade(x, CHORD, THICK, across=(6, 2))
     model = solid.finite_elements(bricks, SQUARE)
     if how == "in place":

@@ -128,5 +128,7 @@ def test_errors_name_what_is_wrong() -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match="clamp: holds 0 displacements"):
         solid.modes(bricks, STEEL, 0.0, 2, clamped(ROOT + 0.1))
+    with pytest.raises(CodeError, match=r"mesh: no layer of nodes at x = 0\.35 m"):
+        solid.modes(bricks, STEEL, 0.0, 2, clamped(ROOT))
     with pytest.raises(CodeError, match=r"no (stable )?steady state"):
         solid.modes(bricks, STEEL, 1e5, 2, clamped(ROOT))
