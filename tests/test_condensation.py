@@ -4,10 +4,12 @@ Sources of truth: St Venant's bars, Timoshenko's exact frequencies, closed forms
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.sparse as ss
+from matplotlib.collections import PolyCollection
 
 from southwell.core import linearize as lz
 from southwell.core import sections, segments, ties
@@ -22,6 +24,8 @@ from southwell.core.solve import modes
 from southwell.core.ties import CondensationError, FiniteElements
 from southwell.references import solid
 from southwell.references.solid_mesh import blade
+from southwell.reports.condensation import stages
+from southwell.reports.style import save
 from southwell.tests.beams import PARK
 from southwell.tests.solids import (
     HUB,
@@ -339,6 +343,41 @@ def test_nothing_of_the_blades_mass_is_lost() -> None:
     R = ties.motion(model.points, model.directions, np.eye(4))
     np.testing.assert_allclose(total, (R.T * model.mass) @ R, atol=1e-12 * total.max())
     assert where[0, 3] == pytest.approx(ROOT + SPAN)
+
+
+# The picture
+
+
+def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
+    """Faces of the mesh, 5 sections, 4 boxes and 4 springs; a box's outline is the segment's own, and bytes do not vary."""
+    mass, side, length = 3.0, 0.2, 0.5
+    body = inertia(
+        mass, mass / 12 * np.array([2 * side**2, side**2 + length**2, side**2 + length**2]), [length / 2, 0, 0]
+    )
+    k12, _, rest = beam_segment(length)
+    pieces = [segment_from_matrix(k12, rest, body)] * 4
+    bricks = blade(np.linspace(1.0, 3.0, 9), side, side, across=(3, 2))
+    figure = stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999)
+    mesh, cut, compressed = (
+        [np.array([p.vertices for p in c.get_paths()]) for c in a.collections if isinstance(c, PolyCollection)]
+        for a in figure.axes
+    )
+    assert [len(faces) for faces in mesh] == [2 * (8 * 3 + 8 * 2 + 3 * 2)]
+    assert [faces.shape[1] for faces in cut] == [11] * 5  # 10 corners round, closed
+    assert [len(faces) for faces in compressed] == [6] * 4
+    apart = [np.ptp([faces[..., 0].mean() for faces in drawn]) for drawn in (cut, compressed)]
+    assert apart[1] == pytest.approx(3 / 4 * apart[0], rel=1e-9)
+    edges = np.diff(compressed[0], axis=1).reshape(-1, 2)
+    for corner in (3, 8):  # along y and z from the first
+        assert np.abs(edges - (cut[0][0, corner] - cut[0][0, 0])).sum(axis=1).min() < 1e-9
+    assert {t.get_text() for t in figure.texts} == {
+        "Finite element model: 48 hexahedra, 999 freedoms",
+        "5 sections, each tied to a frame",
+        "Compressed model: 4 rigid bodies, 4 complex stiffness elements, 24 freedoms",
+    }
+    for name in ("one.svg", "two.svg"):
+        save(stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999), tmp_path / name)
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
 
 
 # Bad input
