@@ -1,10 +1,14 @@
-"""Worker processes for a run that, when told to stop, stop at once and take the foreign codes they wait for with them."""
+"""Worker processes for a run that stop at once, and take the foreign codes they wait for with them.
+
+They do when told to, and when the process that started them is gone, however it went.
+"""
 
 import os
 import signal
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children, get_context, parent_process
+from threading import Thread, main_thread
 from types import FrameType
 from typing import Any, ParamSpec, TypeVar
 
@@ -14,6 +18,7 @@ T = TypeVar("T")
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 _leaving = False
+_orphaned = False
 
 
 class Pool(ProcessPoolExecutor):
@@ -38,6 +43,15 @@ class Pool(ProcessPoolExecutor):
 def _begin() -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
+    Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    global _orphaned
+    if (parent := parent_process()) and (here := main_thread().ident):
+        parent.join()
+        _orphaned = True
+        signal.pthread_kill(here, signal.SIGTERM)
 
 
 def _leave(number: int, frame: FrameType | None) -> None:
@@ -51,4 +65,8 @@ def _leave(number: int, frame: FrameType | None) -> None:
 def _unless_leaving(fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
     if _leaving:
         raise SystemExit(128 + signal.SIGINT)
-    return fn(*args, **kwargs)
+    try:
+        return fn(*args, **kwargs)
+    finally:
+        if _orphaned:  # nobody is left to hear of the result, or to say that there is no more to do
+            os._exit(1)

@@ -240,12 +240,13 @@ def test_a_code_that_is_absent_is_not_an_error(beam: Path, tmp_path: Path, capsy
     assert "not installed: pip install manners" in (tmp_path / "out" / "report.md").read_text()
 
 
-def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process(beam: Path, tmp_path: Path) -> None:
-    out = tmp_path / "out"
+def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
+    """A verification that has finished some cells and now waits for codes that hang; and its results file."""
+    out = mark / "out"
     beam.write_text(BEAM + "[variants.a]\n[variants.b]\n[variants.c]\n[variants.d]\n")  # more to do than hands
     command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
     command += ["--codes", "exact-beam,misbehaving:HANG"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "SOUTHWELL_TEST": str(tmp_path)}
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "SOUTHWELL_TEST": str(mark)}
     child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
     results_file = out / "results.jsonl"
     waited = time.monotonic() + 120
@@ -253,7 +254,25 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
         assert child.poll() is None
         assert time.monotonic() < waited
         time.sleep(0.1)
-    assert _running(tmp_path)
+    assert len(running(mark)) > 2
+    return child, results_file
+
+
+def running(mark: Path) -> list[str]:
+    """Processes with ``mark`` in their environment: those that the run has started."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            text = entry.read_bytes()
+        except OSError:
+            continue
+        if f"SOUTHWELL_TEST={mark}\0".encode() in text:
+            found.append(entry.parent.name)
+    return found
+
+
+def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process(beam: Path, tmp_path: Path) -> None:
+    child, results_file = started(beam, tmp_path)
     began = time.monotonic()
     child.send_signal(signal.SIGINT)
     _, err = child.communicate(timeout=60)
@@ -265,8 +284,22 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert len(kept.cells) >= 4
     assert {(c.code, c.verdict) for c in kept.cells} == {("exact-beam", "pass")}
     assert kept.versions
-    assert f"**{len(kept.cells)} cells**" in (out / "report.md").read_text()
-    assert not _running(tmp_path)
+    assert f"**{len(kept.cells)} cells**" in (results_file.parent / "report.md").read_text()
+    assert not running(tmp_path)
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
+def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
+    how: signal.Signals, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    child, results_file = started(beam, tmp_path)
+    child.send_signal(how)
+    child.communicate(timeout=30)  # its children hold its pipes open: they must be gone, too
+    assert child.returncode == -how
+    assert not running(tmp_path)
+    status, shown, _ = southwell(f"report {results_file.parent}", capsys)
+    assert status == 0
+    assert "✔ pass" in shown.splitlines()[0]
 
 
 def test_interrupted_before_anything_is_finished_there_is_no_report(
@@ -279,19 +312,6 @@ def test_interrupted_before_anything_is_finished_there_is_no_report(
     status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
     assert (status, out, err) == (130, "", "southwell: interrupted: nothing was finished yet\n")
     assert not (tmp_path / "out" / "report.md").exists()
-
-
-def _running(mark: Path) -> list[str]:
-    """Processes with ``mark`` in their environment: those that the run has started."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            text = entry.read_bytes()
-        except OSError:
-            continue
-        if f"SOUTHWELL_TEST={mark}\0".encode() in text:
-            found.append(entry.parent.name)
-    return found
 
 
 def test_cases_and_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
