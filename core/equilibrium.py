@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -12,7 +13,7 @@ from .dynamics import Cartesian
 from .kinematics import Kinematics, kinematics, poses
 from .mechanism import MechanismError, Tree
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 _STEPS = 100
 

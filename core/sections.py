@@ -122,7 +122,7 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     stiffness = np.linalg.inv(flexibility)
     q = np.repeat(element, GAUSS)
     shape, break_shape = within.reshape(-1, 6, 6) @ stiffness[q], before @ stiffness[element]
-    size = np.repeat([1.0, np.mean(np.diff(nodes))], 3)
+    size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
     load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
     inside, _, total = running(load)
     carried = total[element][:, None] - inside  # beyond each point
@@ -139,7 +139,7 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     along = part * last[element][:, None]
     helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
     slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear shortens nothing along its axis
-    bow = 0.5 * sum(sign * np.swapaxes(y, -1, -2) @ y for sign, y in ((1, static), (-1, helicoid), (1, slip)))
+    bow = 0.5 * (_squared(static) - _squared(helicoid) + _squared(slip))
     return Segments(
         element=q,
         s=s.ravel(),
@@ -154,6 +154,10 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
         break_bubble=break_bubble @ unit[element],
         shortening=running(bow)[2],
     )
+
+
+def _squared(slope: Array) -> Array:
+    return np.swapaxes(slope, -1, -2) @ slope
 
 
 def _across(pose: Array, moved: Array, rate: Array) -> Array:

@@ -75,9 +75,8 @@ def code(name: str) -> Code:
     return found
 
 
-CAPS = {"pinocchio": 40, "exudyn-tree": 384}
-"""Finest refinement that a code is asked for, where memory (Pinocchio keeps dense cubes of all freedoms) or time sets it (the
-kinematic tree is dense too: beyond this a speed takes minutes, for an uncertainty already below the target)."""
+CAPS = {"pinocchio": 40}
+"""Finest refinement that a code can be asked for, where memory sets it (Pinocchio keeps dense cubes of all freedoms)."""
 
 
 def cap(code: Code) -> int:

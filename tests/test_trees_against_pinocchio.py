@@ -11,17 +11,17 @@ from hypothesis import strategies as st
 
 from southwell.core import dynamics
 from southwell.core import spatial as sp
-from southwell.core.joints import SCREWS, Joint
+from southwell.core.joints import SCREWS, Joint, Kind
 from southwell.core.kinematics import kinematics
 from southwell.core.mechanism import Body, Mechanism, compile_tree, inertia
 
 pin = pytest.importorskip("pinocchio", reason="not run: pip install 'southwell[codes]'")
 
-KINDS = ["revolute", "prismatic", "cylindrical", "universal", "spherical", "planar", "free", "elastic"]
+KINDS: list[Kind] = ["revolute", "prismatic", "cylindrical", "universal", "spherical", "planar", "free", "elastic"]
 
 
 @st.composite
-def trees(draw) -> tuple[list[str], list[int], int]:
+def trees(draw) -> tuple[list[Kind], list[int], int]:
     """Joint kinds, parents (depth first: each hangs on the last branch), and a seed for the numbers."""
     n = draw(st.integers(3, 8))
     kinds = [draw(st.sampled_from(KINDS)) for _ in range(n)]
@@ -33,7 +33,7 @@ def trees(draw) -> tuple[list[str], list[int], int]:
     return kinds, parents, draw(st.integers(0, 2**31))
 
 
-def build(kinds: list[str], parents: list[int], rng: np.random.Generator):
+def build(kinds: list[Kind], parents: list[int], rng: np.random.Generator):
     """The same tree for both codes."""
     gravity = rng.normal(size=3) * 5
     bodies, joints = [], []
@@ -46,8 +46,8 @@ def build(kinds: list[str], parents: list[int], rng: np.random.Generator):
         mass, centre, a = rng.uniform(0.5, 2), rng.normal(size=3) * 0.3, rng.normal(size=(3, 3))
         moments = a @ a.T + 0.1 * np.eye(3)
         bodies.append(Body(f"b{i}", inertia(mass, moments, centre)))
-        at = [sp.exp(rng.normal(size=6)) for _ in range(2)]
-        joints.append(Joint(f"j{i}", kind, "ground" if parent < 0 else f"b{parent}", f"b{i}", *at))
+        at = sp.exp(rng.normal(size=6)), sp.exp(rng.normal(size=6))
+        joints.append(Joint(f"j{i}", kind, "ground" if parent < 0 else f"b{parent}", f"b{i}", at[0], at[1]))
         link, pose = placed[parent]
         pose = pose * pin.SE3(at[0])
         for name, _ in SCREWS[kind]:
