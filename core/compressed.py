@@ -1,7 +1,10 @@
 """The compressed model: segments end to end as a chain of rigid bodies and complex stiffness elements, and its modes.
 
 The paper has its rigid bodies at the sections. Here each segment's body rides on its element (see ``condensation``), which
-costs nothing and converges two orders faster; the sections between are massless.
+costs nothing and converges two orders faster in bending; the sections between are massless.
+
+A complex stiffness element is linear in its own axes: the steady tension stiffens bending, as in any beam of ``core``, but not
+torsion (a section that twists under tension shortens too). A solid does show that; it grows as Ω².
 """
 
 import time
