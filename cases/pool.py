@@ -55,9 +55,9 @@ def _follow_parent() -> None:
 
 
 def _leave(number: int, frame: FrameType | None) -> None:
-    """Unwind whatever runs (a wait for a foreign code kills it on its way out), once."""
+    """Unwind whatever runs (a wait for a foreign code kills it on its way out), once; without a parent, whenever told."""
     global _leaving
-    if not _leaving:
+    if _orphaned or not _leaving:
         _leaving = True
         raise SystemExit(128 + number)
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
@@ -247,7 +248,9 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
     command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
     command += ["--codes", "exact-beam,misbehaving:HANG"]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "SOUTHWELL_TEST": str(mark)}
-    child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    child = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True
+    )
     results_file = out / "results.jsonl"
     waited = time.monotonic() + 120
     while not (results_file.exists() and '"code":"exact-beam"' in results_file.read_text()):
@@ -288,12 +291,18 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert not running(tmp_path)
 
 
-@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    ("whom", "how"), [(os.kill, signal.SIGTERM), (os.killpg, signal.SIGTERM), (os.kill, signal.SIGKILL)]
+)
 def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
-    how: signal.Signals, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    how: signal.Signals,
+    whom: Callable[[int, int], None],
+    beam: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     child, results_file = started(beam, tmp_path)
-    child.send_signal(how)
+    whom(child.pid, how)
     child.communicate(timeout=30)  # its children hold its pipes open: they must be gone, too
     assert child.returncode == -how
     assert not running(tmp_path)
