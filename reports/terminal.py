@@ -27,7 +27,7 @@ COLOUR: dict[Verdict, str] = {
 }
 """Beside sign and number, never instead of them."""
 
-WIDE = 132
+WIDE = 140
 """Columns for tables that go into a file or a log."""
 
 SILENCE = 10.0
