@@ -145,7 +145,8 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
     # a double pair may keep the restarts from settling to the last digit; a larger basis then does without them
     for basis, tolerance in ((max(2 * k + 1, 40), 1e-14), (max(4 * k, 120), 1e-13), (max(8 * k, 240), 1e-12)):
         try:
-            found = spla.eigs(operator, k=k, which="LM", v0=start, ncv=min(2 * n, basis), tol=tolerance)
+            limits: dict[str, Any] = {"ncv": min(2 * n, basis), "tol": tolerance}
+            found = spla.eigs(operator, k=k, which="LM", v0=start, **limits)
         except spla.ArpackError:
             continue
         values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
