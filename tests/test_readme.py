@@ -40,7 +40,8 @@ def test_cores_frequencies_in_the_table_are_those_that_core_gives() -> None:
     blade = library.load(CASE).variants[0].blade
     found = modes(blade, OMEGA, 160, 10).frequencies
     for cell in cells:
-        assert np.abs(found / (cell.full or np.nan) - 1.0).min() < 1e-7
+        # the table prints seven digits of an extrapolated value: half a unit of the last
+        assert np.abs(found / (cell.full or np.nan) - 1.0).min() < 5e-7
     assert len({round(c.full or 0.0, 6) for c in cells}) == 6
 
 
