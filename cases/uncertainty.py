@@ -1,7 +1,10 @@
 """How far a computed frequency may be from what ever finer discretisation would give.
 
 Three refinements show the observed order of convergence; Richardson extrapolation and Roache's grid convergence index
-(GCI) follow from it. Sources: Roache, *Verification and Validation in Computational Science and Engineering* (1998);
+(GCI) follow from it. What is reported is the extrapolated value, so the index is that of the extrapolated value: three
+refinements give two of them, and their change, taken to shrink with one order at least, is the index of the second. Where
+the observed order is not the theoretical one, that cannot be relied on: the index is then that of the finest refinement,
+with the larger safety factor. Sources: Roache, *Verification and Validation in Computational Science and Engineering* (1998);
 Celik et al., J. Fluids Eng. 130 (2008) 078001, for the order at unequal refinement ratios; Oberkampf and Roy,
 *Verification and Validation in Scientific Computing* (2010), §8.6, for when to use which safety factor; Eça and
 Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the order of convergence means nothing.
@@ -71,10 +74,12 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
         return scattered if spread <= QUIET else Estimate(float(f[-1]), None, observed, f"not converging: {listed}")
     firm = abs(observed - order) <= NEAR_THEORY * order
     used = float(order) if firm else min(max(observed, 0.5), float(order))
-    correction = (f[2] - f[1]) / ((n[2] / n[1]) ** used - 1.0)
-    factor = FIRM if firm else WARY
-    note = "" if firm else f"observed order {observed:.2f} instead of {order}: safety factor {WARY:g}"
-    return Estimate(float(f[2] + correction), _at_least(factor * abs(correction / f[2])), observed, note)
+    before, value = (f[k] + (f[k] - f[k - 1]) / ((n[k] / n[k - 1]) ** used - 1.0) for k in (1, 2))
+    if firm:
+        change = abs(value - before) / (n[2] / n[1] - 1.0)
+        return Estimate(float(value), _at_least(FIRM * change / abs(value)), observed)
+    note = f"observed order {observed:.2f} instead of {order}: safety factor {WARY:g}"
+    return Estimate(float(value), _at_least(WARY * abs(value / f[2] - 1.0)), observed, note)
 
 
 def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:

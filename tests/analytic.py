@@ -81,6 +81,7 @@ class Twin(Analytic):
 GOOD = Analytic("good")
 SPECTRAL = Analytic("spectral", error=1e-3, order=0, true_order=4.0)
 WRONG = Analytic("wrong", factor=1.002)
+ROUGH = Analytic("rough", error=5.0, true_order=2.5)
 SLOW = Analytic("slow", true_order=0.2)
 CRUDE = Analytic("crude", factor=1.03, bracket=0.04)
 LYING = Analytic("lying", factor=1.03, bracket=0.02)

@@ -86,9 +86,13 @@ def test_a_right_code_passes_with_numbers_to_show_for_it(case) -> None:
 
 
 def test_a_code_is_refined_until_it_is_sure(case) -> None:
-    """error 0.1/n²: 40 elements are uncertain by 1.25 × 6e-5 < 2e-4; error 10/n² needs 250, so 320."""
-    cells = of(solve(case(), "analytic:GOOD"), "good")
-    assert cells[0].elements == 40
+    """Error 5 n⁻²·⁵ of a code said to be of order 2: GCI with factor 3 is 2.3e-3 at 40, 4.1e-4 at 80, 7e-5 at 160 elements."""
+    run = solve(case(), "analytic:GOOD", "analytic:ROUGH")
+    assert {c.elements for c in of(run, "good")} == {40}
+    for cell in of(run, "rough"):
+        assert cell.elements == 160
+        assert cell.uncertainty == pytest.approx(5 * (80**-2.5 - 160**-2.5), rel=1e-2)
+        assert cell.verdict == "pass"
 
 
 @pytest.mark.parametrize(
