@@ -23,7 +23,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Points:
-    """Points riding on the elements' ends, sorted by element.
+    """Points riding on the elements' ends, sorted by element; those with mass as many on each element.
 
     Attributes:
         element: (q,) the element each rides on.
@@ -53,7 +53,7 @@ class Beams:
         rest: (n, 4, 4) rest pose of end b in the frame of end a.
         stiffness: (n, 6, 6) for that measure.
         shortening: (n, 6, 6) G of the corotational measure.
-        points: the inertia inside.
+        points: the inertia inside, as many points in each element (see ``alike``).
         preload: (n, 6) force conjugate to the strain, at zero strain.
         inner_preload: (n, 6) force conjugate to β, at β = 0.
         eta: (n, 6) logarithm of ``rest``.
@@ -114,11 +114,33 @@ def riding(rest: Array, element: Index, pose: Array, shape: Array, bubble: Array
     return Points(element=element, rest=zeta, shape=L, bubble=slope @ bubble, mass=mass)
 
 
-def place(beams: Beams, points: Points, eta: Array, beta: Array) -> tuple[Array, Array]:
-    """Logarithms ζ (q, 6) of the points' poses in the frames a, and ∂ζ/∂(ρ, β) (q, 6, 12), from η and β (n, 6)."""
+def alike(points: Points, elements: int) -> Points:
+    """The same points, with massless ones added until every element has as many: what ``Beams`` wants."""
+    number = np.bincount(points.element, minlength=elements)
+    most = int(number.max())
+    if (number == most).all():
+        return points
+    rank = np.arange(most)
+    first = np.cumsum(number) - number
+    pick = (first[:, None] + np.minimum(rank, number[:, None] - 1)).ravel()  # the last one again
+    real = (rank < number[:, None]).ravel()
+    return Points(
+        element=np.repeat(np.arange(elements), most),
+        rest=points.rest[pick],
+        shape=points.shape[pick],
+        bubble=points.bubble[pick],
+        mass=points.mass[pick] * real[:, None, None],
+    )
+
+
+def place(beams: Beams, points: Points, eta: Array, back: Array, beta: Array) -> tuple[Array, Array]:
+    """Logarithms ζ (q, 6) of the points' poses in the frames a, and ∂ζ/∂(ρ, β) (q, 6, 12).
+
+    From η and β (n, 6), and ``back`` (n, 6, 6) = ``tangent_inverse(eta)``.
+    """
     e = points.element
     zeta = points.rest + (points.shape @ (eta - beams.eta)[e][..., None] + points.bubble @ beta[e][..., None])[..., 0]
-    return zeta, np.concatenate([points.shape @ sp.tangent_inverse(eta)[e], points.bubble], axis=-1)
+    return zeta, np.concatenate([points.shape @ back[e], points.bubble], axis=-1)
 
 
 def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational") -> Beams:
@@ -156,25 +178,24 @@ def pencil(beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, mo
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
         model: the effects kept (``geometric`` and ``coriolis`` matter here).
     """
-    law = beams.measure, beams.rest, beams.shortening
     eta = sp.log(x)
-    s = beams.preload + (beams.stiffness @ elements.strain(*law, x)[..., None])[..., 0]
-    E = elements.strain_rate(*law, x)
-    Et = np.swapaxes(E, -1, -2)
-    w = (Et @ s[..., None])[..., 0]
-    spring = Et @ beams.stiffness @ E
-    if model.geometric:
-        spring = spring + elements.wrench_derivative(*law, x, s)
+    back = sp.tangent_inverse(eta)
+    r = elements.response(beams.measure, beams.rest, beams.shortening, x, eta, back)
+    s = beams.preload + (beams.stiffness @ r.strain[..., None])[..., 0]
+    turned = np.swapaxes(r.rate, -1, -2)
+    w = (turned @ s[..., None])[..., 0]
     d = 12 + beams.inner
     none = np.zeros((len(x), d, d))
-    out = Pencil(np.concatenate([-w, w, np.zeros((len(x), d - 12))], axis=-1), none, none, none, spring)
+    out = Pencil(np.concatenate([-w, w, np.zeros((len(x), d - 12))], axis=-1), none, none, none, none[:, :6, :6])
+    inside = np.zeros_like(eta)
     if beams.inner:
-        out = _with_inertia(out, beams, eta, beta, frame, gravity, model)
+        out, inside = _with_inertia(out, beams, eta, back, beta, frame, gravity, model)
+    spring = out.spring + turned @ beams.stiffness @ r.rate
     if not model.geometric:
-        return out
+        return replace(out, spring=spring)
     rest = out.rest.copy()
-    rest[:, :12, :12] += on_ends(np.zeros_like(spring), sp.cross(out.residual[:, 6:12]))  # −ρ ×* (wrench on b)
-    return replace(out, rest=rest)
+    rest[:, :12, :12] += on_ends(none[:, :6, :6], sp.cross(out.residual[:, 6:12]))  # −ρ ×* (wrench on b)
+    return replace(out, rest=rest, spring=spring + r.curvature(s, inside))
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:
@@ -186,11 +207,14 @@ def on_ends(on_a: Array, on_b: Array) -> Array:
 
 
 def _with_inertia(
-    out: Pencil, beams: Beams, eta: Array, beta: Array, frame: Array, gravity: Array, model: Model
-) -> Pencil:
-    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts as Hᵀ g on them, and the rest on a."""
-    points, e = beams.points, beams.points.element
-    zeta, slope = place(beams, points, eta, beta)
+    out: Pencil, beams: Beams, eta: Array, back: Array, beta: Array, frame: Array, gravity: Array, model: Model
+) -> tuple[Pencil, Array]:
+    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts as Hᵀ g on them, and the rest on a.
+
+    Also returns the force (n, 6) conjugate to η that it makes.
+    """
+    points, e, n = beams.points, beams.points.element, len(eta)
+    zeta, slope = place(beams, points, eta, back, beta)
     T = sp.tangent(zeta)
     H = T @ slope
     to_point = sp.adjoint(sp.exp(-zeta))
@@ -203,28 +227,26 @@ def _with_inertia(
     g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]  # from here on in a's axes, at a
     seen = np.concatenate([np.eye(6) - H[..., :6], H], axis=-1)  # from (ξ_a, ξ_b, β)
     ride = to_point @ seen
-    rode = np.swapaxes(ride, -1, -2)
-    start = np.searchsorted(e, np.arange(len(eta)))
 
-    def total(a: Array) -> Array:
-        return np.add.reduceat(a, start, axis=0)
+    def total(left: Array, right: Array) -> Array:
+        """Σ leftᵀ right over the points of each element, from (q, 6, i) and (q, 6, j)."""
+        a, b = (v.reshape(n, -1, v.shape[-1]) for v in (left, right))
+        return np.swapaxes(a, -1, -2) @ b
 
-    residual = out.residual + total((np.swapaxes(seen, -1, -2) @ g[..., None])[..., 0])
+    residual = out.residual + total(seen, g[..., None])[..., 0]
     residual[:, 12:] += beams.inner_preload + beta
-    rest, spring = out.rest + total(rode @ K @ ride), out.spring
+    rest, spring = out.rest + total(ride, K @ ride), out.spring
     rest[:, 12:, 12:] += np.eye(6)
+    conjugate = np.zeros_like(eta)
     if model.geometric:
         # D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β, H = T(ζ) ∂ζ/∂(ρ, β)
-        E = sp.tangent_inverse(eta)
-        conjugate = total((np.swapaxes(points.shape, -1, -2) @ np.swapaxes(T, -1, -2) @ g[..., None])[..., 0])
-        bend = total(np.swapaxes(slope, -1, -2) @ sp.tangent_transpose_derivative(zeta, g) @ slope)
-        bend[:, :6, :6] += sp.tangent_inverse_transpose_derivative(eta, conjugate) @ E
-        swing = -total(np.swapaxes(seen, -1, -2) @ (sp.cross(g) @ H))
+        conjugate = total(points.shape, np.swapaxes(T, -1, -2) @ g[..., None])[..., 0]
+        bend = total(slope, sp.tangent_transpose_derivative(zeta, g) @ slope)
+        swing = -total(seen, sp.cross(g) @ H)
+        spring = spring + bend[:, :6, :6]  # this part is kept in the spring
+        bend[:, :6, :6] = 0.0
         swing[:, 6:] += bend
         swing[:, :6] -= bend[:, :6]
-        spring = spring + bend[:, :6, :6]
-        swing[:, 6:12, :6] -= bend[:, :6, :6]  # this part is kept in the spring
-        swing[:, :6, :6] += bend[:, :6, :6]
         rest[:, :, 6:] += swing
         rest[:, :, :6] -= swing[:, :, :6]
-    return Pencil(residual, total(rode @ points.mass @ ride), total(rode @ C @ ride), rest, spring)
+    return Pencil(residual, total(ride, points.mass @ ride), total(ride, C @ ride), rest, spring), conjugate

@@ -61,6 +61,7 @@ def discretize(blade: Blade, elements: int, mass: Mass = "consistent", stiffness
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
         inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
+        inside = bm.alike(inside, elements)
     else:
         inside = bm.NO_POINTS
         lumps += _half_end(blade, s)

@@ -13,6 +13,8 @@ Two measures:
   body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -24,52 +26,74 @@ Array = NDArray[np.float64]
 Measure = Literal["corotational", "parent"]
 
 
-def strain(measure: Measure, rest: Array, shortening: Array, x: Array) -> Array:
-    """Strains (n, 6) of relative poses ``x`` (n, 4, 4) from the rest poses ``rest``; ``shortening`` is G (n, 6, 6)."""
-    if measure == "corotational":
-        delta = sp.log(x) - sp.log(rest)
-        out = delta.copy()
-        out[..., 0] += (delta * (shortening @ delta[..., None])[..., 0]).sum(-1)
-        return out
-    y = sp.inverse(rest) @ x
-    return np.concatenate([y[..., :3, 3], _cardan(y[..., :3, :3])], axis=-1)
+@dataclass(frozen=True)
+class Response:
+    """What an element's relative pose gives.
+
+    Attributes:
+        strain: (n, 6) ε.
+        rate: (n, 6, 6) E = ∂ε/∂ρ.
+        curvature: from the force s (n, 6) conjugate to ε, and one (n, 6) conjugate to η = log X, the derivative (n, 6, 6) with
+            respect to ρ of the wrench they make, both held: the geometric stiffness.
+    """
+
+    strain: Array
+    rate: Array
+    curvature: Callable[[Array, Array], Array]
+
+
+def response(measure: Measure, rest: Array, shortening: Array, x: Array, eta: Array, back: Array) -> Response:
+    """Strain of relative poses ``x`` (n, 4, 4) from the rest poses ``rest``, and its derivatives.
+
+    Args:
+        measure: of strain, see the module.
+        rest: (n, 4, 4) poses without strain.
+        shortening: (n, 6, 6) G of the corotational measure.
+        x: (n, 4, 4) relative poses.
+        eta: (n, 6) their logarithms.
+        back: (n, 6, 6) ``tangent_inverse(eta)``.
+    """
+    return (_corotational if measure == "corotational" else _from_parent)(rest, shortening, x, eta, back)
 
 
 def strain_rate(measure: Measure, rest: Array, shortening: Array, x: Array) -> Array:
-    """E = ∂ε/∂ρ (n, 6, 6)."""
-    if measure == "corotational":
-        eta = sp.log(x)
-        E = sp.tangent_inverse(eta)
-        slope = 2.0 * (shortening @ (eta - sp.log(rest))[..., None])[..., 0]
-        E[..., 0, :] += (slope[..., None, :] @ E)[..., 0, :]
-        return E
-    local, rate = _parent(rest, x)[1:]
-    return rate @ local
+    """E = ∂ε/∂ρ (n, 6, 6) alone; arguments as for ``response``."""
+    eta = sp.log(x)
+    return response(measure, rest, shortening, x, eta, sp.tangent_inverse(eta)).rate
 
 
-def wrench_derivative(measure: Measure, rest: Array, shortening: Array, x: Array, s: Array) -> Array:
-    """∂(Eᵀ s)/∂ρ (n, 6, 6), s held: the geometric stiffness."""
-    if measure == "corotational":
-        eta = sp.log(x)
-        E = sp.tangent_inverse(eta)
+def _corotational(rest: Array, shortening: Array, x: Array, eta: Array, back: Array) -> Response:
+    delta = eta - sp.log(rest)
+    slope = (shortening @ delta[..., None])[..., 0]
+    strain, rate = delta.copy(), back.copy()
+    strain[..., 0] += (delta * slope).sum(-1)
+    rate[..., 0, :] += 2.0 * (slope[..., None, :] @ back)[..., 0, :]
+
+    def curvature(s: Array, on_eta: Array) -> Array:
         bow = 2.0 * s[..., :1, None] * shortening
-        conjugate = s + (bow @ (eta - sp.log(rest))[..., None])[..., 0]
-        return (sp.tangent_inverse_transpose_derivative(eta, conjugate) + np.swapaxes(E, -1, -2) @ bow) @ E
-    z, local, rate = _parent(rest, x)
-    curvature = np.zeros((*s.shape, 6))
-    curvature[..., 3:, :3] = -sp.skew(s[..., :3])
-    curvature[..., 3:, 3:] = _cardan_rate_transpose_derivative(z[..., 3:], s[..., 3:])
-    return np.swapaxes(local, -1, -2) @ curvature @ rate @ local
+        conjugate = s + on_eta + 2.0 * s[..., :1] * slope
+        return (sp.tangent_inverse_transpose_derivative(eta, conjugate) + np.swapaxes(back, -1, -2) @ bow) @ back
+
+    return Response(strain, rate, curvature)
 
 
-def _parent(rest: Array, x: Array) -> tuple[Array, Array, Array]:
-    """Coordinates z, the twist ρ brought to the rest frame, and ∂z/∂(twist in the rest frame)."""
-    z = strain("parent", rest, np.zeros((6, 6)), x)
-    rate = np.zeros((*z.shape, 6))
+def _from_parent(rest: Array, shortening: Array, x: Array, eta: Array, back: Array) -> Response:
+    y = sp.inverse(rest) @ x
+    strain = np.concatenate([y[..., :3, 3], _cardan(y[..., :3, :3])], axis=-1)
+    local = sp.adjoint(sp.inverse(rest))  # brings ρ to the rest frame
+    rate = np.zeros((*strain.shape, 6))
     rate[..., :3, :3] = np.eye(3)
-    rate[..., :3, 3:] = -sp.skew(z[..., :3])
-    rate[..., 3:, 3:] = _cardan_rate(z[..., 3:])
-    return z, sp.adjoint(sp.inverse(rest)), rate
+    rate[..., :3, 3:] = -sp.skew(strain[..., :3])
+    rate[..., 3:, 3:] = _cardan_rate(strain[..., 3:])
+
+    def curvature(s: Array, on_eta: Array) -> Array:
+        turn = np.zeros((*s.shape, 6))
+        turn[..., 3:, :3] = -sp.skew(s[..., :3])
+        turn[..., 3:, 3:] = _cardan_rate_transpose_derivative(strain[..., 3:], s[..., 3:])
+        out = np.swapaxes(local, -1, -2) @ turn @ rate @ local
+        return out + sp.tangent_inverse_transpose_derivative(eta, on_eta) @ back if on_eta.any() else out
+
+    return Response(strain, rate @ local, curvature)
 
 
 def _cardan(r: Array) -> Array:

@@ -79,7 +79,8 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     beta, inner = (
         (np.zeros((len(x), 6, m)), np.zeros((len(x), 6))) if parts.shape[1] == 6 else (parts[:, :6], shape.beta)
     )
-    zeta, slope = bm.place(body.beams, body.samples, sp.log(x), inner)
+    eta = sp.log(x)
+    zeta, slope = bm.place(body.beams, body.samples, eta, sp.tangent_inverse(eta), inner)
     position = sp.exp(zeta)[:, :3, 3]
     twist = np.concatenate([np.zeros((1, 6, m)), parts[:, -6:]])
     a = twist[:-1][e]

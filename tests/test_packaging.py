@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 from packaging.version import Version
 
+import southwell
+
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
@@ -117,3 +119,8 @@ def test_versions_and_entry_point_are_those_of_the_project() -> None:
     assert f"## [{PROJECT['project']['version']}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     module, _, function = PROJECT["project"]["scripts"]["southwell"].partition(":")
     assert callable(getattr(__import__(module, fromlist=[function]), function))
+
+
+def test_what_is_tested_is_this_checkout() -> None:
+    """Another checkout beside this one, in a folder named ``southwell``, must not be taken for it."""
+    assert Path(str(southwell.__file__)).resolve().parent == ROOT
