@@ -1,5 +1,6 @@
 """Southwell: are these natural frequencies of a rotating blade right?"""
 
+from .core import multibody
 from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
 from .core.model import Model
 from .core.modes import Modes
@@ -11,6 +12,7 @@ __all__ = [
     "Model",
     "Modes",
     "modes",
+    "multibody",
     "section_mass",
     "section_stiffness",
     "uniform_blade",

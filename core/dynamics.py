@@ -15,7 +15,8 @@ from .beams import Pencil, on_ends
 from .beams import pencil as beam_pencil
 from .elements import strain_rate
 from .kinematics import Kinematics
-from .mechanism import Beam, MechanismError, Spring, Tree
+from .mechanism import Beam, MechanismError, Spring
+from .tree import Tree
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from . import dynamics, partition
 from .dynamics import Cartesian
 from .kinematics import Kinematics, kinematics, poses
-from .mechanism import MechanismError, Tree
+from .mechanism import MechanismError
+from .tree import Tree
 
 Array = NDArray[Any]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import spatial as sp
-from .mechanism import Tree
+from .tree import Tree
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from . import dynamics, eigen
 from .equilibrium import State, assemble, steady
 from .kinematics import kinematics
-from .mechanism import Mechanism, MechanismError, Tree, compile_tree
+from .mechanism import Mechanism, MechanismError, at_time
 from .partition import Partition, freedom, partition
+from .tree import Tree, compile_tree
 
 Array = NDArray[np.float64]
 
@@ -37,19 +38,28 @@ class Linear:
 
 
 def linearize(
-    mechanism: Mechanism, guess: Mapping[str, float] | None = None, independent: tuple[str, ...] | None = None
+    mechanism: Mechanism,
+    guess: Mapping[str, float] | None = None,
+    independent: tuple[str, ...] | None = None,
+    time: float = 0.0,
 ) -> Linear:
     """Find the steady state and linearise about it.
+
+    Where motions change with time (a law, an acceleration), this is a frozen-time linearisation: the coordinates that are
+    free are balanced, and vibrate, as if positions, rates and accelerations stayed what they are at ``time``. Its modes
+    mean something where the motion changes little within their periods; stability of a periodic motion needs Floquet's
+    theory instead.
 
     Args:
         mechanism: the mechanism.
         guess: coordinates to start from, by name.
         independent: coordinates to use as q_I; chosen numerically if not given.
+        time: s, the instant looked at; it matters where motions follow laws.
 
     Raises:
         MechanismError: for whatever cannot be assembled, balanced or partitioned; the message says what.
     """
-    tree = compile_tree(mechanism)
+    tree = compile_tree(at_time(mechanism, time))
     state = steady(tree, guess)
     _check_regular(tree, state)
     return about(tree, state, independent)

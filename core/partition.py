@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from . import spatial as sp
 from .kinematics import Kinematics
-from .mechanism import MechanismError, Tree
+from .mechanism import MechanismError
+from .tree import Tree
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -21,9 +21,9 @@ from southwell.core.mechanism import (
     MechanismError,
     Motion,
     Spring,
-    compile_tree,
     inertia,
 )
+from southwell.core.tree import compile_tree
 from southwell.tests.beams import PARK
 
 G = 9.81

@@ -13,7 +13,8 @@ from southwell.core import dynamics
 from southwell.core import spatial as sp
 from southwell.core.joints import SCREWS, Joint, Kind
 from southwell.core.kinematics import kinematics
-from southwell.core.mechanism import Body, Mechanism, compile_tree, inertia
+from southwell.core.mechanism import Body, Mechanism, inertia
+from southwell.core.tree import compile_tree
 
 pin = pytest.importorskip("pinocchio", reason="not run: pip install 'southwell[codes]'")
 
