@@ -4,14 +4,11 @@ A case asks one question of every code: these blades, at these speeds, compared 
 """
 
 import math
-import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
-import msgspec
 import numpy as np
 from msgspec import UNSET, Meta, Struct, UnsetType
 from numpy.typing import NDArray
@@ -21,6 +18,7 @@ from ..core.model import Model
 from ..references import published
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
+from .toml import convert, document, finite
 
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
@@ -128,13 +126,7 @@ def read(path: Path) -> Case:
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
     """
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: correct the path, or give the name of a case") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
-    return decode(data, str(path), path.parent)
+    return decode(document(path), str(path), path.parent)
 
 
 def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
@@ -143,8 +135,8 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
     """
-    _finite(data, path, "")
-    text = _convert(data, path)
+    finite(data, path)
+    text = convert(data, CaseFile, path)
     for table in text.compare.tables:
         if table not in published.names():
             raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
@@ -152,7 +144,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
         changed = {**data, "blade": {**data["blade"], **changes}}
-        blade = _convert(changed, f"{path}: variants.{label}" if label else path).blade
+        blade = convert(changed, CaseFile, f"{path}: variants.{label}" if label else path).blade
         name = f"{text.name}/{label}" if label else text.name
         variants.append(Variant(name, blade.blade(name, folder), speeds))
     return Case(path, text, tuple(variants))
@@ -192,46 +184,3 @@ def _speeds(text: CaseFile, path: str) -> NDArray[np.float64]:
     if (np.diff(speeds) <= 0).any():
         raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")
     return speeds * (np.pi / 30 if unit == "rpm" else 1.0)
-
-
-def _finite(value: Any, path: str, field: str) -> None:
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            _finite(item, path, f"{field}.{key}" if field else key)
-    elif isinstance(value, list):
-        for k, item in enumerate(value):
-            _finite(item, path, f"{field}[{k}]")
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
-
-
-def _convert(data: Mapping[str, Any], path: str) -> CaseFile:
-    try:
-        return msgspec.convert(data, CaseFile)
-    except msgspec.ValidationError as error:
-        message, _, where = str(error).partition(" - at `$")
-        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data)}") from error
-
-
-def _explain(message: str, field: str, raw: Mapping[str, Any]) -> str:
-    key = re.search(r"field `(.+)`", message)
-    if key and "unknown" in message:
-        dotted = f"{field}.{key[1]}" if field else key[1]
-        return f"{dotted}: unknown key: {nearest(key[1], _keys(field, raw))}"
-    if key:
-        dotted = f"{field}.{key[1]}" if field else key[1]
-        return f"{dotted}: missing: add it"
-    value: Any = raw
-    for step in re.findall(r"[^.\[\]]+", field):
-        value = value[int(step)] if step.isdigit() and isinstance(value, list) else value.get(step, value)
-    return (
-        f"{field}: {value!r}: {message[0].lower()}{message[1:].replace('`', '')}: wrong sign, unit or type? correct it"
-    )
-
-
-def _keys(field: str, raw: Mapping[str, Any]) -> tuple[str, ...]:
-    kinds = {str(k.__struct_config__.tag): k for k in get_args(BladeData)}
-    struct: type[Struct] = {"speeds": Speeds, "compare": Compare, "discretisation": Discretisation}.get(field, CaseFile)
-    if field == "blade":
-        struct = kinds[raw["blade"]["kind"]]
-    return struct.__struct_fields__

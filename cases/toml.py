@@ -1,0 +1,101 @@
+"""From a TOML file to a frozen structure, every fault one line: file, field, value, likely cause, remedy."""
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+from msgspec import inspect
+
+from .errors import CaseError, nearest
+
+T = TypeVar("T")
+
+
+def document(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Raises:
+        CaseError: if there is no such file, or it is not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file: correct the path, or give the name of a case") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
+
+
+def finite(value: Any, path: str, field: str = "") -> None:
+    """Refuse numbers that are none, wherever they stand.
+
+    Raises:
+        CaseError: naming the first.
+    """
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            finite(item, path, f"{field}.{key}" if field else key)
+    elif isinstance(value, list):
+        for k, item in enumerate(value):
+            finite(item, path, f"{field}[{k}]")
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
+
+
+def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
+    """``data`` as a ``kind``; ``under`` is the field it stands in.
+
+    Raises:
+        CaseError: naming the field at fault.
+    """
+    try:
+        return msgspec.convert(data, kind)
+    except msgspec.ValidationError as error:
+        message, _, where = str(error).partition(" - at `$")
+        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data, kind, under)}") from error
+
+
+def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
+    full = ".".join(part for part in (under, field) if part).replace(".[", "[")
+    key = re.search(r"field `(.+)`", message)
+    if key:
+        dotted = f"{full}.{key[1]}" if full else key[1]
+        if "unknown" in message:
+            return f"{dotted}: unknown key: {nearest(key[1], _keys(kind, field, raw))}"
+        return f"{dotted}: missing: add it"
+    value, _ = _walk(kind, field, raw)
+    return (
+        f"{full}: {value!r}: {message[0].lower()}{message[1:].replace('`', '')}: wrong sign, unit or type? correct it"
+    )
+
+
+def _keys(kind: type, field: str, raw: Any) -> tuple[str, ...]:
+    _, node = _walk(kind, field, raw)
+    return tuple(f.encode_name for f in node.fields) if isinstance(node, inspect.StructType) else ()
+
+
+def _walk(kind: type, field: str, raw: Any) -> tuple[Any, Any]:
+    """The value in a field, as given, and the type it should have."""
+    node: Any = _plain(inspect.type_info(kind), raw)
+    for step in re.findall(r"[^.\[\]]+", field):
+        if isinstance(raw, list) and step.isdigit():
+            raw, node = raw[int(step)], getattr(node, "item_type", None)
+        elif isinstance(raw, Mapping) and step in raw:
+            raw = raw[step]
+            node = next((f.type for f in getattr(node, "fields", ()) if f.encode_name == step), None)
+        node = _plain(node, raw)
+    return raw, node
+
+
+def _plain(node: Any, raw: Any) -> Any:
+    """The type itself, without its descriptions; of several, the one that the value's tag names, or the only structure."""
+    while isinstance(node, inspect.Metadata):
+        node = node.type
+    if isinstance(node, inspect.UnionType):
+        kinds = [k for k in (_plain(t, raw) for t in node.types) if isinstance(k, inspect.StructType)]
+        tagged = [k for k in kinds if k.tag_field and isinstance(raw, Mapping) and raw.get(k.tag_field) == k.tag]
+        return next(iter(tagged or kinds), None)
+    return node
