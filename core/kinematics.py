@@ -41,7 +41,9 @@ class Kinematics:
 
 def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
     """Poses (b, 4, 4) of the bodies and screws J (6, n) at coordinates q (n,)."""
-    steps = tree.fixed @ sp.exp(tree.screw * q[:, None])
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # turns, which the exponential's series need not follow
+    amount = np.where(tree.screw[:, 3:].any(1), q - whole, q)
+    steps = tree.fixed @ sp.exp(tree.screw * amount[:, None])
     links = np.empty((len(q) + 1, 4, 4))
     links[-1] = np.eye(4)  # the ground, so that index −1 finds it
     for j, before in enumerate(tree.before):
