@@ -90,7 +90,14 @@ class Solution:
     def damping(self) -> Array:
         """(m,) damping ratios −Re λ/|λ|: negative grows, ±1 does not oscillate; 0 for a rigid mode."""
         size = np.abs(self.values)
-        return -np.divide(self.values.real, size, out=np.zeros_like(size), where=size > 0)
+        return 0.0 - np.divide(self.values.real, size, out=np.zeros_like(size), where=size > 0)
+
+    @property
+    def leading(self) -> tuple[str, ...]:
+        """For each mode the independent coordinate with the largest share in its kinetic energy."""
+        x = self.shapes[:, self.linear.partition.independent]
+        share = np.real(x.conj() * (x @ self.linear.M.T))
+        return tuple(self.independent[k] for k in share.argmax(1))
 
 
 def solve(

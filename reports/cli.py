@@ -16,7 +16,7 @@ from cyclopts.validators import Number
 from rich import box
 from rich.table import Table
 
-from ..cases import library, lumping, matrix, results
+from ..cases import library, lumping, matrix, mechanisms, results
 from ..cases.errors import CaseError, nearest
 from ..cases.pool import Pool
 from ..cases.results import Run
@@ -25,6 +25,7 @@ from ..cases.settings import settings
 from ..cases.sweep import Named, sweep
 from ..references import codes as registry
 from ..references.codes import UnknownCodeError
+from . import mechanisms as answer
 from . import summary, terminal
 from .units import BY_KEY, RAD_S, RPM, Units
 
@@ -170,6 +171,41 @@ def modes(
             terminal.output().print(terminal.frequencies(found, title, own))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
+    return PASSED
+
+
+@app.command
+def mechanism(
+    file: Path,
+    /,
+    *,
+    modes: Whole = 10,
+    time: float = 0.0,
+    json: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
+    """Steady state and modes of any mechanism: frequencies, damping ratios, what was chosen, what was redundant.
+
+    Parameters
+    ----------
+    file
+        A TOML file of bodies and joints.
+    modes
+        How many, from the lowest.
+    time
+        The instant looked at, in seconds, where motions are functions of time.
+    json
+        Print everything as JSON.
+    """
+    described = mechanisms.read(file)
+    found = described.solve(modes, time)
+    if json:
+        plain = msgspec.json.encode(answer.plain(described.text.name, found))
+        print(msgspec.json.format(plain).decode())
+        return PASSED
+    console = terminal.output()
+    console.print(answer.modes(found, described.text.title or described.text.name))
+    console.print(answer.state(found))
+    console.print(answer.redundant(found), markup=False, soft_wrap=True)
     return PASSED
 
 
