@@ -177,9 +177,7 @@ def _matrix(value: list[float | list[float]], side: int, where: str) -> Array:
     """A square matrix from its rows, or from its diagonal."""
     rows = {len(row) if isinstance(row, list) else 0 for row in value}
     if len(value) != side or rows not in ({0}, {side}):
-        raise CaseError(
-            f"{where}: {len(value)} entries of lengths {sorted(rows)}: give {side} numbers or {side} rows of {side}"
-        )
+        raise CaseError(f"{where}: {value}: neither {side} numbers nor {side} rows of {side}: correct it")
     out = np.array(value, dtype=float)
     return np.diag(out) if rows == {0} else out
 
