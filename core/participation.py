@@ -1,0 +1,117 @@
+"""What moves in a mode: shares of its kinetic energy in flap, edge, torsion and axial motion, and the name they give it.
+
+Metres and radians are never added. Each slice of blade moves with its mass centre and turns about it, so that its kinetic
+energy (König's theorem) splits into four parts, none negative, whatever the reference axis:
+
+* flap and edge: the mass centre's motion along the blade's z and y, and the section's own turning in bending;
+* torsion: turning about the blade's axis through the mass centre, with the polar inertia about it;
+* axial: the mass centre's motion along the blade.
+
+The blade's axes are the hub's turned by precone and pitch, not by twist. A blade whose sections have no moments of inertia
+has no kinetic energy in torsion, however far it turns.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from . import spatial as sp
+from .blade import Blade, mass_at
+from .modes import STATIONS, Modes
+from .sections import frames, root
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FAMILIES = ("flap", "edge", "torsion", "axial")
+"""What the four shares are, in their order."""
+
+MIXED = "mixed"
+
+DOMINANT = 0.6
+"""Share of the kinetic energy that names a mode; with less it is mixed."""
+
+SPOKEN = 0.05
+"""Shares below this are not worth a word."""
+
+_GAUSS = 4
+
+
+def participation(modes: Modes, blade: Blade) -> Array:
+    """Shares (m, 4) of each mode's kinetic energy, in the order of ``FAMILIES``; each row adds up to 1.
+
+    Shapes are interpolated between the common stations by cubic splines; mass is integrated between the blade's own
+    stations by Gauss quadrature, and the tip mass is added. Sections turn in bending as the line of mass centres does.
+    """
+    s, weight = _quadrature(blade)
+    mass = np.concatenate([weight[:, None, None] * mass_at(blade, s[:-1]), blade.tip_mass[None]])
+    axes = root(blade)[:3, :3]
+    centre, own = _about_centre(mass, frames(blade, s)[:, :3, :3])
+    velocity, turning = _motion(modes, blade, s, centre)
+    parts = (mass[:, 0, 0, None] * np.abs(velocity @ axes) ** 2).sum(1)[:, [2, 1, 0, 0]]
+    parts[:, 2] = 0.0
+    turns = turning @ axes
+    parts[:, :3] += (turns.conj() * np.einsum("sij,msj->msi", axes.T @ own @ axes, turns)).real.sum(1)[:, [1, 2, 0]]
+    total = parts.sum(1, keepdims=True)
+    return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
+
+
+def families(shares: Array) -> tuple[str, ...]:
+    """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT``, else ``mixed``."""
+    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT else MIXED for row in shares)
+
+
+def numbered(names: Sequence[str]) -> tuple[str, ...]:
+    """Families of modes in the order of frequency, each with its ordinal in its family: ``flap 1``, ``edge 1``, ``flap 2``."""
+    seen: Counter[str] = Counter()
+    out = []
+    for name in names:
+        seen[name] += 1
+        out.append(f"{name} {seen[name]}")
+    return tuple(out)
+
+
+def spoken(share: Array) -> str:
+    """One mode's shares (4,) in words, largest first: ``54 % flap, 43 % edge``."""
+    order = np.argsort(-share, kind="stable")
+    return ", ".join(f"{100 * share[k]:.0f} % {FAMILIES[k]}" for k in order if share[k] >= SPOKEN)
+
+
+def _quadrature(blade: Blade) -> tuple[Array, Array]:
+    """Points and weights between the blade's stations and the common ones; the tip is the last point, without a weight."""
+    ends = np.unique(np.concatenate([blade.stations, STATIONS * blade.length]))
+    ends = ends[np.append(True, np.diff(ends) > 1e-9 * blade.length)]
+    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    h = np.diff(ends)
+    s = (ends[:-1, None] + 0.5 * h[:, None] * (1.0 + x)).ravel()
+    return np.append(s, blade.length), (0.5 * h[:, None] * w).ravel()
+
+
+def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Complex, Complex]:
+    """Velocity of the mass centres (at ``centre`` (k, 3) from the reference curve) and turning (m, k, 3) at ``s``, hub axes."""
+    at = STATIONS * blade.length
+    section = frames(blade, at)[:, :3, :3]
+    tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
+    moved = modes.shapes[:, :, :3]
+    bent = np.cross(tangent, CubicSpline(at, moved, axis=1)(at, 1))  # of the sections' turning about x, not torsion
+    torsion = (modes.shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
+    line = CubicSpline(at, moved + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
+    along = frames(blade, s)[:, :3, 0]
+    bending = np.cross(along, line(s, 1))
+    turning = bending + CubicSpline(at, torsion, axis=1)(s)[:, :, None] * along
+    beyond = centre - CubicSpline(at, offset)(s)
+    return line(s) + np.cross(bending, centre - beyond) + np.cross(turning, beyond), turning
+
+
+def _about_centre(mass: Array, section: Array) -> tuple[Array, Array]:
+    """Mass centre (k, 3) from the reference point and inertia (k, 3, 3) about it, hub axes, from 6×6 in ``section`` axes."""
+    m = mass[:, 0, 0]
+    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m skew(centre)
+    first = np.stack([moment[:, 2, 1], moment[:, 0, 2], moment[:, 1, 0]], axis=-1)
+    centre = np.divide(first, m[:, None], out=np.zeros_like(first), where=m[:, None] > 0)
+    cross = sp.skew(centre)
+    own = mass[:, 3:, 3:] + m[:, None, None] * cross @ cross
+    return np.einsum("sij,sj->si", section, centre), section @ own @ np.swapaxes(section, -1, -2)
