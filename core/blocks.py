@@ -5,13 +5,14 @@ next only through its last six rows.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded, solve_banded
 
 Array = NDArray[np.float64]
+Numbers = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -42,22 +43,24 @@ def from_elements(on_ends: Array, on_nodes: Array) -> Tridiagonal:
     return Tridiagonal(diagonal, on_ends[1:, :6][:, :, own], on_ends[1:, own, :6])
 
 
-def sparse(t: Tridiagonal) -> scipy.sparse.bsr_array:
-    """Block compressed sparse rows, for products."""
+def rows(t: Tridiagonal) -> Array:
+    """(n, d, 6 + 2d) each block's rows: over the last six of the block before, the block itself, and the next."""
     n, d = len(t.diagonal), t.block
-    column = np.arange(n)[:, None] + np.array([-1, 0, 1])
-    data = np.zeros((n, 3, d, d))
-    data[1:, 0, :, -6:], data[:, 1], data[:-1, 2, -6:] = t.lower, t.diagonal, t.upper
-    inside = ((column >= 0) & (column < n)).ravel()
-    pointer = np.concatenate([[0], np.cumsum(inside.reshape(n, 3).sum(1))])
-    return scipy.sparse.bsr_array(
-        (data.reshape(-1, d, d)[inside], column.ravel()[inside], pointer), shape=(d * n, d * n)
-    )
+    out = np.zeros((n, d, 6 + 2 * d))
+    out[1:, :, :6], out[:, :, 6 : 6 + d], out[:-1, -6:, 6 + d :] = t.lower, t.diagonal, t.upper
+    return out
+
+
+def times(rows: Array, x: Numbers) -> Numbers:
+    """(n, r, k) product of rows (n, r, 6 + 2d) as of ``rows``, one or several matrices' above each other, with x (dn, k)."""
+    n, d = len(rows), (rows.shape[-1] - 6) // 2
+    padded = np.concatenate([np.zeros((6, x.shape[1])), x, np.zeros((d, x.shape[1]))])
+    return rows @ padded.take(d * np.arange(n)[:, None] + np.arange(6 + 2 * d), axis=0)
 
 
 def dense(t: Tridiagonal) -> Array:
     """The full matrix."""
-    return sparse(t).toarray()
+    return times(rows(t), np.eye(t.size)).reshape(t.size, t.size)
 
 
 def solve(t: Tridiagonal, b: Array) -> Array:

@@ -20,6 +20,7 @@ from .model import FULL, Model
 Array = NDArray[np.float64]
 
 _STEPS = 40
+_BALANCED = 1e-12  # Newton's step in units of the blade's length, or rad
 _SMALLEST_RAMP = 2.0**-8
 
 
@@ -113,21 +114,35 @@ def strain_energy(linear: Linear, x: NDArray[np.complex128]) -> Array:
     rho = linear.lever @ twist
     rho[1:] -= twist[:-1]
     springs = (rho.conj() * (linear.spring @ rho)).sum((0, 1))
-    return np.real(springs + (x.conj() * (blocks.sparse(linear.rest) @ x)).sum(0))
+    return np.real(springs + (x.conj() * blocks.times(blocks.rows(linear.rest), x).reshape(x.shape)).sum(0))
 
 
-def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Shape:
-    """The steady state's shape, by Newton; the speed is ramped up only if that fails at once.
+@dataclass(frozen=True)
+class Steady:
+    """A steady state: its shape, and the pencil about it."""
+
+    shape: Shape
+    linear: Linear
+
+
+def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
+    """The steady state, by Newton from ``start``; if that fails, from the undeformed shape with the speed ramped up.
 
     Raises:
         SteadyStateError: if there is none near the undeformed blade.
     """
-    shape = rest(chain) if start is None else start
+    if start is not None:
+        try:
+            return _newton(chain, start, omega, gravity)
+        except SteadyStateError:
+            pass  # too far off: begin where there is no load
+    found = None
     done, step = 0.0, 1.0
-    while done < 1.0:
+    while found is None or done < 1.0:
         load = min(1.0, done + step)
         try:
-            shape = _newton(chain, shape, omega * load**0.5, gravity * load)
+            shape = rest(chain) if found is None else found.shape
+            found = _newton(chain, shape, omega * load**0.5, gravity * load)
             done = load
         except SteadyStateError:
             step *= 0.5
@@ -137,10 +152,10 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
                     "centrifugal force outgrows the axial stiffness there, or the blade is far too soft; check units or "
                     "lower the speed"
                 ) from None
-    return shape
+    return found
 
 
-def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Shape:
+def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
     for _ in range(_STEPS):
@@ -152,13 +167,24 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Shape:
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
+        if change < _BALANCED or (change < 1e-6 and change > 0.1 * before):  # there, or as near as rounding lets it
+            return Steady(shape, p)
         step *= min(1.0, 0.5 / max(change, 0.5))
-        nodes = np.concatenate([shape.nodes[:1], shape.nodes[1:] @ sp.exp(step[:, -6:])])
-        shape = Shape(nodes, shape.beta + step[:, :-6])
-        if change < 1e-9 or (change < 1e-6 and change > 0.1 * before):  # converged quadratically, or to rounding
-            return shape
+        shape = moved(shape, step)
         before = change
     raise SteadyStateError("no convergence")
+
+
+def moved(shape: Shape, step: Array) -> Shape:
+    """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
+    nodes = np.concatenate([shape.nodes[:1], shape.nodes[1:] @ sp.exp(step[:, -6:])])
+    return Shape(nodes, shape.beta + step[:, :-6])
+
+
+def beyond(before: Shape, now: Shape, ratio: float) -> Shape:
+    """The shape as far beyond ``now``, times ``ratio``, as that is from ``before``: a guess for the next speed."""
+    twist = sp.log(sp.inverse(before.nodes[1:]) @ now.nodes[1:])
+    return moved(now, ratio * np.concatenate([now.beta - before.beta, twist], axis=1))
 
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:

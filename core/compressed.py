@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import beams as bm
-from . import blocks, eigen, solve
+from . import solve
 from . import chain as ch
 from . import spatial as sp
 from .beams import Beams, Points
@@ -72,12 +72,7 @@ def chain_modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
-    begun = time.perf_counter()
-    chain, shape = solve.balance(chain, omega, gravity, model)
-    p = ch.linearize(chain, shape, omega, gravity, model)
-    found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, lambda x: ch.strain_energy(p, x))
-    shapes = solve.mode_shapes(chain, shape, found.vectors)
-    return Modes(omega, found.frequencies, shapes, len(chain.beams.rest), seconds=time.perf_counter() - begun)
+    return solve.chain_modes(chain, omega, count, model=model, gravity=gravity)
 
 
 def _centred(inertia: Array) -> tuple[Array, Array]:

@@ -1,17 +1,20 @@
 """A blade's natural frequencies and mode shapes: the public door of the in-house solver."""
 
 import time
+from collections.abc import Iterable, Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import beams as bm
-from . import blocks, chain, eigen
+from . import blocks, chain
 from . import spatial as sp
 from .blade import Blade, without_rotary_inertia
-from .chain import Shape
+from .chain import Shape, Steady
 from .discretize import Chain, Mass, discretize
 from .elements import Measure
+from .lanczos import lanczos
 from .model import FULL, Model
 from .modes import Modes
 
@@ -48,26 +51,65 @@ def modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
+    return next(sweep(blade, [omega], elements, count, mass=mass, stiffness=stiffness, model=model, gravity=gravity))
+
+
+def sweep(
+    blade: Blade,
+    omegas: Iterable[float],
+    elements: int = 50,
+    count: int = 10,
+    *,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    model: Model = FULL,
+    gravity: Array = NO_GRAVITY,
+) -> Iterator[Modes]:
+    """The modes at one speed after another, as they are had; arguments and errors as for ``modes``.
+
+    The blade is divided once, and each steady state is sought from where those before lead to.
+    """
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
-    if not np.isfinite(omega):
-        raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
-    begun = time.perf_counter()
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness)
-    body, shape = balance(body, omega, gravity, model)
-    p = chain.linearize(body, shape, omega, gravity, model)
-    found = eigen.lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, lambda x: chain.strain_energy(p, x))
-    shapes = mode_shapes(body, shape, found.vectors)
-    return Modes(omega, found.frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+    return _along(body, omegas, count, model, gravity)
 
 
-def balance(body: Chain, omega: float, gravity: Array, model: Model) -> tuple[Chain, Shape]:
-    """The chain with the internal forces, and in the shape, that the model's steady state has."""
-    if not model.geometric:
-        return body, chain.rest(body)
-    if not model.prestretch:
-        return chain.prestress_at_rest(body, omega, gravity), chain.rest(body)
-    return body, chain.steady(body, omega, gravity)
+def chain_modes(
+    body: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = NO_GRAVITY
+) -> Modes:
+    """The lowest modes of a chain; arguments and errors as for ``modes``."""
+    return next(_along(body, [omega], count, model, gravity))
+
+
+def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravity: Array) -> Iterator[Modes]:
+    before, now = (0.0, chain.rest(body)), None
+    for omega in omegas:
+        if not np.isfinite(omega):
+            raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
+        begun = time.perf_counter()
+        guess = None
+        if now is not None:
+            apart = now[0] ** 2 - before[0] ** 2
+            guess = chain.beyond(before[1], now[1], (omega**2 - now[0] ** 2) / apart) if apart else now[1]
+        state = balance(body, omega, gravity, model, guess)
+        p = state.linear
+        found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.strain_energy, p))
+        shapes = mode_shapes(body, state.shape, found.vectors)
+        yield Modes(omega, found.frequencies, shapes, len(body.nodes) - 1, seconds=time.perf_counter() - begun)
+        before, now = (before if now is None else now), (omega, state.shape)
+
+
+def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shape | None = None) -> Steady:
+    """The steady state that the model has, and the pencil about it."""
+    if model.geometric and model.prestretch:
+        state = chain.steady(body, omega, gravity, guess)
+        return (
+            state if model == FULL else Steady(state.shape, chain.linearize(body, state.shape, omega, gravity, model))
+        )
+    still = chain.rest(body)
+    loaded = chain.prestress_at_rest(body, omega, gravity) if model.geometric else body
+    return Steady(still, chain.linearize(loaded, still, omega, gravity, model))
 
 
 def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:

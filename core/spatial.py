@@ -7,6 +7,7 @@ The exponential's tangent and its inverse are functions of ``ad``, whose minimal
 in φ² (Selig, *Geometric Fundamentals of Robotics*, 2005, ch. 7; Sonneville, Cardona, Brüls 2014, app. A).
 """
 
+import math
 from functools import lru_cache
 from typing import Literal
 
@@ -15,6 +16,8 @@ from numpy.typing import NDArray
 from scipy.special import bernoulli, factorial
 
 Array = NDArray[np.float64]
+
+Kind = Literal["exp", "log", "tangent", "inverse"]
 
 _TERMS = 26  # (π/2π)^(2·26) = 2e-16: enough for the inverse tangent at a half turn
 
@@ -92,7 +95,7 @@ def exp(twist: Array) -> Array:
     """Poses reached by moving along constant twists for unit time."""
     w = skew(twist[..., 3:])
     z = (twist[..., 3:] ** 2).sum(-1)
-    a, b, c = (_power_series(_exp_series(k), z)[..., None, None] for k in range(3))
+    a, b, c = np.moveaxis(_series("exp", z), -1, 0)[..., None, None]
     w2 = w @ w
     left = np.eye(3) + b * w + c * w2
     return pose(np.eye(3) + a * w + b * w2, (left @ twist[..., :3, None])[..., 0])
@@ -108,11 +111,8 @@ def log(x: Array) -> Array:
     w = axis * np.where(sine < 1e-8, 1.0, angle / np.where(sine < 1e-8, 1.0, sine))[..., None]
     z = (w**2).sum(-1)
     s = skew(w)
-    left_inverse = np.eye(3) - 0.5 * s + _power_series(_inverse_series3(), z)[..., None, None] * (s @ s)
+    left_inverse = np.eye(3) - 0.5 * s + _series("log", z)[..., None] * (s @ s)
     return np.concatenate([(left_inverse @ x[..., :3, 3:])[..., 0], w], axis=-1)
-
-
-Kind = Literal["tangent", "inverse"]
 
 
 def tangent(twist: Array) -> Array:
@@ -138,7 +138,7 @@ def tangent_inverse_transpose_derivative(twist: Array, wrench: Array) -> Array:
 def _quartic(kind: Kind, twist: Array) -> Array:
     a = ad(twist)
     z = (twist[..., 3:] ** 2).sum(-1)
-    c1, c2, c3, c4 = (_power_series(s, z)[..., None, None] for s in _coefficients(kind))
+    c1, c2, c3, c4 = np.moveaxis(_series(kind, z), -1, 0)[:4, ..., None, None]
     a2 = a @ a
     return np.eye(6) + c1 * a + c2 * a2 + (c3 * a + c4 * a2) @ a2
 
@@ -149,67 +149,61 @@ def _transpose_derivative(kind: Kind, twist: Array, wrench: Array) -> Array:
     f = [wrench]
     for _ in range(4):
         f.append((at @ f[-1][..., None])[..., 0])
-    series = _coefficients(kind)
-    c = [_power_series(s, z)[..., None, None] for s in series]
+    series = np.moveaxis(_series(kind, z), -1, 0)
+    c, slopes = series[:4, ..., None, None], series[4:, ..., None]
     # d(adᵀᵏ f) = Σ_j adᵀʲ cross(adᵀᵏ⁻¹⁻ʲ f) dζ, gathered by Horner
     x = [cross(v) for v in f[:4]]
     out = c[3] * x[0]
     out = c[2] * x[0] + c[3] * x[1] + at @ out
     out = c[1] * x[0] + c[2] * x[1] + c[3] * x[2] + at @ out
     out = c[0] * x[0] + c[1] * x[1] + c[2] * x[2] + c[3] * x[3] + at @ out
-    slope = np.zeros_like(wrench)
-    for s, v in zip(series, f[1:], strict=True):
-        slope = slope + _power_series(_derivative(s), z)[..., None] * v
+    slope = sum(d * v for d, v in zip(slopes, f[1:], strict=True))
     out[..., 3:] += 2.0 * slope[..., :, None] * twist[..., None, 3:]
     return out
 
 
-def _power_series(coefficients: tuple[float, ...], z: Array) -> Array:
-    """Σ c_k z^k, with as many terms as the largest argument needs for rounding accuracy."""
-    largest = float(np.max(z, initial=0.0))
-    n = len(coefficients)
-    while n > 1 and abs(coefficients[n - 1]) * largest ** (n - 1) < 1e-18:
-        n -= 1
-    out = np.full(np.shape(z), coefficients[n - 1])
-    for c in coefficients[n - 2 :: -1] if n > 1 else ():
-        out = out * z + c
-    return out
+def _series(kind: Kind, z: Array) -> Array:
+    """(..., m) sums of the power series of ``_coefficients(kind)``, with as many terms as rounding accuracy needs."""
+    table = _truncated(kind, math.frexp(float(np.max(z, initial=0.0)))[1])
+    powers = np.ones((*np.shape(z), len(table)))
+    powers[..., 1:] = np.asarray(z)[..., None]
+    return np.cumprod(powers, axis=-1) @ table
 
 
 @lru_cache
-def _derivative(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-    return (*(k * c for k, c in enumerate(coefficients) if k), 0.0)
+def _truncated(kind: Kind, exponent: int) -> Array:
+    """(k, m) the coefficients that matter for arguments up to 2^exponent."""
+    table = _coefficients(kind)
+    size = np.abs(table).max(-1) * 2.0 ** (exponent * np.arange(len(table)))
+    return table[: int(np.flatnonzero(size > 1e-18)[-1]) + 1]
 
 
 @lru_cache
-def _exp_series(order: int) -> tuple[float, ...]:
-    """sin φ/φ, (1 − cos φ)/φ², (φ − sin φ)/φ³ in powers of φ²."""
-    return tuple(float((-1.0) ** k / factorial(2 * k + order + 1)) for k in range(_TERMS))
+def _coefficients(kind: Kind) -> Array:
+    """(terms, m) power series in φ²: a row for each power, a column for each series.
 
-
-@lru_cache
-def _inverse_series3() -> tuple[float, ...]:
-    """(1 − (φ/2) cot(φ/2))/φ² in powers of φ²."""
-    b = bernoulli(2 * _TERMS)
-    return tuple(float(-((-1.0) ** (k + 1)) * b[2 * k + 2] / factorial(2 * k + 2)) for k in range(_TERMS - 1))
-
-
-@lru_cache
-def _coefficients(kind: Kind) -> tuple[tuple[float, ...], ...]:
-    """Power series in φ² of the coefficients of ad, ad², ad³, ad⁴.
-
-    With the function split as ``x o(x²) + e(x²)``, Hermite interpolation at the (double) eigenvalues ±iφ of ad and the
-    simple eigenvalue 0 gives, term by term, c1 = Σ (1−k)(−1)^k o_k z^k, c3 = Σ k(−1)^(k−1) o_k z^(k−1),
-    c2 = Σ (k−2)(−1)^k e_k z^(k−1), c4 = Σ (k−1)(−1)^k e_k z^(k−2).
+    ``exp``: sin φ/φ, (1 − cos φ)/φ², (φ − sin φ)/φ³. ``log``: (1 − (φ/2) cot(φ/2))/φ². ``tangent`` and ``inverse``: the
+    coefficients of ad, ad², ad³, ad⁴, then their derivatives with respect to φ². With the function split as
+    ``x o(x²) + e(x²)``, Hermite interpolation at the (double) eigenvalues ±iφ of ad and the simple eigenvalue 0 gives, term by
+    term, c1 = Σ (1−k)(−1)^k o_k z^k, c3 = Σ k(−1)^(k−1) o_k z^(k−1), c2 = Σ (k−2)(−1)^k e_k z^(k−1),
+    c4 = Σ (k−1)(−1)^k e_k z^(k−2).
     """
     n = np.arange(_TERMS)
+    sign = (-1.0) ** n
+    if kind == "exp":
+        return np.stack([sign / factorial(2 * n + order + 1) for order in range(3)], axis=-1)
+    b = bernoulli(2 * _TERMS)
+    if kind == "log":
+        return (sign * b[2 * n + 2] / factorial(2 * n + 2))[:-1, None]
     if kind == "tangent":  # (exp x − 1)/x
         even, odd = 1.0 / factorial(2 * n + 1), 1.0 / factorial(2 * n + 2)
     else:  # x/(exp x − 1)
-        even, odd = bernoulli(2 * _TERMS)[2 * n] / factorial(2 * n), np.where(n == 0, -0.5, 0.0)
-    sign = (-1.0) ** n
-    c1 = (1 - n) * sign * odd
-    c2 = ((n - 2) * sign * even)[1:]
-    c3 = (-n * sign * odd)[1:]
-    c4 = ((n - 1) * sign * even)[2:]
-    return tuple(tuple(float(v) for v in c) for c in (c1, c2, c3, c4))
+        even, odd = b[2 * n] / factorial(2 * n), np.where(n == 0, -0.5, 0.0)
+    c = np.zeros((_TERMS, 4))
+    c[:, 0] = (1 - n) * sign * odd
+    c[:-1, 1] = ((n - 2) * sign * even)[1:]
+    c[:-1, 2] = (-n * sign * odd)[1:]
+    c[:-2, 3] = ((n - 1) * sign * even)[2:]
+    slope = np.zeros_like(c)
+    slope[:-1] = n[1:, None] * c[1:]
+    return np.hstack([c, slope])

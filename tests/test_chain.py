@@ -85,8 +85,8 @@ def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
 def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
     body, n = discretize(curved(), 5), 5
-    shape = chain.steady(body, 1.5, np.zeros(3))
-    cartesian = chain.linearize(body, shape, 1.5, np.zeros(3))
+    steady = chain.steady(body, 1.5, np.zeros(3))
+    shape, cartesian = steady.shape, steady.linear
     dense = lz.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
@@ -149,9 +149,11 @@ def test_gravity_prestresses_by_azimuth() -> None:
 
 
 def test_unprestressed_chain_needs_no_newton() -> None:
-    body, shape = balance(discretize(PARK, 4), 10.0, np.zeros(3), Model(prestretch=False))
-    np.testing.assert_array_equal(shape.nodes, body.nodes)
-    assert np.abs(chain.linearize(body, shape, 10.0, np.zeros(3)).residual).max() < 1e-8 * body.beams.preload.max()
+    body = discretize(PARK, 4)
+    state = balance(body, 10.0, np.zeros(3), Model(prestretch=False))
+    np.testing.assert_array_equal(state.shape.nodes, body.nodes)
+    tension = chain.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
+    assert np.abs(state.linear.residual).max() < 1e-8 * tension
 
 
 @pytest.mark.parametrize(
