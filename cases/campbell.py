@@ -117,6 +117,7 @@ class Campbell:
         shares: (n, t, 4) of kinetic energy in flap, edge, torsion, axial motion; NaN where there is no mode.
         names: of each track: of its first speed, ``flap 2``.
         last: names at the last speed of each, which differ where a mode has changed its motion.
+        local: (n, t) names at each speed; empty where there is no mode.
         southwell: of each track; None where it has fewer than three speeds.
         encounters: crossings and veerings.
         resonances: all within the speeds, by speed.
@@ -129,6 +130,7 @@ class Campbell:
     shares: Array
     names: tuple[str, ...]
     last: tuple[str, ...]
+    local: tuple[tuple[str, ...], ...]
     southwell: tuple[Southwell | None, ...]
     encounters: tuple[Encounter, ...]
     resonances: tuple[Resonance, ...]
@@ -194,6 +196,7 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
         shares=shares,
         names=_distinct([local[k[0]][t] for t, k in enumerate(held)]),
         last=_distinct([local[k[-1]][t] for t, k in enumerate(held)]),
+        local=tuple(local),
         southwell=tuple(_southwell(tracks, t) for t in range(tracks.count)),
         encounters=encounters(tracks, shares, weight),
         resonances=_resonances(lines, wanted),

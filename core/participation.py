@@ -59,6 +59,23 @@ def participation(modes: Modes, blade: Blade) -> Array:
     return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
 
 
+def in_blade_axes(modes: Modes, blade: Blade) -> Complex:
+    """Shapes (m, 21, 4) with displacements along the blade's axes, which precone and pitch turn from the hub's."""
+    out = modes.shapes.copy()
+    out[:, :, :3] = modes.shapes[:, :, :3] @ root(blade)[:3, :3]
+    return out
+
+
+def gyration(blade: Blade) -> float:
+    """The blade's radius of gyration in torsion, about its mass centres, m."""
+    s, weight = _quadrature(blade)
+    mass = np.concatenate([weight[:, None, None] * mass_at(blade, s[:-1]), blade.tip_mass[None]])
+    section = frames(blade, s)[:, :3, :3]
+    _, own = _about_centre(mass, section)
+    polar = np.einsum("si,sij,sj->s", section[:, :, 0], own, section[:, :, 0]).sum()
+    return float(np.sqrt(max(polar, 0.0) / mass[:, 0, 0].sum()))
+
+
 def families(shares: Array) -> tuple[str, ...]:
     """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT``, else ``mixed``."""
     return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT else MIXED for row in shares)

@@ -289,6 +289,9 @@ def codes() -> int:
     return PASSED
 
 
+app.command(f"{__package__}.campbell_command:command", name="campbell")
+
+
 def select(name: str) -> Case:
     """A case by name or file, or with only one of its blades: ``park-blade/surrogate``.
 

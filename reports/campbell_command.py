@@ -1,0 +1,217 @@
+"""``southwell campbell``: a blade's Campbell diagram, its tables, mode shapes and figures, in one command."""
+
+import shlex
+import sys
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack
+from math import inf, radians
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from ..cases.campbell import Campbell, Wanted, campbell, solver
+from ..cases.errors import CaseError
+from ..cases.pool import Pool
+from ..cases.prestress import gravity
+from ..cases.schema import speed_range
+from ..cases.settings import settings
+from ..cases.tracking import Solver
+from ..core.blade import Blade
+from ..core.modes import Modes
+from . import campbell_page, terminal
+from . import campbell_tables as tables
+from .cli import Whole, select
+from .units import BY_KEY, RAD_S, RPM, Units
+
+
+def command(
+    blade: str,
+    /,
+    *,
+    rpm: str | None = None,
+    omega: str | None = None,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-campbell"),
+    modes: Whole = 6,
+    per_rev: str = "1:6",
+    operating: str | None = None,
+    margin: str = "10%",
+    elements: Whole = 50,
+    azimuth: float | None = None,
+    tilt: float = 0.0,
+    workers: Whole = 1,
+) -> int:
+    """A blade's Campbell diagram: modes by name along rotor speed, where they meet n per revolution or each other.
+
+    Prints tables; writes campbell.md, figures (SVG, PNG) of the diagram and of the mode shapes, and CSV. A step of speed
+    is halved where modes come so near that it is not clear which is which.
+
+    Parameters
+    ----------
+    blade
+        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file.
+    rpm
+        Rotor speeds in revolutions per minute, `first:last:step` with both ends; a case's own speeds by default.
+    omega
+        The same in rad/s.
+    out
+        Folder for figures and tables; of several blades, each has a folder in it.
+    modes
+        How many, from the lowest.
+    per_rev
+        Multiples of the rotor's speed that excite: `1:6`, or `1,2,3,6`.
+    operating
+        Speeds between which the rotor runs, as `6.9:12.1`, in the unit of the speeds; margins are judged over it.
+    margin
+        How far modes should keep from n per revolution over it, in parts of n per revolution: `10%` or `0.1`.
+    elements
+        Beam elements along the blade.
+    azimuth
+        Degrees from the blade pointing up, in the direction of rotation: the blade under gravity there. Without: no gravity.
+    tilt
+        Degrees the rotor's axis points above the horizontal; with --azimuth.
+    workers
+        Processes that share the speeds; starting one costs about as much as twenty speeds.
+    """
+    chosen = select(blade)
+    speeds, units = _speeds(rpm, omega)
+    units = units or BY_KEY[settings(chosen)[0].unit]
+    pulled = gravity(radians(azimuth), radians(tilt)).tolist() if azimuth is not None else (0.0, 0.0, 0.0)
+    for variant in chosen.variants:
+        wanted = Wanted(
+            speeds=tuple(variant.speeds.tolist() if speeds is None else speeds),
+            modes=modes,
+            per_rev=_per_rev(per_rev),
+            operating=_operating(operating, units) if operating else None,
+            margin=_margin(margin),
+            elements=elements,
+            gravity=tuple(pulled),
+        )
+        folder = out / variant.name.partition("/")[2] if len(chosen.variants) > 1 else out
+        diagram = solve(variant.blade, wanted, units, workers)
+        _show(diagram, units)
+        try:
+            written = campbell_page.write(diagram, folder, units, shlex.join(["southwell", *sys.argv[1:]]))
+        except OSError as error:
+            raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+        names = ", ".join(path.name for path in written)
+        terminal.output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
+    return 0
+
+
+def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:
+    """The diagram with progress; ``workers`` processes share the speeds asked for.
+
+    Raises:
+        CaseError: what ``campbell`` raises.
+    """
+    told = Told(blade.name, wanted.speeds, units)
+    with ExitStack() as stack:
+        stack.enter_context(told.bar)
+        here = solver(blade, wanted, told)
+        if workers == 1:
+            return campbell(blade, wanted, here)
+        pool = Pool(min(workers, len(wanted.speeds)))
+        stack.callback(pool.stop)
+        return campbell(blade, wanted, _shared(blade, wanted, pool, here, told))
+
+
+class Told:
+    """A bar on standard error over the speeds asked for; speeds between, where modes meet, are named as they come."""
+
+    def __init__(self, name: str, speeds: Sequence[float], units: Units) -> None:
+        console = Console(stderr=True, highlight=False)
+        self.asked, self.units = set(speeds), units
+        self.bar = Progress(
+            SpinnerColumn(),
+            TextColumn("{task.fields[name]}", markup=False),
+            BarColumn(bar_width=30),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.description}", markup=False),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self.task = self.bar.add_task("", total=len(speeds), name=name)
+
+    def __call__(self, omega: float) -> None:
+        """Hear that a speed is done."""
+        if omega in self.asked:
+            self.bar.update(self.task, advance=1, description=self.units.at(omega))
+        else:
+            self.bar.update(self.task, description=f"modes meet: looking closer at {self.units.at(omega)}")
+
+
+def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told: Told) -> Solver:
+    """A solver that has the speeds asked for solved by ``executor`` from the start, and others ``here`` as they come."""
+    ahead = {omega: executor.submit(_one, blade, wanted, omega) for omega in wanted.speeds}
+
+    def answer(omega: float) -> Modes:
+        if omega not in ahead:
+            return here(omega)
+        found = ahead[omega].result()
+        told(omega)
+        return found
+
+    return answer
+
+
+def _one(blade: Blade, wanted: Wanted, omega: float) -> Modes:
+    return solver(blade, wanted)(omega)
+
+
+def _show(diagram: Campbell, units: Units) -> None:
+    console = terminal.output()
+    for sheet in tables.sheets(diagram, units):
+        console.print(tables.terminal(sheet))
+    line = tables.verdict(diagram, units)
+    console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
+
+
+def _speeds(rpm: str | None, omega: str | None) -> tuple[list[float] | None, Units | None]:
+    if rpm is not None and omega is not None:
+        raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
+    if rpm is None and omega is None:
+        return None, None
+    option, text, units = ("--rpm", rpm or "", RPM) if omega is None else ("--omega", omega, RAD_S)
+    try:
+        return (speed_range(text) / units.speeds).tolist(), units
+    except ValueError as error:
+        raise CaseError(f"{option}: {error}") from error
+
+
+def _per_rev(text: str) -> tuple[int, ...]:
+    first, colon, last = text.partition(":")
+    try:
+        found = tuple(range(int(first), int(last) + 1)) if colon else tuple(sorted({int(p) for p in text.split(",")}))
+    except ValueError:
+        raise CaseError(
+            f"--per-rev: {text!r} is neither first:last nor whole numbers with commas, as in 1:6 or 1,3,6"
+        ) from None
+    if not found or found[0] < 1:
+        raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last, as in 1:6")
+    return found
+
+
+def _operating(text: str, units: Units) -> tuple[float, float]:
+    try:
+        low, high = (float(p) for p in text.split(":"))
+    except ValueError:
+        raise CaseError(f"--operating: {text!r} is not lowest:highest, as in 6.9:12.1") from None
+    if not (0 <= low <= high < inf and high > 0):
+        raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
+    return low / units.speeds, high / units.speeds
+
+
+def _margin(text: str) -> float:
+    try:
+        value = float(text.removesuffix("%")) * (0.01 if text.endswith("%") else 1.0)
+    except ValueError:
+        raise CaseError(f"--margin: {text!r} is neither a percentage nor a fraction, as in 10% or 0.1") from None
+    if not 0 <= value < 1:
+        raise CaseError(f"--margin: {text!r}: needs 0 ≤ margin < 1 of n per revolution, as in 10% or 0.1")
+    return value

@@ -1,0 +1,78 @@
+"""What ``southwell campbell`` leaves behind: figures as SVG and PNG, numbers as CSV, and a page that holds it all."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..cases.campbell import Campbell
+from ..cases.elastodyn_shapes import as_it_is, polynomials
+from ..cases.errors import CaseError
+from . import campbell as figures
+from . import campbell_tables as tables
+from . import shapes
+from .style import house, save
+from .units import Units
+
+PAGE = "campbell.md"
+
+DPI = 180
+
+
+def write(diagram: Campbell, folder: Path, units: Units, command: str) -> tuple[Path, ...]:
+    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    name, k = diagram.blade.name, shapes_at(diagram)
+    drawn = {
+        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed"),
+        "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
+    }
+    written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
+    written += [*tables.write_csv(diagram, folder), shapes.write_csv(diagram, k, folder)]
+    page = folder / PAGE
+    page.write_text(_page(diagram, k, units, command), encoding="utf-8")
+    return (page, *written)
+
+
+def shapes_at(diagram: Campbell) -> int:
+    """Number of the speed at which shapes are shown: the last, or the asked-for one nearest the operating range's end."""
+    wanted, omega = diagram.wanted, diagram.tracks.omega
+    target = wanted.operating[1] if wanted.operating else omega[-1]
+    asked = np.flatnonzero(diagram.tracks.asked)
+    return int(asked[np.abs(omega[asked] - target).argmin()])
+
+
+def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
+    vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
+    save(figure, vector)
+    with house():
+        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+    return vector, raster
+
+
+def _page(diagram: Campbell, k: int, units: Units, command: str) -> str:
+    omega = float(diagram.tracks.omega[k])
+    parts = [
+        f"# Campbell diagram of {diagram.blade.name}\n",
+        f"{tables.verdict(diagram, units)}\n",
+        "![Natural frequencies along rotor speed](campbell.svg)\n",
+        *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],
+        f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
+        _elastodyn(diagram, k, units),
+        f"## How to have this again\n\n```\n{command}\n```\n",
+    ]
+    return "\n".join(parts)
+
+
+def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
+    omega = float(diagram.tracks.omega[k])
+    try:
+        found = polynomials(diagram.blade, omega, diagram.wanted.elements)
+    except CaseError as error:
+        return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
+    other = as_it_is(diagram.blade, diagram.tracks.solved[k])
+    return tables.markdown(shapes.coefficients(found, other, units, omega))

@@ -1,0 +1,271 @@
+"""The tables of a Campbell diagram, for the terminal and for Markdown, and its numbers as CSV."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich import box
+from rich.table import Table
+from tabulate import tabulate
+
+from ..cases.campbell import Campbell, Margin
+from ..core.participation import FAMILIES, spoken
+from .units import Units
+
+TOO_NEAR = "✘"
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table.
+
+    Attributes:
+        title: over it.
+        head: of its columns.
+        rows: as printed; a field that begins with ``TOO_NEAR`` is one to look at.
+        note: how to read it; empty if it needs none.
+    """
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+
+
+def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
+    """All tables that have something to say."""
+    every = (_modes, _margins, _resonances, _encounters, _doubts)
+    return tuple(s for s in (make(diagram, units) for make in every) if s.rows)
+
+
+def _modes(diagram: Campbell, units: Units) -> Sheet:
+    tracks, wanted = diagram.tracks, diagram.wanted
+    first, last = wanted.speeds[0], wanted.speeds[-1]
+    rows = []
+    for t in range(tracks.count):
+        k = np.flatnonzero(tracks.place[:, t] >= 0)
+        fit = diagram.southwell[t]
+        row = [diagram.label(t), spoken(diagram.shares[k[0], t])]
+        for end in (0, -1):
+            f = tracks.frequencies[end, t] * units.frequencies
+            row.append(f"{f:.4f}" if np.isfinite(f) else "–")
+        rise = tracks.frequencies[-1, t] / tracks.frequencies[0, t] - 1.0
+        row.append(f"{100 * rise:+.2f} %" if np.isfinite(rise) else "–")
+        row += [f"{fit.coefficient:.4g}", _small(fit.residual)] if fit else ["–", "–"]
+        rows.append(tuple(row))
+    frequency = units.frequency
+    head = ("mode", "kinetic energy", f"{frequency} {units.at(first)}", f"{frequency} at {units.at(last)}", "change")
+    at = units.at(first)
+    note = (
+        f"Kinetic energy {at}: flap, edge and axial motion of the mass centres, torsion about them, in the blade's axes. "
+        "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
+    )
+    return Sheet("Modes", (*head, "φ", "residual"), tuple(rows), note)
+
+
+def _small(relative: float) -> str:
+    return f"{100 * relative:.2g} %" if relative >= 1e-6 else "< 0.0001 %"
+
+
+def _margins(diagram: Campbell, units: Units) -> Sheet:
+    wanted = diagram.wanted
+    rows = []
+    for t in range(diagram.tracks.count):
+        mine = {m.per_rev: m for m in diagram.margins if m.track == t}
+        if mine:
+            rows.append((diagram.label(t), *[_margin(mine[n]) for n in wanted.per_rev]))
+    if wanted.operating is None:
+        return Sheet("Margins", (), ())
+    low, high = wanted.operating
+    note = (
+        f"How far a mode is above n per revolution at {units.at(low)} … {units.at(high)}, in % of n per revolution "
+        f"(far: ten times). {TOO_NEAR}: nearer than {100 * wanted.margin:.3g} % at some speed; a change of sign: they meet."
+    )
+    return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in wanted.per_rev]), tuple(rows), note)
+
+
+def _margin(m: Margin) -> str:
+    ends = " … ".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
+    return ends if m.kept else f"{TOO_NEAR} {ends}"
+
+
+def _percent(value: float) -> str:
+    return "far" if value >= 10 else f"{100 * value:+.{0 if abs(value) >= 0.1 else 1}f}".replace("-", "−")
+
+
+def _resonances(diagram: Campbell, units: Units) -> Sheet:
+    rows = []
+    for r in diagram.resonances:
+        row = [
+            diagram.label(r.track),
+            f"{r.per_rev}P",
+            f"{r.omega * units.speeds:.3f}",
+            f"{r.frequency * units.frequencies:.4f}",
+        ]
+        if r.apart is not None:
+            row.append(f"{TOO_NEAR} within" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
+        rows.append(tuple(row))
+    head = ["mode", "meets", units.speed, units.frequency]
+    note = ""
+    if diagram.wanted.operating:
+        head.append("from the operating range")
+        note = "Last column: the speed's distance from the nearer end of the operating range, in parts of that end."
+    return Sheet("Where a mode meets n per revolution", tuple(head), tuple(rows), note)
+
+
+def _encounters(diagram: Campbell, units: Units) -> Sheet:
+    rows = []
+    for e in diagram.encounters:
+        gap = f"{e.gap * units.frequencies:.3g}"
+        a, b = e.tracks
+        rows.append(
+            (
+                e.kind,
+                f"{e.omega * units.speeds:.3f}",
+                f"{e.frequency * units.frequencies:.4f}",
+                gap if e.kind == "veering" else f"< {gap}" if e.gap * units.frequencies >= 1e-9 else "none",
+                f"{diagram.label(a)} × {diagram.label(b)}",
+                f"{100 * e.exchanged:.0f} %" + ("" if e.whole else ", the rest beyond the speeds or others in between"),
+                f"{spoken(e.before[0])} → {spoken(e.after[0])}",
+            )
+        )
+    head = ("what", units.speed, units.frequency, f"gap, {units.frequency}", "modes", "exchanged", "the lower first")
+    note = (
+        "Veering: two modes come near, trade shapes and part; a crossing's gap, if it has one, is narrower than given. "
+        "Exchanged: of the shapes, from one side to the other; last: the kinetic energy of the first mode, before → after."
+    )
+    return Sheet("Modes that meet", head, tuple(rows), note)
+
+
+def _doubts(diagram: Campbell, units: Units) -> Sheet:
+    rows = tuple(
+        (
+            diagram.label(d.track),
+            f"{d.omega[0] * units.speeds:.4f} – {d.omega[1] * units.speeds:.4f}",
+            f"{d.frequency * units.frequencies:.4f}",
+            f"{d.mac:.2f}" if d.mac else "none",
+            f"{d.rival:.2f}",
+        )
+        for d in diagram.tracks.doubts
+    )
+    step = f"{diagram.tracks.smallest * units.speeds:.3g} {units.speed}"
+    head = ("mode", units.speed, units.frequency, "MAC with the one taken", "with another")
+    note = f"Which mode goes on is not clear even with the smallest step, {step}: the one taken may be the wrong one."
+    return Sheet("Not clear", head, rows, note)
+
+
+def terminal(sheet: Sheet) -> Table:
+    """For the console; what is too near is red."""
+    out = Table(
+        box=box.SIMPLE_HEAD,
+        title=sheet.title,
+        title_justify="left",
+        title_style="bold",
+        caption=sheet.note or None,
+        caption_justify="left",
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
+    for k, head in enumerate(sheet.head):
+        out.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
+    for row in sheet.rows:
+        out.add_row(*[f"[bold red]{field}[/]" if field.startswith(TOO_NEAR) else field for field in row])
+    return out
+
+
+def markdown(sheet: Sheet) -> str:
+    """A heading, the table, and how to read it; what is too near is bold."""
+    rows = [[f"**{field}**" if field.startswith(TOO_NEAR) else field for field in row] for row in sheet.rows]
+    table = tabulate(rows, [h.replace("|", "\\|") for h in sheet.head], tablefmt="pipe", disable_numparse=True)
+    note = f"\n\n{sheet.note}" if sheet.note else ""
+    return f"## {sheet.title}\n\n{table}{note}\n"
+
+
+def verdict(diagram: Campbell, units: Units) -> str:
+    """The answer in one line."""
+    wanted = diagram.wanted
+    if wanted.operating is None:
+        return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so none is judged."
+    low, high = wanted.operating
+    over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
+    broken = [m for m in diagram.margins if not m.kept]
+    if not broken:
+        return f"Every mode keeps {100 * wanted.margin:.3g} % from n per revolution over {over}."
+    said = []
+    for t in dict.fromkeys(m.track for m in broken):
+        mine = [m for m in broken if m.track == t]
+        met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
+        near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
+        words = [f"meets {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
+        said.append(f"{diagram.label(t)} {' and '.join(w for w in words if w)}")
+    return f"{TOO_NEAR} Over {over}, {'; '.join(said)}."
+
+
+def write_csv(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
+    """``campbell.csv``: a row a mode and speed; ``resonances.csv``, ``margins.csv``, ``encounters.csv``. SI units.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    tracks = diagram.tracks
+    lines = [
+        (
+            k + 1,
+            repr(float(tracks.omega[k])),
+            f"{tracks.omega[k] * 30 / np.pi:.9g}",
+            int(tracks.asked[k]),
+            t + 1,
+            diagram.label(t),
+            int(tracks.place[k, t]) + 1,
+            repr(float(tracks.frequencies[k, t])),
+            f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
+            *[f"{share:.6f}" for share in diagram.shares[k, t]],
+            f"{tracks.mac[k, t]:.6f}" if np.isfinite(tracks.mac[k, t]) else "",
+        )
+        for k in range(len(tracks.omega))
+        for t in range(tracks.count)
+        if tracks.place[k, t] >= 0
+    ]
+    speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
+    columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz", *FAMILIES, "mac_with_speed_before"]
+    resonances = [
+        (diagram.label(r.track), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
+        for r in diagram.resonances
+    ]
+    margins = [
+        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, int(m.kept)) for m in diagram.margins
+    ]
+    met = [
+        (
+            e.kind,
+            e.omega,
+            e.frequency,
+            e.gap,
+            *[diagram.label(t) for t in e.tracks],
+            e.exchanged,
+            *e.window,
+            int(e.whole),
+        )
+        for e in diagram.encounters
+    ]
+    window = ("from_rad_s", "to_rad_s")
+    files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
+        "campbell.csv": (columns, lines),
+        "resonances.csv": (("name", "per_rev", "omega_rad_s", "frequency_rad_s", "from_operating_range"), resonances),
+        "margins.csv": (("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "kept"), margins),
+        "encounters.csv": (
+            ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s", "lower", "upper", "exchanged", *window, "whole"),
+            met,
+        ),
+    }
+    out = []
+    for name, (heads, rows) in files.items():
+        path = folder / name
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(heads)
+            writer.writerows(rows)
+        out.append(path)
+    return tuple(out)
