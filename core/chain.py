@@ -5,6 +5,7 @@ invertible, so modes may be had from the bodies' own twists, where the matrices 
 of node k are in its own axes.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +21,8 @@ from .model import FULL, Model
 Array = NDArray[np.float64]
 
 _STEPS = 40
-_BALANCED = 1e-12  # Newton's step in units of the blade's length, or rad
+_BALANCED, _ROUNDING = 1e-11, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
+ORDER = 3  # of the extrapolation along the speeds
 _SMALLEST_RAMP = 2.0**-8
 
 
@@ -167,7 +169,10 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        if change < _BALANCED or (change < 1e-6 and change > 0.1 * before):  # there, or as near as rounding lets it
+        displaced = np.abs(shape.nodes - chain.nodes)
+        far = max(displaced[:, :3, 3].max() / chain.scale, displaced[:, :3, :3].max())
+        # there, or as near as rounding lets it
+        if change < max(_BALANCED * far, _ROUNDING) or (change < 1e-6 and change > 0.1 * before):
             return Steady(shape, p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape = moved(shape, step)
@@ -181,10 +186,23 @@ def moved(shape: Shape, step: Array) -> Shape:
     return Shape(nodes, shape.beta + step[:, :-6])
 
 
-def beyond(before: Shape, now: Shape, ratio: float) -> Shape:
-    """The shape as far beyond ``now``, times ``ratio``, as that is from ``before``: a guess for the next speed."""
-    twist = sp.log(sp.inverse(before.nodes[1:]) @ now.nodes[1:])
-    return moved(now, ratio * np.concatenate([now.beta - before.beta, twist], axis=1))
+def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
+    """A guess of the shape at ``omega`` from those at the speeds before: a polynomial in Ω² through the last few."""
+    latest: dict[float, Shape] = {}
+    for speed, shape in reversed(known):
+        if len(latest) <= ORDER:
+            latest.setdefault(speed**2, shape)
+    if not latest:
+        return None
+    x = np.array(list(latest))
+    now = next(iter(latest.values()))
+    back = sp.inverse(now.nodes[1:])
+    step = np.zeros((len(back), now.beta.shape[1] + 6))
+    for k, shape in enumerate(latest.values()):
+        others = np.delete(x, k)
+        weight = float(np.prod((omega**2 - others) / (x[k] - others)))
+        step += weight * np.concatenate([shape.beta - now.beta, sp.log(back @ shape.nodes[1:])], axis=1)
+    return moved(now, step)
 
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:

@@ -7,7 +7,6 @@ A complex stiffness element is linear in its own axes: the steady tension stiffe
 torsion (a section that twists under tension shortens too). A solid does show that; it grows as Ω².
 """
 
-import time
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 
 from . import beams as bm
 from . import solve
-from . import chain as ch
 from . import spatial as sp
 from .beams import Beams, Points
 from .discretize import Chain

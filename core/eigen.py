@@ -1,8 +1,8 @@
 """Gyroscopic eigenproblems K x + λ C x + λ² M x = 0, with K positive definite, M positive semi-definite, C skew.
 
-The dense solver here and ``lanczos`` work on the inverse: with y = λ x, A = diag(K, M) and S = [[C, M], [−M, 0]], the operator A⁻¹S has eigenvalues
-−1/λ, the lowest modes largest. S is skew in the plain product, A⁻¹S in A's, so the eigenvalues lie on the imaginary axis to
-rounding, and M is never inverted: massless coordinates are condensed exactly, without a fudge.
+The dense solver here and ``lanczos`` work on the inverse: with y = λ x, A = diag(K, M) and S = [[C, M], [−M, 0]], the
+operator A⁻¹S has eigenvalues −1/λ, the lowest modes largest. S is skew in the plain product, A⁻¹S in A's, so the eigenvalues
+lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly, without a fudge.
 (Meirovitch 1974; Lancaster 2013, *Stability of linear gyroscopic systems*.)
 """
 

@@ -83,21 +83,17 @@ def chain_modes(
 
 
 def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravity: Array) -> Iterator[Modes]:
-    before, now = (0.0, chain.rest(body)), None
+    known: list[tuple[float, Shape]] = []
     for omega in omegas:
         if not np.isfinite(omega):
             raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
         begun = time.perf_counter()
-        guess = None
-        if now is not None:
-            apart = now[0] ** 2 - before[0] ** 2
-            guess = chain.beyond(before[1], now[1], (omega**2 - now[0] ** 2) / apart) if apart else now[1]
-        state = balance(body, omega, gravity, model, guess)
+        state = balance(body, omega, gravity, model, chain.extrapolate(known, omega))
         p = state.linear
         found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.strain_energy, p))
         shapes = mode_shapes(body, state.shape, found.vectors)
         yield Modes(omega, found.frequencies, shapes, len(body.nodes) - 1, seconds=time.perf_counter() - begun)
-        before, now = (before if now is None else now), (omega, state.shape)
+        known = [*known[-chain.ORDER :], (omega, state.shape)]
 
 
 def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shape | None = None) -> Steady:

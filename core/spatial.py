@@ -157,7 +157,7 @@ def _transpose_derivative(kind: Kind, twist: Array, wrench: Array) -> Array:
     out = c[2] * x[0] + c[3] * x[1] + at @ out
     out = c[1] * x[0] + c[2] * x[1] + c[3] * x[2] + at @ out
     out = c[0] * x[0] + c[1] * x[1] + c[2] * x[2] + c[3] * x[3] + at @ out
-    slope = sum(d * v for d, v in zip(slopes, f[1:], strict=True))
+    slope = (slopes * np.stack(f[1:])).sum(0)
     out[..., 3:] += 2.0 * slope[..., :, None] * twist[..., None, 3:]
     return out
 

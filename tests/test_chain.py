@@ -10,7 +10,7 @@ from southwell.core.blade import without_rotary_inertia
 from southwell.core.chain_mechanism import mechanism
 from southwell.core.discretize import discretize
 from southwell.core.model import Model
-from southwell.core.solve import balance, modes
+from southwell.core.solve import balance, modes, sweep
 from southwell.tests.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 
 
@@ -137,6 +137,14 @@ def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
     modes(yoo_shin(0.0), 109.0, 20, 2)
     with pytest.raises((chain.SteadyStateError, eigen.UnstableError), match=r"speed"):
         modes(yoo_shin(0.0), 112.0, 20, 2)
+
+
+@pytest.mark.parametrize("speeds", [(0.0, 1.0, 2.0, 3.0, 4.0), (4.0, 0.0, 4.0, -4.0)], ids=["rising", "back and forth"])
+def test_a_sweep_gives_what_each_speed_gives_alone(speeds) -> None:
+    """Extrapolated guesses lead Newton to the same states, in any order of the speeds."""
+    found = [m.frequencies for m in sweep(curved(), speeds, 12, 6)]
+    alone = [modes(curved(), omega, 12, 6).frequencies for omega in speeds]
+    np.testing.assert_allclose(found, alone, rtol=1e-10)
 
 
 def test_gravity_prestresses_by_azimuth() -> None:
