@@ -7,6 +7,7 @@ of node k are in its own axes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from .discretize import Chain
 from .model import FULL, Model
 
 Array = NDArray[np.float64]
+Numbers = NDArray[Any]
 
 _STEPS = 40
 _BALANCED, _ROUNDING = 1e-11, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
@@ -110,13 +112,16 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     )
 
 
-def strain_energy(linear: Linear, x: NDArray[np.complex128]) -> Array:
-    """x*Kx (m,) of vectors (dn, m), from the elements' own strains: exact to rounding however stiff they are."""
+def stiffness_times(linear: Linear, x: Numbers) -> Numbers:
+    """K x (dn, m) of vectors (dn, m), by way of the elements' strains: no digits are lost however stiff and many they are."""
     twist = x.reshape(-1, linear.rest.block, x.shape[-1])[:, -6:]
     rho = linear.lever @ twist
     rho[1:] -= twist[:-1]
-    springs = (rho.conj() * (linear.spring @ rho)).sum((0, 1))
-    return np.real(springs + (x.conj() * blocks.times(blocks.rows(linear.rest), x).reshape(x.shape)).sum(0))
+    wrench = linear.spring @ rho
+    out = blocks.times(blocks.rows(linear.rest), x)
+    out[:, -6:] += np.swapaxes(linear.lever, -1, -2) @ wrench
+    out[:-1, -6:] -= wrench[1:]
+    return out.reshape(x.shape)
 
 
 @dataclass(frozen=True)

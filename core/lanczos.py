@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import blocks, eigen
-from .blocks import Tridiagonal
+from .blocks import Factor, Tridiagonal
 from .eigen import Eigen
 
 Array = NDArray[np.float64]
@@ -21,16 +21,18 @@ Numbers = NDArray[Any]
 
 _TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
 _CLEAR, _PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
+_SOLVED, _REFINEMENTS = 1e-8, 4  # relative error of a solution with K that is let be, and the most steps to get there
 _FIRST, _EVERY = 26, 12  # when to look whether the modes are there
 
 
 def lanczos(
-    M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int, energy: Callable[[Numbers], Array] | None = None
+    M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int, stiffness: Callable[[Numbers], Numbers]
 ) -> Eigen:
     """The ``count`` lowest modes of a chain.
 
-    With ``energy``, x*Kx to full accuracy, the frequencies are taken from the gyroscopic Rayleigh quotient of the vectors,
-    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
+    ``stiffness`` gives K x (n, k) to full accuracy where the assembled K loses digits to cancellation, as it does with many
+    elements: solutions are refined with it as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh
+    quotient, ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
 
     Raises:
         UnstableError: if K is not positive definite.
@@ -47,15 +49,21 @@ def lanczos(
         """w = A⁻¹S v and A w = S v."""
         cx, mx = _products(moving, v[:n], 2)
         force = cx + _products(mass, v[n:])[0]
-        return np.concatenate([factor.solve(force), -v[:n]]), np.concatenate([force, -mx])
+        x = factor.solve(force)
+        for _ in range(refinements):
+            x += factor.solve(force - stiffness(x))
+        return np.concatenate([x, -v[:n]]), np.concatenate([force, -mx])
 
     def dual(w: Array) -> Array:
         """A w."""
-        return np.concatenate([*_products(stiff, w[:n]), *_products(mass, w[n:])])
+        (mass_y,) = _products(mass, w[n:])
+        return np.concatenate([stiffness(w[:n]) if refinements else _products(stiff, w[:n])[0], mass_y])
 
+    start = np.random.default_rng(1921).normal(size=(2 * n, 2))
+    refinements = _refinements(factor, stiffness, _products(mass, start[:n])[0])
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.zeros((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
-    w, _ = forward(forward(np.random.default_rng(1921).normal(size=(2 * n, 2)))[0])  # smooth
+    w, _ = forward(forward(start)[0])  # smooth
     size, before, last, look = 0, 0, slice(0, 0), 3 * count + _FIRST
     while True:
         w, overlap, gram = _against(dual, w, basis[:size])
@@ -86,16 +94,26 @@ def lanczos(
     if error[positive].max() > 1e-6:
         raise ArithmeticError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
     x = basis[:size, :n].T @ z[:, positive].conj()  # i A⁻¹S has 1/ω at λ = −iω
-    (kx,), (cx, mx) = _products(stiff, x), _products(moving, x, 2)
-    frequencies = 1.0 / mu[positive]
-    if energy is not None:
-        m, half, kappa = np.real((x.conj() * mx).sum(0)), -0.5 * np.imag((x.conj() * cx).sum(0)), energy(x)
-        frequencies = kappa / (np.sqrt(half**2 + m * kappa) - half)
-        if (np.abs(frequencies * mu[positive] - 1.0) > 1e-2).any():
-            raise ArithmeticError(
-                "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
-            )
+    kx, (cx, mx) = stiffness(x), _products(moving, x, 2)
+    kappa, m = (np.real((x.conj() * y).sum(0)) for y in (kx, mx))
+    half = -0.5 * np.imag((x.conj() * cx).sum(0))
+    frequencies = kappa / (np.sqrt(half**2 + m * kappa) - half)
+    if (np.abs(frequencies * mu[positive] - 1.0) > 1e-2).any():
+        raise ArithmeticError(
+            "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
+        )
     return eigen.scaled(frequencies, x, kx)
+
+
+def _refinements(factor: Factor, stiffness: Callable[[Numbers], Numbers], force: Array) -> int:
+    """How many steps of iterative refinement bring a solution to the accuracy wanted, in the norm of its energy."""
+    x = factor.solve(force)
+    left = force - stiffness(x)
+    noise = float(np.sqrt(np.abs((left * factor.solve(left)).sum() / (force * x).sum())))
+    for steps in range(_REFINEMENTS):
+        if noise ** (steps + 1) < _SOLVED:
+            return steps
+    return _REFINEMENTS
 
 
 def _products(rows: Array, x: Numbers, matrices: int = 1) -> list[Numbers]:

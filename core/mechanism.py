@@ -116,6 +116,19 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
     return replace(mechanism, motions=tuple(instant(m, time) for m in mechanism.motions))
 
 
+def turned_at(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
+    """The mechanism with the motion of one coordinate, its rotor's, at another rate (rad/s or m/s).
+
+    Raises:
+        MechanismError: if that coordinate has no motion, or follows a law.
+    """
+    mine = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
+    if not mine:
+        raise MechanismError(f"coordinate {coordinate!r}: no motion at a rate is given for it: add one")
+    motions = tuple(replace(m, rate=rate) if m in mine else m for m in mechanism.motions)
+    return replace(mechanism, motions=motions)
+
+
 def check(m: Mechanism) -> None:
     """Refuse what cannot be.
 

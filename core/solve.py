@@ -90,7 +90,7 @@ def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravi
         begun = time.perf_counter()
         state = balance(body, omega, gravity, model, chain.extrapolate(known, omega))
         p = state.linear
-        found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.strain_energy, p))
+        found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
         shapes = mode_shapes(body, state.shape, found.vectors)
         yield Modes(omega, found.frequencies, shapes, len(body.nodes) - 1, seconds=time.perf_counter() - begun)
         known = [*known[-chain.ORDER :], (omega, state.shape)]
