@@ -5,6 +5,7 @@ guideline that Park et al. (2010) cite only asks for the two to be apart; how fa
 reckon with 10 %.
 """
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ from ..core.chain import SteadyStateError
 from ..core.eigen import UnstableError
 from ..core.modes import Modes
 from ..core.participation import MIXED, families, numbered, participation
-from ..core.solve import NO_GRAVITY, modes
+from ..core.solve import NO_GRAVITY, sweep
 from .encounters import Encounter, encounters
 from .errors import CaseError
 from .pairing import Array, weights
@@ -158,10 +159,13 @@ def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda 
         CaseError: if a speed has no stable steady state.
     """
     gravity = np.array(wanted.gravity) if any(wanted.gravity) else NO_GRAVITY
+    waiting: deque[float] = deque()
+    stream = sweep(blade, iter(waiting.popleft, None), wanted.elements, wanted.modes + SPARE, gravity=gravity)
 
     def solve(omega: float) -> Modes:
+        waiting.append(omega)
         try:
-            found = modes(blade, omega, wanted.elements, wanted.modes + SPARE, gravity=gravity)
+            found = next(stream)
         except (SteadyStateError, UnstableError) as error:
             raise CaseError(f"{blade.name}: speed: {omega:g} rad/s: {error}: give lower speeds") from error
         told(omega)
@@ -308,6 +312,6 @@ def _margins(lines: Sequence[_Line | None], wanted: Wanted) -> tuple[Margin, ...
             inside = [o for o in line.meets(n) if low <= o <= high]
             k = int(np.abs(values).argmin())
             least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
-            kept = abs(least) >= wanted.margin
+            kept = bool(abs(least) >= wanted.margin)
             out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, kept))
     return tuple(out)

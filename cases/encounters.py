@@ -5,15 +5,17 @@ past; near the closest point the squares of the frequencies behave as those of t
 difference as a parabola over Ω² (Leissa 1974; Perkins and Mote 1986, J. Sound Vib. 106).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .pairing import Array, mac
 from .tracking import Tracks
+
+Index = NDArray[np.intp]
 
 EXCHANGED = 0.1
 """Less exchange of shape than this between two modes that come close is no veering: they pass without knowing each other."""
@@ -64,7 +66,6 @@ def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter,
 def _of_pair(
     tracks: Tracks, shares: Array, weight: Array, i: int, j: int, run: Sequence[int] | Array
 ) -> list[Encounter]:
-    k = np.asarray(run, int)
     if len(k) < 2:
         return []
     x = tracks.omega[k] ** 2
@@ -90,18 +91,18 @@ def _of_pair(
 
 
 def _veerings(
-    tracks: Tracks, shares: Array, weight: Array, pair: tuple[int, int], k: Array, x: Array, size: Array, squares: Array
+    tracks: Tracks, shares: Array, weight: Array, pair: tuple[int, int], k: Index, x: Array, size: Array, squares: Array
 ) -> list[Encounter]:
     """Interior minima of the distance at which shapes are exchanged; ``size`` is of the squares of the frequencies."""
     found = []
     inside = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:])) + 1
-    for m in inside:
+    for m in inside.tolist():
         at, smallest = _closest(x[m - 1 : m + 2], size[m - 1 : m + 2])
         a, left = _passed(size, m, -1, smallest)
         b, right = _passed(size, m, 1, smallest)
         square = float(np.interp(at, x, squares.mean(1)))
         gap = smallest / (2.0 * np.sqrt(square))
-        order = pair if squares[m, 0] < squares[m, 1] else pair[::-1]
+        order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
         window = (int(k[a]), int(k[b]))
         e = _encounter(
             "veering", tracks, shares, weight, order, float(np.sqrt(at)), square, gap, window, left and right

@@ -98,7 +98,7 @@ class _Link:
     bounds: dict[tuple[int, int], float]
 
 
-def track(solve: Solver, speeds: Sequence[float], weight: Array, count: int) -> Tracks:
+def track(solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: int) -> Tracks:
     """Follow the ``count`` lowest modes along ``speeds`` (rad/s, ascending).
 
     A mode that is among the ``count`` lowest at any speed is followed over all of them, as far as ``solve`` gives it: let that
@@ -166,7 +166,7 @@ def _sure(link: _Link, a: Modes, count: int) -> bool:
 
 
 def _strung(
-    points: Sequence[Modes], links: Sequence[_Link], speeds: Sequence[float], count: int, smallest: float
+    points: Sequence[Modes], links: Sequence[_Link], speeds: Sequence[float] | Array, count: int, smallest: float
 ) -> Tracks:
     """Tracks from links; those that are never among the ``count`` lowest are left out."""
     owner = [list(range(len(points[0].frequencies)))]  # the track of each mode at each speed
@@ -204,7 +204,7 @@ def _tables(
     owner: Sequence[Sequence[int]],
     kept: Sequence[int],
     doubts: Sequence[Doubt],
-    speeds: Sequence[float],
+    speeds: Sequence[float] | Array,
     smallest: float,
 ) -> Tracks:
     n, t = len(points), len(kept)

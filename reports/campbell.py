@@ -9,7 +9,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from ..cases.campbell import Campbell
 from ..core.participation import FAMILIES, MIXED
@@ -246,10 +245,10 @@ def _marks(axes: Axes, diagram: Campbell, units: Units) -> None:
         axes.annotate("?", at, ha="center", va="center", size=10, weight="bold", color=RED, zorder=7)
 
 
-def _legend(diagram: Campbell) -> list[Line2D | Patch]:
+def _legend(diagram: Campbell) -> list[Line2D]:
     present = {diagram.names[t].split()[0] for t in range(diagram.tracks.count)}
     present |= {diagram.last[t].split()[0] for t in range(diagram.tracks.count)}
-    out: list[Line2D | Patch] = [
+    out: list[Line2D] = [
         Line2D([], [], color=FAMILY_COLOURS[f], lw=1.8, ls=DASHES[f], label=f)
         for f in (*FAMILIES, MIXED)
         if f in present
@@ -260,7 +259,11 @@ def _legend(diagram: Campbell) -> list[Line2D | Patch]:
     if any(r.apart == 0.0 for r in diagram.resonances):
         out.append(Line2D([], [], ms=5.5, mfc=RED, mec="white", label="resonance in operation", **dot))
     if any(not m.kept for m in diagram.margins):
-        out.append(Patch(color=RED, alpha=0.22, lw=0, label=f"within {100 * diagram.wanted.margin:.3g} % of n per rev"))
+        out.append(
+            Line2D(
+                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.wanted.margin:.3g} % of n per rev"
+            )
+        )
     for kind, marker, size in (("veering", "D", 6.5), ("crossing", "x", 5)):
         if any(e.kind == kind for e in diagram.encounters):
             label = f"{kind} of modes"

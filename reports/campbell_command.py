@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from math import inf, radians
+from math import inf, isfinite, radians
 from pathlib import Path
 from typing import Annotated
 
@@ -79,7 +79,7 @@ def command(
     chosen = select(blade)
     speeds, units = _speeds(rpm, omega)
     units = units or BY_KEY[settings(chosen)[0].unit]
-    pulled = gravity(radians(azimuth), radians(tilt)).tolist() if azimuth is not None else (0.0, 0.0, 0.0)
+    pulled = _gravity(azimuth, tilt)
     for variant in chosen.variants:
         wanted = Wanted(
             speeds=tuple(variant.speeds.tolist() if speeds is None else speeds),
@@ -88,7 +88,7 @@ def command(
             operating=_operating(operating, units) if operating else None,
             margin=_margin(margin),
             elements=elements,
-            gravity=tuple(pulled),
+            gravity=pulled,
         )
         folder = out / variant.name.partition("/")[2] if len(chosen.variants) > 1 else out
         diagram = solve(variant.blade, wanted, units, workers)
@@ -182,6 +182,16 @@ def _speeds(rpm: str | None, omega: str | None) -> tuple[list[float] | None, Uni
         return (speed_range(text) / units.speeds).tolist(), units
     except ValueError as error:
         raise CaseError(f"{option}: {error}") from error
+
+
+def _gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
+    for option, value in (("--azimuth", azimuth), ("--tilt", tilt)):
+        if value is not None and not isfinite(value):
+            raise CaseError(f"{option} {value}: not a finite number of degrees: give one, as in 90")
+    if azimuth is None:
+        return 0.0, 0.0, 0.0
+    x, y, z = gravity(radians(azimuth), radians(tilt)).tolist()
+    return x, y, z
 
 
 def _per_rev(text: str) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ..cases.campbell import Campbell
@@ -19,6 +20,8 @@ from .campbell_tables import Sheet
 from .style import FAINT, MUTED, WIDTH, house, key, spread, title
 from .units import Units
 
+Complex = NDArray[np.complex128]
+
 ACROSS = 3
 
 FINE = np.linspace(0.0, 1.0, 141)
@@ -28,7 +31,7 @@ LAGGING = 0.02
 """A part of the motion a quarter period late is drawn if it is this large."""
 
 
-def scaled(diagram: Campbell, k: int) -> tuple[list[int], np.ndarray]:
+def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
     """The tracks at speed number ``k`` in the order of frequency, and their shapes (m, 21, 4) in the blade's axes.
 
     Each is scaled so that the largest displacement of any point is 1 m, at the phase at which the part that moves farthest is
@@ -93,7 +96,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, shape: np.ndarray, arm: float) -> None:
+def _panel(axes: Axes, shape: Complex, arm: float) -> None:
     axes.axhline(0.0, color=FAINT, lw=0.8, zorder=1)
     axes.set_xlim(0, 1)
     axes.set_ylim(-1.12, 1.12)

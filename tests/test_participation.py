@@ -46,6 +46,14 @@ def test_torsion_counts_through_the_polar_inertia_not_in_radians() -> None:
     np.testing.assert_allclose(share, [(MASS + bending) / whole, 0, POLAR / whole, 0], atol=2e-6)
 
 
+def test_a_flap_mode_that_turns_more_radians_than_it_moves_metres_is_flap() -> None:
+    """Summing m² and rad² calls this torsion: 0.25 against 1; its energies are 0.3 against 0.003."""
+    sine = np.sin(0.5 * np.pi * STATIONS)
+    shares = participation(modes(shape(z=0.5 * sine, t=sine)), BEAM)
+    assert families(shares) == ("flap",)
+    assert shares[0, TORSION] == pytest.approx(POLAR / (POLAR + 0.25 * MASS), rel=2e-3)
+
+
 def test_a_phase_lag_does_not_matter() -> None:
     sine = np.sin(0.5 * np.pi * STATIONS)
     (share,) = participation(modes(np.exp(0.7j) * shape(y=3j * sine, z=4.0 * sine)), POINTLIKE)

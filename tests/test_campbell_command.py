@@ -1,0 +1,155 @@
+"""``southwell campbell``: what a user types, sees, finds in the folder; every wrong input is one line and status 2."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases import library
+from southwell.core.solve import modes
+from southwell.reports.campbell_command import Told
+from southwell.reports.units import RPM
+
+from .test_cli import BEAM, southwell
+
+
+@pytest.fixture
+def beam(tmp_path: Path) -> Path:
+    path = tmp_path / "stub.toml"
+    path.write_text(BEAM)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("campbell", "BLADE"),
+        ("campbell no-such-case", "'no-such-case' is not known"),
+        ("campbell missing.toml", "missing.toml: no such file"),
+        ("campbell park-blade/surrogat", "did you mean park-blade/surrogate?"),
+        ("campbell park-cantilever --rpm 0:30:5 --omega 1", "given twice: give one of them"),
+        ("campbell park-cantilever --rpm fast", "--rpm: 'fast' is neither a speed nor first:last:step, as in 0:30:5"),
+        ("campbell park-cantilever --rpm 30:0:5", "--rpm: '30:0:5': needs 0 ≤ first ≤ last"),
+        ("campbell park-cantilever --rpm 10", "a diagram needs two at least"),
+        ("campbell park-cantilever --per-rev one", "--per-rev: 'one' is neither first:last nor whole numbers"),
+        ("campbell park-cantilever --per-rev 0:3", "--per-rev: '0:3': needs 1 ≤ first ≤ last"),
+        ("campbell park-cantilever --per-rev 3:1", "--per-rev: '3:1': needs 1 ≤ first ≤ last"),
+        ("campbell park-cantilever --operating 7", "--operating: '7' is not lowest:highest, as in 6.9:12.1"),
+        ("campbell park-cantilever --operating 12:7", "--operating: '12:7': needs 0 ≤ lowest ≤ highest"),
+        ("campbell park-cantilever --operating nan:7", "--operating: 'nan:7': needs 0 ≤ lowest ≤ highest"),
+        ("campbell park-cantilever --rpm 0:30:10 --operating 7:40", "is not within the speeds"),
+        ("campbell park-cantilever --margin wide", "--margin: 'wide' is neither a percentage nor a fraction"),
+        ("campbell park-cantilever --margin 10", "--margin: '10': needs 0 ≤ margin < 1"),
+        ("campbell park-cantilever --margin=-5%", "--margin: '-5%': needs 0 ≤ margin < 1"),
+        ("campbell park-cantilever --modes 0", "--modes"),
+        ("campbell park-cantilever --elements 1.5", "--elements"),
+        ("campbell park-cantilever --workers 0", "--workers"),
+        ("campbell park-cantilever --azimuth up", "--azimuth"),
+        ("campbell park-cantilever --azimuth nan", "--azimuth nan: not a finite number of degrees"),
+        ("campbell yoo-shin-chordwise/delta-0 --omega 0:200:100 --elements 8", "200 rad/s"),
+    ],
+)
+def test_wrong_input_is_told_in_one_line(
+    arguments: str, told: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, out, err = southwell(arguments, capsys)
+    assert (status, out) == (2, "")
+    assert err.startswith("southwell: ")
+    assert err.count("\n") == 1
+    assert told in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_cannot_be_written_is_told(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "taken").write_text("a file")
+    status, _, err = southwell(f"campbell {beam} --elements 6 -o {tmp_path / 'taken'}", capsys)
+    assert status == 2
+    assert "cannot be written" in err
+    assert err.count("\n") == 1
+
+
+def test_it_prints_tables_and_writes_figures_page_and_csv(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    line = f"campbell {beam} --rpm 0:200:50 --modes 3 --elements 8 --operating 50:150 --per-rev 1,2,9 --margin 0.05"
+    status, shown, err = southwell(f"{line} -o {out}", capsys)
+    assert (status, err) == (0, "")
+    blade = library.load(str(beam)).variants[0].blade
+    hertz = modes(blade, 200 * np.pi / 30, 8, 1).frequencies[0] / (2 * np.pi)
+    row = next(text for text in shown.splitlines() if "flap 1" in text and " % flap" in text)
+    assert f"{hertz:.4f}" in row
+    names = {p.name for p in out.iterdir()}
+    assert names == {
+        *(f"{stem}.{kind}" for stem in ("campbell", "shapes") for kind in ("svg", "png", "csv")),
+        *("campbell.md", "resonances.csv", "margins.csv", "encounters.csv"),
+    }
+    assert all(name in shown for name in names)
+    page = (out / "campbell.md").read_text()
+    for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell "):
+        assert needed in page
+    assert (out / "campbell.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, shown, _ = southwell(f"campbell park-blade --modes 1 --elements 10 -o {tmp_path / 'out'}", capsys)
+    assert status == 0
+    labels = {v.name.partition("/")[2] for v in library.load("park-blade").variants}
+    assert {p.name for p in (tmp_path / "out").iterdir()} == labels
+    assert "Hz at 30 rpm" in shown
+
+
+def test_gravity_at_an_azimuth_stiffens_a_blade_that_hangs(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = []
+    for option in ("", "--azimuth 180", "--azimuth 0"):
+        southwell(f"campbell {beam} --modes 1 --elements 8 {option} -o {tmp_path / 'out'}", capsys)
+        rows = (tmp_path / "out" / "campbell.csv").read_text().splitlines()
+        head, row = rows[0].split(","), rows[1].split(",")
+        first.append(float(row[head.index("frequency_rad_s")]))
+    assert first[2] < first[0] < first[1]
+
+
+def test_several_processes_give_the_same_numbers(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tables = []
+    for workers in (1, 2):
+        out = tmp_path / str(workers)
+        status, *_ = southwell(f"campbell {beam} --modes 2 --elements 8 --workers {workers} -o {out}", capsys)
+        assert status == 0
+        text = (out / "campbell.csv").read_text().splitlines()
+        column = text[0].split(",").index("frequency_rad_s")
+        tables.append([float(row.split(",")[column]) for row in text[1:]])
+    np.testing.assert_allclose(tables[0], tables[1], rtol=1e-9)
+
+
+def test_progress_counts_what_was_asked_for_and_names_what_is_between() -> None:
+    told = Told("blade", [0.0, 1.0], RPM)
+    told(0.0)
+    assert told.bar.tasks[0].completed == 1
+    told(0.5)
+    assert told.bar.tasks[0].completed == 1
+    assert "looking closer at 4.77465 rpm" in told.bar.tasks[0].description
+
+
+def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = southwell("campbell --help", capsys)
+    assert status == 0
+    for option in (
+        "--rpm",
+        "--out",
+        "-o",
+        "--modes",
+        "--per-rev",
+        "--operating",
+        "--margin",
+        "--elements",
+        "--workers",
+    ):
+        assert option in out
+    assert "campbell" in southwell("--help", capsys)[1]
