@@ -63,9 +63,7 @@ def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter,
     return tuple(sorted(found, key=lambda e: (e.omega, e.frequency)))
 
 
-def _of_pair(
-    tracks: Tracks, shares: Array, weight: Array, i: int, j: int, run: Sequence[int] | Array
-) -> list[Encounter]:
+def _of_pair(tracks: Tracks, shares: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
     if len(k) < 2:
         return []
     x = tracks.omega[k] ** 2
