@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
+from typing import Any
 
 from ..core.blade import Blade
 from ..core.model import FULL, Model
@@ -46,9 +47,9 @@ class Column:
     name: str
     model: Model
     head: Head
-    work: Callable[[References], Rows]
+    work: Callable[[Any], Rows]
 
-    def __call__(self, speeds: Sequence[float], core: Sequence[Reference | Failure]) -> Rows:
+    def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds; without a reference there is nothing to compare with."""
         pairs = list(zip(speeds, core, strict=True))
         without = [
@@ -56,12 +57,15 @@ class Column:
             for omega, r in pairs
             if isinstance(r, Failure)
         ]
-        cells, levels = self.work([(omega, r) for omega, r in pairs if isinstance(r, Reference)])
+        cells, levels = self.work([(omega, r) for omega, r in pairs if not isinstance(r, Failure)])
         return without + cells, levels
 
 
-def columns(case: Case, variant: Variant, codes: dict[str, Code], timeout: float) -> list[Column]:
-    """All columns of one blade; ``codes`` by the name or import path they were asked for."""
+def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float) -> list[Column]:
+    """All columns of one blade; ``codes`` by the name or import path they were asked for.
+
+    Codes that take mechanisms only have none, unless there are no others.
+    """
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
     out = []
     if source:
@@ -74,11 +78,19 @@ def columns(case: Case, variant: Variant, codes: dict[str, Code], timeout: float
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         out.append(Column(table.name, felt(table.series.model, blade), head, work))
-    for name, code in codes.items():
+    takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
+    if codes and not takers:
+        out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
+    for name, code in takers.items():
         out.append(
             _code(Head(variant.name, code.name, code.version() or "", "code", target), name, code, blade, timeout)
         )
     return out
+
+
+def _mechanisms_only(case: str, code: Any, target: float) -> Column:
+    head = Head(case, code.name, code.version() or "", "code", target)
+    return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
 
 
 def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:

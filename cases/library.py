@@ -1,15 +1,39 @@
-"""The cases that come with the package, and any other by its file."""
+"""The cases and mechanisms that come with the package, and any other by its file."""
 
 from importlib.resources import as_file, files
 from pathlib import Path
 
 from .errors import CaseError, nearest
+from .mechanisms import Described
+from .mechanisms import read as describe
 from .schema import Case, read
 
 
 def names() -> tuple[str, ...]:
     """Names of the cases that come with the package, sorted."""
     return tuple(sorted(Path(f.name).stem for f in files(f"{__package__}.data").iterdir() if f.name.endswith(".toml")))
+
+
+def mechanisms() -> tuple[str, ...]:
+    """Names of the mechanisms that come with the package, sorted."""
+    folder = files(f"{__package__}.data") / "mechanisms"
+    return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def mechanism(name: str) -> Described:
+    """A mechanism by its name, or by the path of its TOML file.
+
+    Raises:
+        CaseError: if there is no such mechanism (the nearest is suggested), or its file is at fault.
+    """
+    if name in mechanisms():
+        with as_file(files(f"{__package__}.data") / "mechanisms" / f"{name}.toml") as path:
+            return describe(path)
+    if name.endswith(".toml"):
+        return describe(Path(name))
+    raise CaseError(
+        f"mechanism: {name!r} is not known: {nearest(name, mechanisms())}; or give the path of a .toml file"
+    )
 
 
 def load(name: str) -> Case:
@@ -23,4 +47,6 @@ def load(name: str) -> Case:
             return read(folder / f"{name}.toml")
     if name.endswith(".toml"):
         return read(Path(name))
+    if name in mechanisms():
+        raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
     raise CaseError(f"case: {name!r} is not known: {nearest(name, names())}; or give the path of a .toml file")

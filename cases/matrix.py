@@ -5,13 +5,16 @@ For each blade core's references come first, then each column. A task is a pure 
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from platform import python_version
 from typing import Any
 
 from ..references.codes import code
+from . import mechanism_columns
 from .columns import Column, Rows, columns
+from .mechanism_case import MechanismCase, Turning
 from .reference import references
 from .results import Cell, Level, Run
 from .schema import Case, Variant
@@ -44,8 +47,9 @@ class Progress:
 class _Task:
     """One thing to solve of one blade: core's references (no column), or a column."""
 
-    variant: Variant
+    variant: Variant | Turning
     columns: tuple[Column, ...]
+    core: Callable[[], dict[Any, list[Any]]]
     column: Column | None = None
 
     @property
@@ -54,7 +58,7 @@ class _Task:
 
 
 def run(
-    cases: Sequence[Case],
+    cases: Sequence[Case | MechanismCase],
     codes: Sequence[str],
     executor: Executor,
     on_progress: Callable[[Progress], None] = lambda _: None,
@@ -74,19 +78,13 @@ def run(
         UnknownCodeError: if a code is not known.
     """
     known = {name: code(name) for name in codes}
-    plans = [
-        (case, _Task(variant, tuple(columns(case, variant, known, timeout))))
-        for case in cases
-        for variant in case.variants
-    ]
-    total = sum(1 + len(task.columns) for _, task in plans)
+    plans = [task for case in cases for task in _tasks(case, known, timeout)]
+    total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
     try:
-        for case, task in plans:
-            models = [column.model for column in task.columns]
-            question = (task.variant.blade, task.variant.speeds.tolist(), case.text.compare, models)
-            pending[executor.submit(references, *question)] = task
+        for task in plans:
+            pending[executor.submit(task.core)] = task
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -96,19 +94,34 @@ def run(
                 else:
                     for column in task.columns:
                         answer = executor.submit(column, task.variant.speeds.tolist(), future.result()[column.model])
-                        pending[answer] = _Task(task.variant, task.columns, column)
+                        pending[answer] = replace(task, column=column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
     finally:
         for future in pending:
             future.cancel()
-    ordered = [rows[task.variant.name, column.name] for _, task in plans for column in task.columns]
+    ordered = [rows[task.variant.name, column.name] for task in plans for column in task.columns]
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
         versions=versions({c.name: c.version() for c in known.values()}),
         settings=tuple(setting for case in cases for setting in settings(case)),
     )
+
+
+def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float) -> list[_Task]:
+    """One for each blade of a case, or for its mechanism."""
+    if isinstance(case, MechanismCase):
+        (turning,) = case.variants
+        made = tuple(mechanism_columns.columns(case, codes, timeout))
+        return [_Task(turning, made, partial(mechanism_columns.references, turning))]
+    out = []
+    for v in case.variants:
+        made = tuple(columns(case, v, codes, timeout))
+        models = [column.model for column in made]
+        question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
+        out.append(_Task(v, made, question))
+    return out
 
 
 def versions(codes: dict[str, str | None]) -> dict[str, str]:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta, Struct
 
 from ..core.joints import Kind
+from .schema import Speeds
 
 Three = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0)]
@@ -121,6 +122,22 @@ class BeamData(Struct, frozen=True, forbid_unknown_fields=True):
     at_b: Frame = Frame()
 
 
+class Compare(Struct, frozen=True, forbid_unknown_fields=True):
+    """How closely codes must agree with core on the same mechanism."""
+
+    modes: Annotated[int, Meta(ge=1, description="how many, from the lowest")]
+    target: Annotated[
+        float, Meta(gt=0, description="largest difference: of frequencies relative, of damping ratios")
+    ] = 1e-8
+
+
+class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
+    """A formula for this mechanism, with its own parameters: see ``references.blade_formulae``."""
+
+    formula: str
+    parameters: Annotated[dict[str, float], Meta(description="SI")]
+
+
 class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A mechanism's file: see the structures above for what each table may say."""
 
@@ -140,3 +157,9 @@ class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     beams: tuple[BeamData, ...] = ()
     guess: Annotated[dict[str, dict[str, float]], Meta(description="joint.coordinate → where to start, m or rad")] = {}
     independent: Annotated[tuple[str, ...], Meta(description="coordinates to vibrate; none: chosen numerically")] = ()
+    rotor: Annotated[
+        str, Meta(description="joint.coordinate that turns at the rotor's speed, where that is varied")
+    ] = ""
+    speeds: Speeds | None = None
+    compare: Compare | None = None
+    closed_form: ClosedForm | None = None

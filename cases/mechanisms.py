@@ -60,6 +60,15 @@ class Described:
             raise CaseError(f"{self.path}: {error}") from error
 
 
+def is_one(path: Path) -> bool:
+    """Whether a TOML file holds a mechanism: it has bodies.
+
+    Raises:
+        CaseError: if there is no such file, or it is not TOML.
+    """
+    return "bodies" in document(path)
+
+
 def read(path: Path) -> Described:
     """The mechanism in a TOML file.
 

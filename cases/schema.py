@@ -140,7 +140,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     for table in text.compare.tables:
         if table not in published.names():
             raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
-    speeds = _speeds(text, path)
+    speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
         changed = {**data, "blade": {**data["blade"], **changes}}
@@ -167,13 +167,18 @@ def speed_range(text: str) -> NDArray[np.float64]:
     return np.array([first + step * k for k in range(count)])
 
 
-def _speeds(text: CaseFile, path: str) -> NDArray[np.float64]:
-    given = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(text.speeds, unit)) is not UNSET}
-    if len(given) != 1:
-        listed = ", ".join(given) or "none"
+def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:
+    """The speeds in a file in rad/s, ascending (as they are, where they are γ).
+
+    Raises:
+        CaseError: none or several units, no speeds, or not ascending.
+    """
+    units = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(given, unit)) is not UNSET}
+    if len(units) != 1:
+        listed = ", ".join(units) or "none"
         raise CaseError(f"{path}: speeds: {listed} given: give exactly one of rad_s, rpm, gamma")
-    ((unit, value),) = given.items()
-    if unit == "gamma" and not isinstance(text.blade, Dimensionless):
+    ((unit, value),) = units.items()
+    if unit == "gamma" and not dimensionless:
         raise CaseError(f'{path}: speeds.gamma: it needs blade.kind = "dimensionless": give rad_s or rpm')
     try:
         speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)

@@ -7,14 +7,17 @@ from msgspec import UNSET
 from scipy.integrate import trapezoid
 
 from ..core.blade import Blade
+from .mechanism_case import MechanismCase, setting
 from .pairing import MOTIONS
 from .results import Setting, Unit
 from .schema import Case, Variant
 from .verdict import unsigned
 
 
-def settings(case: Case) -> tuple[Setting, ...]:
-    """One for each blade of the case."""
+def settings(case: Case | MechanismCase) -> tuple[Setting, ...]:
+    """One for each blade of the case, or for its mechanism."""
+    if isinstance(case, MechanismCase):
+        return (setting(case),)
     return tuple(_setting(case, variant) for variant in case.variants)
 
 

@@ -7,10 +7,15 @@ to those who do not use it.
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.metadata import entry_points
+from typing import Any
 
 from .interface import Code
+from .mechanism_interface import takes_mechanisms
 
 GROUP = "southwell.codes"
+
+BLADE_CODE = ("name", "model", "levels", "order", "version", "unsupported", "solve")
+"""What a code that takes blades must have."""
 
 OURS = {
     "exudyn-ancf": "southwell.references.exudyn_ancf:CODE",
@@ -29,10 +34,14 @@ class UnknownCodeError(ValueError):
     """A code that cannot be had: the message names it, the likely cause, and the remedy."""
 
 
+FOR_MECHANISMS = {"exudyn-loops": "southwell.references.exudyn_mechanism:CODE"}
+"""Likewise, of those that take mechanisms and no blades."""
+
+
 def names() -> tuple[str, ...]:
     """Names of all codes known here, ours first; installed or not."""
-    theirs = sorted(e.name for e in entry_points(group=GROUP) if e.name not in OURS)
-    return (*OURS, *theirs)
+    theirs = sorted(e.name for e in entry_points(group=GROUP) if e.name not in {**OURS, **FOR_MECHANISMS})
+    return (*OURS, *FOR_MECHANISMS, *theirs)
 
 
 def locate(name: str) -> str:
@@ -46,8 +55,8 @@ def locate(name: str) -> str:
     """
     if ":" in name:
         return name
-    if name in OURS:
-        return OURS[name]
+    if name in OURS or name in FOR_MECHANISMS:
+        return {**OURS, **FOR_MECHANISMS}[name]
     for entry in entry_points(group=GROUP, name=name):
         return entry.value
     near = get_close_matches(name, names(), 1)
@@ -55,8 +64,8 @@ def locate(name: str) -> str:
     raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
 
 
-def code(name: str) -> Code:
-    """The code called ``name`` (as for ``locate``), imported now.
+def code(name: str) -> Any:
+    """The code called ``name`` (as for ``locate``), imported now: an ``interface.Code``, a ``MechanismCode``, or both.
 
     Raises:
         UnknownCodeError: if it is not known, or what the path leads to cannot be imported or is not a code.
@@ -67,9 +76,8 @@ def code(name: str) -> Code:
         found = getattr(import_module(module), attribute)
     except (ImportError, AttributeError) as error:
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}") from error
-    missing = [
-        a for a in ("name", "model", "levels", "order", "version", "unsupported", "solve") if not hasattr(found, a)
-    ]
+    needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
+    missing = [a for a in needed if not hasattr(found, a)]
     if missing:
         raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.interface.Code")
     return found

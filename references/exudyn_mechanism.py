@@ -18,8 +18,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ..core.mechanism import Mechanism
+from ..core.model import FULL
 from ..core.tree import Tree, compile_tree
 from . import exudyn_system as ex
+from .damped import damped_modes
 from .exudyn_loops import System, own_coordinates
 from .interface import CodeError, Shares
 from .mechanism_interface import MechanismModes
@@ -70,6 +72,7 @@ class ExudynMechanism:
     name = "exudyn-loops"
     title = "Exudyn, kinematic tree with loop joints"
     shares: Shares = "mechanical model"
+    model = FULL
     hint = ex.HINT
 
     def version(self) -> str | None:
@@ -100,7 +103,7 @@ class ExudynMechanism:
         begun = time.perf_counter()
         stages = linearize(compile_tree(mechanism), guess)
         null = stages.null
-        values, x = _eigen(*stages.reduced(null))
+        values, x = damped_modes(*stages.reduced(null))
         shapes = np.zeros((len(values), len(stages.q)), np.complex128)
         shapes[:, stages.free] = (null @ x).T
         return MechanismModes(stages.coordinates, stages.q, values, shapes, time.perf_counter() - begun)
@@ -180,18 +183,6 @@ def _settle(system: System, q: Array) -> Array:
 def _least(a: Array, b: Array, rank: float = 1e-9) -> Array:
     """The smallest x with the smallest a x − b."""
     return np.asarray(np.linalg.lstsq(a, b, rcond=rank)[0], np.float64)
-
-
-def _eigen(M: Array, C: Array, K: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """One of each conjugate pair of eigenvalues, and real ones, by modulus, with vectors (i, m)."""
-    n = len(M)
-    zero, one = np.zeros((n, n)), np.eye(n)
-    found = np.linalg.eig(np.block([[zero, one], [-np.linalg.solve(M, np.hstack([K, C]))]]))
-    values, z = (np.asarray(a, np.complex128) for a in found)
-    kept = values.imag >= -1e-12 * np.abs(values).max(initial=0.0)
-    values, x = values[kept], z[:n, kept]
-    order = np.argsort(np.abs(values), kind="stable")
-    return values[order], x[:, order]
 
 
 CODE = ExudynMechanism()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.mechanism import Mechanism
+from ..core.model import Model
 from .interface import Shares
 
 Complex = NDArray[np.complex128]
@@ -43,12 +44,13 @@ class MechanismCode(Protocol):
     """One source of a mechanism's modes; laws as for ``interface.Code``.
 
     Attributes:
-        name, title, shares, hint: as for ``interface.Code``.
+        name, title, shares, model, hint: as for ``interface.Code``.
     """
 
     name: str
     title: str
     shares: Shares
+    model: Model
     hint: str
 
     def version(self) -> str | None:

@@ -16,7 +16,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TextIO
 
 from ..core.blade import Blade
 from ..core.modes import Modes
@@ -59,9 +59,22 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], timeout: float) -> lis
         UnknownCodeError: if there is no such code.
     """
     request = json.dumps({"code": locate(name), "blade": encode(blade), "runs": [list(run) for run in runs]})
+    lines, ended = converse(__name__, request, timeout)
+    solved = [_answer(line) for line in lines[: len(runs)]]
+    return solved + [ended] * (len(runs) - len(solved))
+
+
+def converse(module: str, request: str, timeout: float) -> tuple[list[str], Failure]:
+    """The lines that ``python -m module`` writes in answer to a request, and why there are no more.
+
+    Args:
+        module: what to run, in a process of its own that ends with this call.
+        request: its standard input.
+        timeout: seconds.
+    """
     limits = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     child = subprocess.Popen(
-        [sys.executable, "-m", __name__],
+        [sys.executable, "-m", module],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -81,9 +94,7 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], timeout: float) -> lis
     except BaseException:
         _kill(child)
         raise
-    lines = out.split("\n")[:-1]
-    solved = [_answer(line) for line in lines[: len(runs)]]
-    return solved + [ended or _crash(child.returncode, err)] * (len(runs) - len(solved))
+    return out.split("\n")[:-1], ended or _crash(child.returncode, err)
 
 
 def _kill(child: subprocess.Popen[str]) -> None:
@@ -107,23 +118,30 @@ def _solve(code: Code, blade: Blade, run: Run) -> dict[str, object]:
     try:
         modes = code.solve(blade, omega, elements, count)
     except CodeError as error:
-        return {"kind": "refused", "error": _line(error)}
+        return {"kind": "refused", "error": one_line(error)}
     except Exception as error:  # whatever a foreign code raises is its answer to this run, and no other's
-        return {"kind": "nonsense", "error": f"{type(error).__name__}: {_line(error)}"}
+        return {"kind": "nonsense", "error": f"{type(error).__name__}: {one_line(error)}"}
     if not len(modes.frequencies) or (modes.frequencies[1:] < modes.frequencies[:-1]).any():
         return {"kind": "nonsense", "error": f"frequencies {modes.frequencies.tolist()} are not ascending"}
     return {"modes": encode(modes)}
 
 
-def _line(error: Exception) -> str:
+def one_line(error: Exception) -> str:
+    """An error's message without line breaks."""
     return " ".join(str(error).split())
+
+
+def protocol_stream() -> TextIO:
+    """Standard output for the protocol alone: whatever a foreign code prints goes to standard error from here on."""
+    stream = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return stream
 
 
 def main() -> None:
     """Answer the one request on standard input."""
     request = json.load(sys.stdin)
-    with os.fdopen(os.dup(1), "w", encoding="utf-8") as protocol:
-        os.dup2(2, 1)
+    with protocol_stream() as protocol:
         code, blade = find(request["code"]), decode_blade(request["blade"])
         for run in request["runs"]:
             if code.version() is None:

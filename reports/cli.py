@@ -16,8 +16,9 @@ from cyclopts.validators import Number
 from rich import box
 from rich.table import Table
 
-from ..cases import library, lumping, matrix, mechanisms, results
+from ..cases import library, lumping, matrix, mechanism_case, mechanisms, results
 from ..cases.errors import CaseError, nearest
+from ..cases.mechanism_case import MechanismCase
 from ..cases.pool import Pool
 from ..cases.results import Run
 from ..cases.schema import Case, speed_range
@@ -81,7 +82,7 @@ def verify(
     workers
         Processes to use; one a processor by default.
     """
-    chosen = [select(name) for name in dict.fromkeys(case or library.names())]
+    chosen = [_chosen(name) for name in dict.fromkeys(case or (*library.names(), *library.mechanisms()))]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     known = [registry.code(name) for name in names]
     about = Run(
@@ -104,7 +105,9 @@ def verify(
     return summary.status(run)
 
 
-def _solve(chosen: Sequence[Case], names: Sequence[str], about: Run, path: Path, workers: int) -> tuple[Run, bool]:
+def _solve(
+    chosen: Sequence[Case | MechanismCase], names: Sequence[str], about: Run, path: Path, workers: int
+) -> tuple[Run, bool]:
     """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
     pool, watch = Pool(workers), terminal.Watch()
 
@@ -115,7 +118,11 @@ def _solve(chosen: Sequence[Case], names: Sequence[str], about: Run, path: Path,
     try:
         with watch:
             lumped = [
-                pool.submit(lumping.lumping, v.blade) for c in chosen for v in c.variants if v.name == lumping.CASE
+                pool.submit(lumping.lumping, v.blade)
+                for c in chosen
+                if isinstance(c, Case)
+                for v in c.variants
+                if v.name == lumping.CASE
             ]
             done = matrix.run(chosen, names, pool, keep)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
@@ -176,7 +183,7 @@ def modes(
 
 @app.command
 def mechanism(
-    file: Path,
+    name: str,
     /,
     *,
     modes: Whole = 10,
@@ -187,8 +194,8 @@ def mechanism(
 
     Parameters
     ----------
-    file
-        A TOML file of bodies and joints.
+    name
+        A mechanism by name (`southwell cases`), or a TOML file of bodies and joints.
     modes
         How many, from the lowest.
     time
@@ -196,7 +203,7 @@ def mechanism(
     json
         Print everything as JSON.
     """
-    described = mechanisms.read(file)
+    described = library.mechanism(name)
     found = described.solve(modes, time)
     if json:
         plain = msgspec.json.encode(answer.plain(described.text.name, found))
@@ -265,6 +272,9 @@ def cases() -> int:
         first, *_ = settings(known)
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
         table.add_row(name, known.text.title, blades, first.facts["speeds"])
+    for name in library.mechanisms():
+        told = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
+        table.add_row(name, told.title, "mechanism", told.facts["speeds"])
     terminal.output().print(table)
     return PASSED
 
@@ -290,6 +300,14 @@ def codes() -> int:
 
 
 app.command(f"{__package__}.campbell_command:command", name="campbell")
+app.command(f"{__package__}.bench:command", name="bench")
+
+
+def _chosen(name: str) -> Case | MechanismCase:
+    """A case of blades or of a mechanism, by name or file."""
+    if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
+        return mechanism_case.case(library.mechanism(name))
+    return select(name)
 
 
 def select(name: str) -> Case:
