@@ -15,6 +15,7 @@ from cyclopts import App, CycloptsError, Parameter, Token
 from cyclopts.validators import Number
 from rich import box
 from rich.table import Table
+from threadpoolctl import threadpool_limits
 
 from ..cases import library, lumping, matrix, mechanism_case, mechanisms, results
 from ..cases.errors import CaseError, nearest
@@ -351,7 +352,8 @@ def _show(run: Run, folder: Path) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status."""
     try:
-        status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+        with threadpool_limits(1):  # matrices are small: threads would wait for each other
+            status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
         sys.stdout.flush()
     except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
         print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
