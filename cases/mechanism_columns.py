@@ -32,7 +32,7 @@ from .uncertainty import ROUNDING
 from .verdict import judge, unsigned
 
 Array = NDArray[np.float64]
-References = dict[Model, list["Reference | Failure"]]
+References = dict[Model, list["Reference"]]
 Solve = Callable[[Sequence[mb.Mechanism], Sequence[float]], list[Answer]]
 Work = Callable[[Sequence[tuple[float, Any]]], Rows]
 
@@ -138,7 +138,7 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
             continue
         value = complex(answer.values[k])
         verdict, reason = judge(abs(value) / mine - 1.0, ROUNDING, head.target)
-        ratio, wanted = -value.real / abs(value), float(reference.damping[i])
+        ratio, wanted = 0.0 - value.real / abs(value), float(reference.damping[i])
         if abs(ratio - wanted) > head.target:
             away = f"damping ratio {ratio:.9g}, core's {wanted:.9g}: more than {unsigned(head.target)} apart"
             verdict, reason = "fail", f"{reason}; {away}" if reason else away

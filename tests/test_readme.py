@@ -31,7 +31,8 @@ def test_the_table_is_that_of_the_rows_beside_it() -> None:
 
 def test_the_rows_are_of_all_cases_and_codes_there_are() -> None:
     run = results.read(readme.ROWS)
-    assert set(summary.cases(run)) == {v.name for name in library.names() for v in library.load(name).variants}
+    blades = {v.name for name in library.names() for v in library.load(name).variants}
+    assert blades <= set(summary.cases(run)) <= blades | set(library.mechanisms())
     assert {codes.code(name).name for name in codes.OURS} <= {c.code for c in run.cells}
 
 
