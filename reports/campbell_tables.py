@@ -71,14 +71,14 @@ def _small(relative: float) -> str:
 
 def _margins(diagram: Campbell, units: Units) -> Sheet:
     wanted = diagram.wanted
-    rows = []
-    for t in range(diagram.tracks.count):
-        mine = {m.per_rev: m for m in diagram.margins if m.track == t}
-        if mine:
-            rows.append((diagram.label(t), *[_margin(mine[n]) for n in wanted.per_rev]))
     if wanted.operating is None:
         return Sheet("Margins", (), ())
     low, high = wanted.operating
+    rows = []
+    for t in range(diagram.tracks.count):
+        mine = {m.per_rev: m for m in diagram.margins if m.track == t}
+        fields = [_margin(mine[n]) if mine else "not followed so far" for n in wanted.per_rev]
+        rows.append((diagram.label_over(t, low, high), *fields))
     note = (
         f"How far a mode is above n per revolution at {units.at(low)} … {units.at(high)}, in % of n per revolution "
         f"(far: ten times). {TOO_NEAR}: nearer than {100 * wanted.margin:.3g} % at some speed; a change of sign: they meet."
@@ -99,7 +99,7 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for r in diagram.resonances:
         row = [
-            diagram.label(r.track),
+            diagram.label_at(r.track, r.omega),
             f"{r.per_rev}P",
             f"{r.omega * units.speeds:.3f}",
             f"{r.frequency * units.frequencies:.4f}",
@@ -191,16 +191,20 @@ def verdict(diagram: Campbell, units: Units) -> str:
     low, high = wanted.operating
     over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
     broken = [m for m in diagram.margins if not m.kept]
+    judged = {m.track for m in diagram.margins}
+    rest = [diagram.label_over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
+    but = f" Not judged, since not followed over all of it: {', '.join(rest)}." if rest else ""
     if not broken:
-        return f"Every mode keeps {100 * wanted.margin:.3g} % from n per revolution over {over}."
+        every = "Every other mode" if rest else "Every mode"
+        return f"{every} keeps {100 * wanted.margin:.3g} % from n per revolution over {over}.{but}"
     said = []
     for t in dict.fromkeys(m.track for m in broken):
         mine = [m for m in broken if m.track == t]
         met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
         near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
         words = [f"meets {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
-        said.append(f"{diagram.label(t)} {' and '.join(w for w in words if w)}")
-    return f"{TOO_NEAR} Over {over}, {'; '.join(said)}."
+        said.append(f"{diagram.label_over(t, low, high)} {' and '.join(w for w in words if w)}")
+    return f"{TOO_NEAR} Over {over}, {'; '.join(said)}.{but}"
 
 
 def write_csv(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
@@ -231,7 +235,7 @@ def write_csv(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
     speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
     columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz", *FAMILIES, "mac_with_speed_before"]
     resonances = [
-        (diagram.label(r.track), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
+        (diagram.label_at(r.track, r.omega), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
         for r in diagram.resonances
     ]
     margins = [

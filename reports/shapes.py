@@ -115,7 +115,7 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
     heights = spread([y for y, _ in ends], 0.24)
     for y, (value, family) in zip(heights, ends, strict=True):
         axes.annotate(
-            f"{value:+.2f}".replace("-", "−"),
+            f"{value:+.2f}".replace("-", "−") if abs(value) >= 0.005 else "0",
             (1.0, y),
             (4, 0),
             textcoords="offset points",

@@ -133,6 +133,9 @@ def test_what_cannot_be_asked_is_told(changes: dict[str, object], told: str) -> 
 def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: Campbell) -> None:
     assert [veering.label(t) for t in range(3)] == ["flap 1 → edge 1", "edge 1 → flap 1", "flap 2"]
     assert veering.local[0] == ("flap 1", "edge 1", "flap 2")
+    assert [veering.label_at(0, omega) for omega in (0.1, 5.9)] == ["flap 1", "edge 1"]
+    assert veering.label_over(0, 0.0, 1.0) == "flap 1"
+    assert veering.label_over(0, 1.0, 5.0) == "flap 1 → edge 1"
 
 
 def test_the_speed_without_a_steady_state_is_told() -> None:
@@ -253,6 +256,8 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
         return Modes(omega, np.array([5.0, 9.0]), shapes, 10)
 
     found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
+    told = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
+    assert "Not judged, since not followed over all of it: " in told
     (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Not clear")
     assert sheet.rows[0][0] == "edge 1"
     assert sheet.rows[0][3] == "none"
