@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import lumped, summary
+from . import bench, lumped, summary
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -67,7 +67,7 @@ def write(run: Run, folder: Path) -> Path:
     if figure := lumped.lumping(run):
         save(figure, figures / "lumped-mass.svg")
     path = folder / "report.md"
-    path.write_text(render(run, drawn), encoding="utf-8")
+    path.write_text(render(run, drawn, bench.beside(folder)), encoding="utf-8")
     return path
 
 
@@ -76,8 +76,8 @@ def units(run: Run, case: str) -> Units:
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
-def render(run: Run, figures: dict[str, list[str]]) -> str:
-    """The report's text; ``figures`` are paths of each case's figures, relative to it."""
+def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
+    """The report's text; ``figures`` are paths of each case's figures, relative to it, ``cost`` the tables of ``bench``."""
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
@@ -97,6 +97,7 @@ def render(run: Run, figures: dict[str, list[str]]) -> str:
         if run.versions
         else "",
         command=run.command,
+        cost=cost,
     )
 
 
