@@ -9,31 +9,72 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from . import spatial as sp
 from .beams import Pencil, on_ends
 from .beams import pencil as beam_pencil
 from .elements import strain_rate
 from .kinematics import Kinematics
-from .mechanism import Beam, MechanismError, Spring
-from .tree import Tree
+from .mechanism import MechanismError, Spring
+from .tree import Batch, Tree
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Cartesian:
-    """Total wrench g (b + m, 6) and its linearisation M, C, K, each square; rows as those of B, beams' internal forces last.
+    """Total wrench g (b + m, 6) and its linearisation M, C, K, sparse; rows as those of B, beams' internal forces last.
 
-    ``springs`` are the stiffnesses (6, 6) that act on ρ = ξ_b − ξ_a between two bodies, kept out of K: ``B_b − B_a`` is exact
-    where the difference of their products would cancel.
+    ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground: kept out of K, for
+    ``B_b − B_a`` is exact where the difference of their products would cancel.
     """
 
     g: Array
-    M: Array
-    C: Array
-    K: Array
-    springs: list[tuple[int, int, Array]]
+    M: csr_array
+    C: csr_array
+    K: csr_array
+    ends: NDArray[np.intp]
+    stiffness: Array
+
+
+class _Sum:
+    """Wrenches and 6×6 blocks as they come in."""
+
+    def __init__(self, rows: int) -> None:
+        self.g = np.zeros((rows, 6))
+        self.blocks: list[tuple[NDArray[np.intp], NDArray[np.intp], tuple[Array, Array, Array]]] = []
+        self.springs: list[tuple[NDArray[np.intp], Array]] = []
+
+    def add(self, ends: NDArray[np.intp], pencil: Pencil) -> None:
+        """e elements' wrenches (e, d) and matrices (e, d, d) on d/6 rows ``ends`` each; the ground takes what acts on it."""
+        self.springs.append((ends[:, :2], pencil.spring))
+        for i in range(ends.shape[1]):
+            acts = ends[:, i] >= 0
+            row = slice(6 * i, 6 * i + 6)
+            np.add.at(self.g, ends[acts, i], pencil.residual[acts, row])
+            for j in range(ends.shape[1]):
+                both = acts & (ends[:, j] >= 0)
+                column = slice(6 * j, 6 * j + 6)
+                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.rest))
+                self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
+
+    def total(self) -> Cartesian:
+        """All of it, added up."""
+        row, column = (np.concatenate([part[k] for part in self.blocks]) for k in (0, 1))
+        six = np.arange(6)
+        where = np.broadcast_arrays((6 * row[:, None] + six)[:, :, None], (6 * column[:, None] + six)[:, None, :])
+        at = where[0].ravel(), where[1].ravel()
+        size = self.g.size
+        M, C, K = (
+            csr_array((np.concatenate([part[2][k] for part in self.blocks]).ravel(), at), shape=(size, size))
+            for k in range(3)
+        )
+        ends, stiffness = zip(*self.springs, strict=True) if self.springs else (_NO_ENDS, _NO_SPRINGS)
+        return Cartesian(self.g, M, C, K, np.concatenate(ends), np.concatenate(stiffness))
+
+
+_NO_ENDS, _NO_SPRINGS = (np.zeros((0, 2), dtype=np.intp),), (np.zeros((0, 6, 6)),)
 
 
 def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Cartesian:
@@ -47,24 +88,16 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
     """
-    b = len(k.B)
-    zero = np.zeros((6 * b, 6 * b))
-    out = Cartesian(np.zeros((b, 6)), zero, zero.copy(), zero.copy(), [])
+    out = _Sum(len(k.B))
     _bodies(tree, k, out)
     for spring in tree.mechanism.springs:
         _spring(tree, k, spring, out)
-    behind = len(tree.bodies)
-    for beam, inner in zip(tree.mechanism.beams, tree.inner, strict=True):
-        ends = (tree.body(beam.body_a), tree.body(beam.body_b))
-        if inner < 0:
-            _beam(tree, k, beam, ends, np.zeros(0), out)
-        else:
-            _beam(tree, k, beam, (*ends, behind), k.q[inner : inner + 6], out)
-            behind += 1
+    for batch in tree.batches:
+        _beams(tree, k, batch, out)
     if multipliers is not None:
         for (body, copy), w in zip(tree.welds, multipliers, strict=True):
             _weld(body, copy, w, out)
-    return out
+    return out.total()
 
 
 def inertias(tree: Tree, k: Kinematics) -> Array:
@@ -73,55 +106,37 @@ def inertias(tree: Tree, k: Kinematics) -> Array:
     return np.swapaxes(a, -1, -2) @ tree.inertia @ a
 
 
-def _bodies(tree: Tree, k: Kinematics, out: Cartesian) -> None:
+def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     """g = M (A − a_g) + Y ×* M Y; along with the body δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇ − M a_g × ξ."""
     M = inertias(tree, k)
     fall = np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     turn = sp.ad(k.Y)
     momentum = (M @ k.Y[..., None])[..., 0]
-    out.g[: len(M)] = (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
+    out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
     mt = M @ turn
     C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
-    for i in range(len(M)):
-        at = slice(6 * i, 6 * i + 6)
-        out.M[at, at], out.C[at, at], out.K[at, at] = M[i], C[i], -M[i] @ sp.ad(fall)
+    each = np.arange(len(M))
+    out.blocks.append((each, each, (M, C, -M @ sp.ad(fall))))
 
 
-def _add(out: Cartesian, ends: tuple[int, ...], pencil: Pencil) -> None:
-    """Add an element's wrenches (d,) and matrices (d, d) on two ends and β; the ground takes up what acts on it."""
-    out.springs.append((ends[0], ends[1], pencil.spring))
-    for i, end in enumerate(ends):
-        if end < 0:
-            continue
-        row, at = slice(6 * i, 6 * i + 6), slice(6 * end, 6 * end + 6)
-        out.g[end] += pencil.residual[row]
-        for j, other in enumerate(ends):
-            if other < 0:
-                continue
-            column, beside = slice(6 * j, 6 * j + 6), slice(6 * other, 6 * other + 6)
-            for total, part in ((out.M, pencil.M), (out.C, pencil.C), (out.K, pencil.rest)):
-                total[at, beside] += part[row, column]
-
-
-def _state(k: Kinematics, body: int, at: Array) -> tuple[Array, Array, Array]:
-    if body < 0:
-        return at, np.zeros(6), np.zeros(6)
-    return k.poses[body] @ at, k.Y[body], k.A[body]
+def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Array, Array]:
+    """Poses (e, 4, 4) of frames ``at`` in bodies, and the bodies' twists and their rates (e, 6); −1 is the ground."""
+    still = np.zeros((1, 6))
+    x = np.concatenate([k.poses, np.eye(4)[None]])[body] @ at
+    return x, np.concatenate([k.Y, still])[body], np.concatenate([k.A, still])[body]
 
 
 def _between(w: Array, k: Array, c: Array) -> Pencil:
     """w on b and −w on a, both at one point in one set of axes: with ρ = ξ_b − ξ_a, δw = k ρ + c ρ̇ + ξ_a ×* w."""
-    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])[0]  # taken along with b: −ρ ×* w
-    damping = on_ends(c[None], c[None])[0]
-    return Pencil(np.concatenate([-w, w]), np.zeros((12, 12)), damping, drag, k)
+    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # taken along with b: −ρ ×* w
+    damping = on_ends(c[None], c[None])
+    return Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
 
 
-def _spring(tree: Tree, k: Kinematics, s: Spring, out: Cartesian) -> None:
-    ends = tree.body(s.body_a), tree.body(s.body_b)
-    (xa, ya, _), (xb, yb, _) = (
-        _state(k, e, sp.pose(np.eye(3), p)) for e, p in zip(ends, (s.point_a, s.point_b), strict=True)
-    )
-    pa, pb = xa[:3, 3], xb[:3, 3]
+def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
+    ends = np.array([tree.body(s.body_a), tree.body(s.body_b)])
+    x, (ya, yb), _ = _state(k, ends, sp.pose(np.eye(3), np.array([s.point_a, s.point_b])))
+    pa, pb = x[:, :3, 3]
     d = pb - pa
     length = float(np.linalg.norm(d))
     if length == 0.0:
@@ -145,43 +160,55 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: Cartesian) -> None:
     # ρ̇ is the relative twist's rate seen from a
     c = s.damping * np.outer(line, n @ velocity)
     kk = kk - c @ sp.ad(ya)
-    _add(out, ends, _between(tension * line, kk, c))
+    out.add(ends[None], _between(tension * line, kk, c))
 
 
-def _beam(tree: Tree, k: Kinematics, beam: Beam, ends: tuple[int, ...], beta: Array, out: Cartesian) -> None:
-    (xa, ya, aa), (xb, yb, _) = (_state(k, e, x) for e, x in zip(ends[:2], (beam.at_a, beam.at_b), strict=True))
-    massive = len(beam.beams.points.element) > 0
-    scale = max(float(np.abs(ya).max()), 1e-30)
-    if massive and (np.abs(yb - ya).max() > 1e-9 * scale or np.abs(aa).max() > 1e-9 * scale**2):
+def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
+    a, b = batch.ends.T
+    (xa, ya, aa), (xb, yb, _) = _state(k, a, batch.at_a), _state(k, b, batch.at_b)
+    massive = batch.beams.inner > 0
+    if massive:
+        _check_steady(tree, batch, ya, yb, aa)
+    to_a = sp.adjoint(sp.inverse(xa))
+    frame = (to_a @ ya[..., None])[..., 0]
+    fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
+    x = sp.inverse(xa) @ xb
+    beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
+    p = beam_pencil(batch.beams, x, beta, frame, fall)
+    M, C, K = p.M, p.C, p.rest
+    if batch.damping.any():
+        E = strain_rate(batch.beams.measure, batch.beams.rest, batch.beams.shortening, x)
+        d = np.swapaxes(E, -1, -2) @ batch.damping @ E
+        C = C.copy()
+        C[:, :12, :12] += on_ends(d, d)
+    # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
+    turn, own = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
+    turn[:, :6, :6] = turn[:, 6:12, 6:12] = sp.ad(frame)
+    own[:, :6, :6] = own[:, 6:12, 6:12] = to_a
+    K = K - C @ turn + M @ turn @ turn
+    C = C - 2.0 * M @ turn
+    back = np.swapaxes(own, -1, -2)
+    ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
+    spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
+    out.add(
+        ends, Pencil((back @ p.residual[..., None])[..., 0], back @ M @ own, back @ C @ own, back @ K @ own, spring)
+    )
+
+
+def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> None:
+    scale = np.maximum(np.abs(ya).max(1), 1e-30)
+    bad = (np.abs(yb - ya).max(1) > 1e-9 * scale) | (np.abs(aa).max(1) > 1e-9 * scale**2)
+    if bad.any():
+        beam = tree.mechanism.beams[batch.index[int(bad.argmax())]]
         raise MechanismError(
             f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, so its ends must turn together and steadily; lump its mass, "
             "or fix the motion between its ends"
         )
-    to_a = sp.adjoint(sp.inverse(xa))
-    frame = to_a @ ya
-    fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
-    x = sp.inverse(xa) @ xb
-    p = beam_pencil(beam.beams, x[None], beta[None], frame[None], fall[None])
-    M, C, K = p.M[0], p.C[0], p.rest[0]
-    if beam.damping.any():
-        E = strain_rate(beam.beams.measure, beam.beams.rest, beam.beams.shortening, x[None])
-        d = np.swapaxes(E, -1, -2) @ beam.damping @ E
-        C = C.copy()
-        C[:12, :12] += on_ends(d, d)[0]
-    # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
-    turn, own = np.zeros_like(K), np.eye(len(K))
-    turn[:6, :6] = turn[6:12, 6:12] = sp.ad(frame)
-    own[:6, :6] = own[6:12, 6:12] = to_a
-    K = K - C @ turn + M @ turn @ turn
-    C = C - 2.0 * M @ turn
-    spring = to_a.T @ p.spring[0] @ to_a
-    _add(out, ends, Pencil(own.T @ p.residual[0], own.T @ M @ own, own.T @ C @ own, own.T @ K @ own, spring))
 
 
-def _weld(body: int, copy: int, w: Array, out: Cartesian) -> None:
+def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
     """Equal and opposite reactions; δ(reaction) beyond what moves with the copy is left to the multipliers."""
-    zero = np.zeros((6, 6))
-    _add(out, (copy, body), _between(w, -0.5 * sp.cross(w), zero))
+    out.add(np.array([[copy, body]]), _between(w, -0.5 * sp.cross(w), np.zeros((6, 6))))
 
 
 def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
@@ -199,10 +226,6 @@ def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> A
     return out
 
 
-def _rows(B: Array, body: int) -> Array:
-    return B[body] if body >= 0 else np.zeros(B.shape[1:])
-
-
 def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Array]:
     """Analytic M*, C*, K* (n, n) of τ with respect to accelerations, velocities and coordinates.
 
@@ -218,10 +241,10 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     force = -(np.swapaxes(sp.ad(k.J.T), -1, -2) @ carried[..., None])[..., 0]  # J_j ×* f_j
     below = (tree.above.astype(float) - np.eye(n)).T  # below[k, j]: j hangs beyond k
     K = B.T @ (c.M @ B2 + c.C @ B1 + c.K @ B) + below * (k.J.T @ force.T)
-    if c.springs:
-        stretch = np.concatenate([_rows(k.B, b) - _rows(k.B, a) for a, b, _ in c.springs])
-        force = np.concatenate([spring @ (_rows(k.B, b) - _rows(k.B, a)) for a, b, spring in c.springs])
-        K = K + stretch.T @ force
+    if len(c.ends):
+        padded = np.concatenate([k.B, np.zeros((1, 6, n))])
+        stretch = padded[c.ends[:, 1]] - padded[c.ends[:, 0]]
+        K = K + stretch.reshape(-1, n).T @ (c.stiffness @ stretch).reshape(-1, n)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
         K[j, j] += s.stiffness

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
@@ -94,12 +94,18 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 def _constrained_step(K: Array, J: Array, tau: Array, gap: Array) -> tuple[Array, Array]:
     """Newton's δq and δλ: close the gap, then balance along what the loops leave free; redundant multipliers stay least."""
     if not len(gap):
-        return -np.linalg.lstsq(K, tau, rcond=1e-13)[0], gap
+        return -_least(K, tau), gap
     close = -np.linalg.lstsq(J, gap, rcond=1e-9)[0]
     along = scipy.linalg.null_space(J, rcond=1e-9)
     rest = along.T @ (tau + K @ close)
-    step = close - along @ np.linalg.lstsq(along.T @ K @ along, rest, rcond=1e-13)[0]
+    step = close - along @ _least(along.T @ K @ along, rest)
     return step, -np.linalg.lstsq(J.T, tau + K @ step, rcond=1e-9)[0]
+
+
+def _least(K: Array, force: Array) -> Array:
+    """The smallest x with K x = force, where K may be singular: a freedom that nothing resists."""
+    found = scipy.linalg.lstsq(K, force, cond=1e-13, lapack_driver="gelsy", check_finite=False)
+    return cast(tuple[Array, ...], found)[0]
 
 
 def _checked(tree: Tree, state: State, free: NDArray[np.intp]) -> State:

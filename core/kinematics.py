@@ -64,7 +64,9 @@ def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
     carries = tree.carries.astype(float)
     B, B1, B2 = (carries[:, None, :] * j for j in (J, J1, J2))
     Y, A = B @ v, B @ a + B1 @ v
-    pick = np.array([np.eye(len(q))[i : i + 6] for i in tree.inner if i >= 0]).reshape(-1, 6, len(q))
+    pick = np.zeros((len(tree.inner), 6, len(q)))
+    for k in range(6):
+        pick[np.arange(len(tree.inner)), k, tree.inner + k] = 1.0
     none = np.zeros_like(pick)
     return Kinematics(q, x, J, np.concatenate([B, pick]), np.concatenate([B1, none]), np.concatenate([B2, none]), Y, A)
 

@@ -88,6 +88,8 @@ def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) 
     p = partition(tree, state.kinematics, independent)
     pick = np.ix_(p.free, p.free)
     M, C, K = M[pick], C[pick], K[pick]
+    if not len(p.dependent):  # R is the unit matrix
+        return Linear(tree, state, p, M, C, K)
     return Linear(
         tree,
         state,

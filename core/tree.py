@@ -6,10 +6,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import spatial as sp
+from .beams import Beams, Points
 from .joints import SCREWS, Joint, coordinate_names
 from .mechanism import GROUND, Mechanism, MechanismError, check
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Beams that are treated at once: of one measure, with mass at as many points each, or at none.
+
+    Attributes:
+        index: (e,) which of the mechanism's beams.
+        ends: (e, 2) body indices, −1 for the ground.
+        inner: (e,) the first of six internal coordinates, −1 if there are none.
+        inside: (e,) row of the internal coordinates behind the bodies', −1 if there are none.
+        beams: the elements.
+        at_a, at_b: (e, 4, 4) poses of their end frames in the bodies.
+        damping: (e, 6, 6) on the strain's rate.
+    """
+
+    index: NDArray[np.intp]
+    ends: NDArray[np.intp]
+    inner: NDArray[np.intp]
+    inside: NDArray[np.intp]
+    beams: Beams
+    at_a: Array
+    at_b: Array
+    damping: Array
 
 
 @dataclass(frozen=True)
@@ -30,7 +55,8 @@ class Tree:
         inertia: (b, 6, 6) in the bodies' own frames.
         welds: pairs (body, copy) of body indices that a cut joint makes one.
         weld_names: the cut joints' names.
-        inner: for each beam the first of its six internal coordinates, −1 if it has none.
+        inner: (i,) the first of the six internal coordinates of each beam that has them.
+        batches: the beams.
         above: (n, n) above[j, k]: link k lies on the way from the ground to link j, or is j.
         carries: (b, n) carries[i, k]: coordinate k moves body i.
     """
@@ -46,7 +72,8 @@ class Tree:
     inertia: Array
     welds: tuple[tuple[int, int], ...]
     weld_names: tuple[str, ...]
-    inner: tuple[int, ...]
+    inner: NDArray[np.intp]
+    batches: tuple[Batch, ...]
     above: NDArray[np.bool_]
     carries: NDArray[np.bool_]
 
@@ -147,7 +174,51 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertia=np.array(inertias),
         welds=tuple(welds),
         weld_names=tuple(j.name for j in cuts),
-        inner=tuple(inner),
+        inner=np.array([j for j in inner if j >= 0], dtype=np.intp),
+        batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
         above=above,
         carries=np.vstack([above, np.zeros((1, n), bool)])[link],
     )
+
+
+def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
+    """Beams that are alike together; ``inner``: of each beam the first internal coordinate, or −1."""
+    rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
+    alike: dict[tuple[str, int], list[int]] = {}
+    for k, beam in enumerate(mechanism.beams):
+        alike.setdefault((beam.beams.measure, len(beam.beams.points.element)), []).append(k)
+    out = []
+    for index in alike.values():
+        some = [mechanism.beams[k] for k in index]
+        ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in some]
+        out.append(
+            Batch(
+                index=np.array(index, dtype=np.intp),
+                ends=np.array(ends, dtype=np.intp),
+                inner=np.array([inner[k] for k in index], dtype=np.intp),
+                inside=rows[index],
+                beams=_together([b.beams for b in some]),
+                at_a=np.array([b.at_a for b in some]),
+                at_b=np.array([b.at_b for b in some]),
+                damping=np.array([b.damping for b in some]),
+            )
+        )
+    return tuple(out)
+
+
+def _together(some: list[Beams]) -> Beams:
+    """Single elements as one batch."""
+
+    def each(name: str) -> Array:
+        return np.concatenate([getattr(b, name) for b in some])
+
+    parts = [b.points for b in some]
+    points = Points(
+        element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
+        rest=np.concatenate([p.rest for p in parts]),
+        shape=np.concatenate([p.shape for p in parts]),
+        bubble=np.concatenate([p.bubble for p in parts]),
+        mass=np.concatenate([p.mass for p in parts]),
+    )
+    names = ("rest", "stiffness", "shortening", "preload", "inner_preload")
+    return Beams(some[0].measure, points=points, **{name: each(name) for name in names})
