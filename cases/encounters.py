@@ -99,7 +99,7 @@ def _veerings(
         a, left = _passed(size, m, -1, smallest)
         b, right = _passed(size, m, 1, smallest)
         square = float(np.interp(at, x, squares.mean(1)))
-        gap = smallest / (2.0 * np.sqrt(square))
+        gap = float(smallest / (2.0 * np.sqrt(square)))
         order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
         window = (int(k[a]), int(k[b]))
         e = _encounter(

@@ -21,8 +21,8 @@ from .pairing import Array, aligned, mac
 Solver = Callable[[float], Modes]
 """Modes at a rotor speed, rad/s; always as many."""
 
-SURE = 0.9
-"""A MAC from which a mode is without doubt the one before (the angle between the shapes is 18°)."""
+SURE = 0.95
+"""A MAC from which a mode is without doubt the one before (the angle between the shapes is 13°)."""
 
 LOST = 0.5
 """A MAC below which a mode is nobody's successor."""

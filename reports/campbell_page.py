@@ -10,7 +10,7 @@ from ..cases.elastodyn_shapes import as_it_is, polynomials
 from ..cases.errors import CaseError
 from . import campbell as figures
 from . import campbell_tables as tables
-from . import shapes
+from . import encounters, shapes
 from .style import house, save
 from .units import Units
 
@@ -31,6 +31,9 @@ def write(diagram: Campbell, folder: Path, units: Units, command: str) -> tuple[
         "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed"),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
     }
+    close = encounters.draw(diagram, units, f"{name}: where modes meet")
+    if close:
+        drawn["encounters"] = close
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*tables.write_csv(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
@@ -61,6 +64,7 @@ def _page(diagram: Campbell, k: int, units: Units, command: str) -> str:
         f"{tables.verdict(diagram, units)}\n",
         "![Natural frequencies along rotor speed](campbell.svg)\n",
         *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],
+        *(["![Where modes meet](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
         _elastodyn(diagram, k, units),
         f"## How to have this again\n\n```\n{command}\n```\n",

@@ -14,9 +14,11 @@ from southwell.cases import library
 from southwell.cases.campbell import Campbell, Wanted, campbell, rises
 from southwell.cases.errors import CaseError
 from southwell.cases.prestress import STANDARD_GRAVITY, gravity
+from southwell.cases.variation import Variation, variations
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import modes
+from southwell.reports import encounters, variation
 from southwell.reports.campbell import blend, draw
 from southwell.reports.campbell_tables import markdown, sheets, verdict, write_csv
 from southwell.reports.style import save
@@ -153,16 +155,32 @@ def test_core_has_the_modes_at_n_per_revolution_where_the_diagram_says() -> None
         assert np.abs(solved / (r.per_rev * r.omega) - 1).min() < 2e-5
 
 
-def test_the_papers_rises_at_20_and_30_rpm() -> None:
+@pytest.fixture(scope="module")
+def stand_ins() -> tuple[Variation, ...]:
+    return variations(elements=20)
+
+
+def test_the_papers_rises_at_20_and_30_rpm(stand_ins: tuple[Variation, ...]) -> None:
     """Park et al. (2010), Fig. 3: at most 8 % and 16.5 %. Their blade is unpublished; the surrogate's first mode is theirs."""
-    (blade,) = (v.blade for v in library.load("park-blade").variants if v.name.endswith("/surrogate"))
-    found = campbell(blade, Wanted(tuple(np.arange(0.0, 31.0, 10.0) * RPM_TO), modes=5, elements=20))
-    for rpm, paper in ((20.0, 0.08), (30.0, 0.165)):
-        rise = rises(found, rpm * RPM_TO)
-        assert rise.argmax() == 0
-        assert rise[0] == pytest.approx(paper, abs=0.01)
-    f = found.tracks.frequencies
-    np.testing.assert_allclose(rises(found, 20 * RPM_TO), f[2, :5] / f[0, :5] - 1, rtol=1e-12)
+    for v in stand_ins[1:]:
+        assert v.rises.argmax(1).tolist() == [0, 0]
+        np.testing.assert_allclose(v.rises[:, 0], [0.08, 0.165], atol=0.01)
+        np.testing.assert_allclose(v.lumped[:, 0], [0.08, 0.165], atol=0.01)
+    f = stand_ins[0].diagram.tracks.frequencies
+    np.testing.assert_allclose(stand_ins[0].rises, f[[8, 12]] / f[0] - 1, rtol=1e-12)
+    assert rises(stand_ins[0].diagram, 10.0)[0] != rises(stand_ins[0].diagram, 10.0)[0]  # beyond 30 rpm: not a number
+
+
+def test_the_papers_figure_and_table_label_stand_ins_as_such(stand_ins: tuple[Variation, ...]) -> None:
+    table = variation.sheet(stand_ins)
+    assert table.rows[-1] == ("Park et al. (2010)", "largest", "+8.0 %", "+16.5 %")
+    assert sum("not the paper's blade" in row[0] for row in table.rows) == 1
+    assert [row[1] for row in table.rows[:5]] == ["flap 1", "edge 1", "flap 2", "edge 2", "flap 3"]
+    shown = variation.figure(stand_ins)
+    assert len(shown.axes) == 6
+    for axes in shown.axes[1::2]:
+        crosses = [line.get_xydata() for line in axes.lines if line.get_marker() == "x"]
+        np.testing.assert_allclose(np.concatenate(crosses), [[20, 8], [30, 16.5]])  # type: ignore[arg-type]
 
 
 def test_a_blade_that_hangs_is_stiffened_by_gravity_as_a_chain_is() -> None:
@@ -197,6 +215,18 @@ def test_the_figure_names_modes_rays_the_range_and_the_veering(veering: Campbell
     gap = next(text for text in said if text.startswith("veering\n"))
     exact = (np.sqrt(EDGE + 1.5) - np.sqrt(EDGE - 1.5)) / (2 * np.pi)
     assert gap == f"veering\ngap {exact:.2g} Hz"
+
+
+def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> None:
+    shown = encounters.draw(veering, RPM, "close")
+    assert shown
+    assert len(shown.axes) == len(veering.encounters) == 1
+    assert shown.axes[0].get_title(loc="left") == f"veering, {np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi:.4g} rpm"
+    many = encounters.draw(replace(veering, encounters=veering.encounters * 12), RPM, "close")
+    assert many
+    assert len(many.axes) == encounters.MOST
+    assert any("3 more in the table" in text for text in texts(many))
+    assert encounters.draw(replace(veering, encounters=()), RPM, "close") is None
 
 
 def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
