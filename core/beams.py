@@ -31,6 +31,7 @@ class Points:
         shape: (q, 6, 6) L, ζ from η.
         bubble: (q, 6, 6) ζ from the element's internal coordinates β.
         mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
+        force: (q, 3) steady load on it, N, in the axes of the rotating frame; none by default.
     """
 
     element: Index
@@ -38,6 +39,11 @@ class Points:
     shape: Array
     bubble: Array
     mass: Array
+    force: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+    def __post_init__(self) -> None:
+        if not self.force.size:
+            object.__setattr__(self, "force", np.zeros((len(self.element), 3)))
 
 
 _NONE = np.zeros((0, 6, 6))
@@ -130,6 +136,7 @@ def alike(points: Points, elements: int) -> Points:
         shape=points.shape[pick],
         bubble=points.bubble[pick],
         mass=points.mass[pick] * real[:, None, None],
+        force=points.force[pick] * real[:, None],
     )
 
 
@@ -167,7 +174,15 @@ def massless(beams: Beams) -> Beams:
     return replace(beams, points=NO_POINTS)
 
 
-def pencil(beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, model: Model = FULL) -> Pencil:
+def pencil(
+    beams: Beams,
+    x: Array,
+    beta: Array,
+    frame: Array,
+    gravity: Array,
+    model: Model = FULL,
+    axes: Array | None = None,
+) -> Pencil:
     """Assemble residual and matrices of all elements.
 
     Args:
@@ -177,7 +192,13 @@ def pencil(beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, mo
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
         model: the effects kept (``geometric`` and ``coriolis`` matter here).
+        axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
+
+    Raises:
+        ValueError: loads without axes.
     """
+    if axes is None and beams.points.force.any():
+        raise ValueError("axes: not given, but there are loads on the points in the rotating frame's axes")
     eta = sp.log(x)
     back = sp.tangent_inverse(eta)
     r = elements.response(beams.measure, beams.rest, beams.shortening, x, eta, back)
@@ -189,7 +210,7 @@ def pencil(beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, mo
     out = Pencil(np.concatenate([-w, w, np.zeros((len(x), d - 12))], axis=-1), none, none, none, none[:, :6, :6])
     inside = np.zeros_like(eta)
     if beams.inner:
-        out, inside = _with_inertia(out, beams, eta, back, beta, frame, gravity, model)
+        out, inside = _with_inertia(out, beams, eta, back, beta, frame, gravity, model, axes)
     spring = out.spring + turned @ beams.stiffness @ r.rate
     if not model.geometric:
         return replace(out, spring=spring)
@@ -207,7 +228,15 @@ def on_ends(on_a: Array, on_b: Array) -> Array:
 
 
 def _with_inertia(
-    out: Pencil, beams: Beams, eta: Array, back: Array, beta: Array, frame: Array, gravity: Array, model: Model
+    out: Pencil,
+    beams: Beams,
+    eta: Array,
+    back: Array,
+    beta: Array,
+    frame: Array,
+    gravity: Array,
+    model: Model,
+    axes: Array | None,
 ) -> tuple[Pencil, Array]:
     """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts as Hᵀ g on them, and the rest on a.
 
@@ -223,6 +252,7 @@ def _with_inertia(
         (to_point @ frame[e][..., None])[..., 0],
         (to_point @ gravity[e][..., None])[..., 0],
         follow=model.geometric,
+        push=None if axes is None else (to_point[:, :3, :3] @ axes[e] @ points.force[..., None])[..., 0],
     )
     g = (np.swapaxes(to_point, -1, -2) @ g[..., None])[..., 0]  # from here on in a's axes, at a
     seen = np.concatenate([np.eye(6) - H[..., :6], H], axis=-1)  # from (ξ_a, ξ_b, β)

@@ -29,7 +29,7 @@ class BladeError(ValueError):
 
 @dataclass(frozen=True)
 class Blade:
-    """A rotating blade clamped to its hub; properties vary linearly between stations.
+    """A rotating blade on its hub; properties vary linearly between stations.
 
     Attributes:
         name: what to call it in a table.
@@ -44,6 +44,8 @@ class Blade:
         precone: rad, the blade's axis tilted from the plane of rotation towards +z.
         pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
+        root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
+            N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring.
     """
 
     name: str
@@ -56,10 +58,11 @@ class Blade:
     precone: float = 0.0
     pitch: float = 0.0
     tip_mass: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    root: Array = field(default_factory=lambda: np.full(6, np.inf))
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass"):
+        for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass", "root"):
             set_(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
         if self.curve.size == 0:
             set_(self, "curve", np.outer(self.stations, [1.0, 0.0, 0.0]))
@@ -74,12 +77,12 @@ class Blade:
 def _check(blade: Blade) -> None:
     n = len(blade.stations)
     matrices = dict.fromkeys(("stiffness", "mass"), (n, 6, 6))
-    shapes = {"stations": (n,), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6), **matrices}
+    shapes = {"stations": (n,), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6), "root": (6,), **matrices}
     for name, shape in shapes.items():
         value = getattr(blade, name)
         if value.shape != shape:
             raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
-        finite = ~np.isnan(value) if name == "stiffness" else np.isfinite(value)
+        finite = ~np.isnan(value) if name in ("stiffness", "root") else np.isfinite(value)
         if not finite.all():
             where = np.argwhere(~finite)[0].tolist()
             raise BladeError(f"{name}: not a finite number at index {where}: a gap in the table? give every value")
@@ -95,6 +98,8 @@ def _check(blade: Blade) -> None:
         )
     if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
         raise BladeError(f"hub_radius: {blade.hub_radius:g} m: it is a distance from the rotor's axis; give 0 or more")
+    if (blade.root < 0).any():
+        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for held")
     for name in ("stiffness", "mass"):
         diagonal = np.diagonal(getattr(blade, name), axis1=1, axis2=2)
         bad = diagonal <= 0 if name == "stiffness" else diagonal < 0
@@ -237,14 +242,20 @@ def straight(blade: Blade) -> bool:
     return bool(np.abs(blade.curve - np.outer(blade.stations, [1, 0, 0])).max() <= 1e-12 * blade.length)
 
 
+def clamped(blade: Blade) -> bool:
+    """Whether the root is held in every direction."""
+    return bool(np.isinf(blade.root).all())
+
+
 def uniform(blade: Blade) -> bool:
-    """Whether every station has the same section and the blade is straight: no twist, precone, pitch or tip mass."""
+    """Whether every station has the same section and the blade is straight and clamped: no twist, precone, pitch, tip mass."""
     same = all(
         np.allclose(v, v[0], rtol=1e-12, atol=0)
         for v in (np.diagonal(blade.mass, axis1=1, axis2=2), np.diagonal(blade.stiffness, axis1=1, axis2=2))
     )
     return (
         same
+        and clamped(blade)
         and not coupled(blade)
         and straight(blade)
         and not blade.twist.any()

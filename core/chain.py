@@ -36,7 +36,8 @@ class SteadyStateError(ValueError):
 class Linear:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
-    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses.
+    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``. What is held is
+    replaced by a unit stiffness on its own, without mass or load: it stays where it is, and makes no mode.
     """
 
     residual: Array
@@ -45,6 +46,7 @@ class Linear:
     rest: Tridiagonal
     spring: Array
     lever: Array
+    held: Array
 
     @property
     def K(self) -> Tridiagonal:
@@ -55,7 +57,7 @@ class Linear:
         diagonal[:-1, -6:, -6:] += self.spring[1:]
         upper[:, :, -6:] -= self.spring[1:] @ self.lever[1:]
         lower[:, -6:] -= on_b[1:]
-        return Tridiagonal(diagonal, upper, lower)
+        return _hold(Tridiagonal(diagonal, upper, lower), self.held, 1.0)
 
 
 def spin(omega: float) -> Array:
@@ -91,8 +93,10 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     frame = to_node @ spin(omega)
     fall = to_node @ np.concatenate([gravity, np.zeros(3)])
     x = sp.inverse(nodes[:-1]) @ nodes[1:]
-    p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model)
-    g, C, K = inertia.carried(chain.lumps, frame, fall, follow=model.geometric)
+    axes = to_node[:, :3, :3]
+    p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
+    push = (axes @ chain.force[..., None])[..., 0]
+    g, C, K = inertia.carried(chain.lumps, frame, fall, follow=model.geometric, push=push)
     d = 12 + chain.beams.inner
     own = np.zeros((len(x), d, d))  # snapshot twists from the nodes' own
     own[:, range(d), range(d)] = 1.0
@@ -101,26 +105,49 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     residual = (back @ p.residual[..., None])[..., 0]
     r = np.concatenate([residual[:, 12:], g[1:] + residual[:, 6:12]], axis=-1)
     r[:-1, -6:] += residual[1:, :6]
+    if chain.held.size:
+        r[0, -6:] -= chain.held @ r[0, -6:]
     coriolis = 1.0 if model.coriolis else 0.0
     return Linear(
         r.ravel(),
-        blocks.from_elements(back @ p.M @ own, chain.lumps),
-        blocks.from_elements(coriolis * (back @ p.C @ own), coriolis * C),
+        _hold(blocks.from_elements(back @ p.M @ own, chain.lumps), chain.held, 0.0),
+        _hold(blocks.from_elements(coriolis * (back @ p.C @ own), coriolis * C), chain.held, 0.0),
         blocks.from_elements(back @ p.rest @ own, K),
         p.spring,
         own[:, 6:12, 6:12],
+        chain.held,
     )
+
+
+def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
+    """The matrix with the held part of node 1's twist cut loose from the rest, ``unit`` on its diagonal."""
+    if not held.size:
+        return t
+    free = np.eye(6) - held
+    diagonal, upper, lower = t.diagonal.copy(), t.upper.copy(), t.lower.copy()
+    diagonal[0, -6:] = free @ diagonal[0, -6:]
+    diagonal[0, :, -6:] = diagonal[0, :, -6:] @ free
+    diagonal[0, -6:, -6:] += unit * held
+    upper[:1], lower[:1] = free @ upper[:1], lower[:1] @ free
+    return Tridiagonal(diagonal, upper, lower)
 
 
 def stiffness_times(linear: Linear, x: Numbers) -> Numbers:
     """K x (dn, m) of vectors (dn, m), by way of the elements' strains: no digits are lost however stiff and many they are."""
-    twist = x.reshape(-1, linear.rest.block, x.shape[-1])[:, -6:]
+    blocked = x.reshape(-1, linear.rest.block, x.shape[-1])
+    if linear.held.size:
+        kept = linear.held @ blocked[0, -6:]
+        blocked = blocked.copy()
+        blocked[0, -6:] -= kept
+    twist = blocked[:, -6:]
     rho = linear.lever @ twist
     rho[1:] -= twist[:-1]
     wrench = linear.spring @ rho
-    out = blocks.times(blocks.rows(linear.rest), x)
+    out = blocks.times(blocks.rows(linear.rest), blocked.reshape(x.shape))
     out[:, -6:] += np.swapaxes(linear.lever, -1, -2) @ wrench
     out[:-1, -6:] -= wrench[1:]
+    if linear.held.size:
+        out[0, -6:] += kept - linear.held @ out[0, -6:]
     return out.reshape(x.shape)
 
 

@@ -12,7 +12,15 @@ Array = NDArray[np.float64]
 
 
 def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
-    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection (Park 2010, sec. 3)."""
+    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection (Park 2010, sec. 3).
+
+    Raises:
+        ValueError: a chain with loads or a joint at its root, which have no place here yet.
+    """
+    if chain.force.any() or chain.beams.points.force.any() or chain.held.size:
+        raise ValueError(
+            "chain: loads, or a joint at the root: only clamped chains under their own weight are rebuilt here"
+        )
     n = len(chain.nodes) - 1
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
     joints = (
@@ -38,7 +46,7 @@ def one(beams: Beams, k: int) -> Beams:
         rest=beams.rest[at],
         stiffness=beams.stiffness[at],
         shortening=beams.shortening[at],
-        points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine]),
+        points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
         preload=beams.preload[at],
         inner_preload=beams.inner_preload[at],
     )

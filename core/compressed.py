@@ -58,6 +58,7 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         ),
         samples=_samples(rest),
         scale=float(np.linalg.norm(rest[:, :3, 3], axis=1).sum()),
+        force=np.zeros((n + 1, 3)),
     )
 
 

@@ -17,12 +17,14 @@ from . import spatial as sp
 Array = NDArray[np.float64]
 
 
-def carried(mass: Array, frame: Array, gravity: Array, follow: bool = True) -> tuple[Array, Array, Array]:
+def carried(
+    mass: Array, frame: Array, gravity: Array, follow: bool = True, push: Array | None = None
+) -> tuple[Array, Array, Array]:
     """Wrench g (n, 6), C and K (n, 6, 6) of inertias ``mass`` (n, 6, 6) carried at twist ``frame`` (n, 6).
 
     ``gravity`` (n, 6) is the acceleration of free fall as a twist (zero angular part), turning with the frame. With
     ``follow`` false the wrench's components are held in the frame, not taken along as the body turns: what a model without
-    geometric stiffness does.
+    geometric stiffness does. ``push`` (n, 3) are steady forces at the bodies' origins, fixed in the rotating frame.
     """
     turn = sp.ad(frame)
     momentum = (mass @ frame[..., None])[..., 0]
@@ -30,6 +32,9 @@ def carried(mass: Array, frame: Array, gravity: Array, follow: bool = True) -> t
     mt = mass @ turn
     g = -(np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0] - (mass @ gravity[..., None])[..., 0]
     K = -np.swapaxes(turn, -1, -2) @ mt - x @ turn - mass @ sp.ad(gravity)
+    if push is not None:
+        g[..., :3] -= push
+        K[..., :3, 3:] -= sp.skew(push)
     if not follow:
         K[..., :3, 3:] -= sp.skew(g[..., :3])
         K[..., 3:, 3:] -= sp.skew(g[..., 3:])

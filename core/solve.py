@@ -13,6 +13,7 @@ from . import spatial as sp
 from .blade import Blade, without_rotary_inertia
 from .chain import Shape, Steady
 from .discretize import Chain, Mass, discretize
+from .eigen import UnstableError
 from .elements import Measure
 from .lanczos import lanczos
 from .model import FULL, Model
@@ -33,6 +34,7 @@ def modes(
     stiffness: Measure = "corotational",
     model: Model = FULL,
     gravity: Array = NO_GRAVITY,
+    load: Array | None = None,
 ) -> Modes:
     """The lowest modes of a blade turning steadily at ``omega``.
 
@@ -45,13 +47,17 @@ def modes(
         stiffness: ``corotational``, or ``parent``: linear in the parent body's frame (Park et al. 2010).
         model: physical effects kept.
         gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
+        load: (n, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them.
 
     Raises:
-        ValueError: elements or count below 1, omega not finite.
+        ValueError: elements or count below 1, omega not finite, a load of another form.
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
-    return next(sweep(blade, [omega], elements, count, mass=mass, stiffness=stiffness, model=model, gravity=gravity))
+    one = sweep(
+        blade, [omega], elements, count, mass=mass, stiffness=stiffness, model=model, gravity=gravity, load=load
+    )
+    return next(one)
 
 
 def sweep(
@@ -64,6 +70,7 @@ def sweep(
     stiffness: Measure = "corotational",
     model: Model = FULL,
     gravity: Array = NO_GRAVITY,
+    load: Array | None = None,
 ) -> Iterator[Modes]:
     """The modes at one speed after another, as they are had; arguments and errors as for ``modes``.
 
@@ -71,7 +78,7 @@ def sweep(
     """
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
-    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness)
+    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load)
     return _along(body, omegas, count, model, gravity)
 
 
@@ -90,9 +97,13 @@ def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravi
         begun = time.perf_counter()
         state = balance(body, omega, gravity, model, chain.extrapolate(known, omega))
         p = state.linear
-        found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
+        try:
+            found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
+        except UnstableError as error:
+            loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
+            raise UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
         shapes = mode_shapes(body, state.shape, found.vectors)
-        yield Modes(omega, found.frequencies, shapes, len(body.nodes) - 1, seconds=time.perf_counter() - begun)
+        yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
         known = [*known[-chain.ORDER :], (omega, state.shape)]
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..core.blade import BEND_Y, BEND_Z, Blade, coupled, straight
+from ..core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
 from ..core.model import FULL
 from ..core.modes import STATIONS, Modes
 from ..core.spatial import rotation
@@ -45,7 +45,9 @@ class ExudynTree:
         return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the sections couple, or the blade is curved or rigid in bending."""
+        """A reason if the root is not clamped, the sections couple, or the blade is curved or rigid in bending."""
+        if not clamped(blade):
+            return "the root is not clamped: the first segment is the hub's"
         if coupled(blade):
             return "sections couple (off-diagonal entries): the hinges' joints have a spring each"
         if not straight(blade):

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.linalg import block_diag
 
-from ..core.blade import Blade
+from ..core.blade import Blade, clamped
 from ..core.discretize import Chain, discretize
 from ..core.model import FULL
 from ..core.modes import STATIONS, Modes
@@ -59,6 +59,8 @@ class PinocchioChain:
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if the inertias are not those of rigid bodies."""
+        if not clamped(blade):
+            return "the root is not clamped: the chain begins at the hub"
         for name, inertia in (("mass", blade.mass), ("tip_mass", blade.tip_mass[None])):
             if not _rigid(inertia):
                 return f"{name} is not a rigid body's: one mass in all directions, antisymmetric in its offset"

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import dia_array
 
-from ..core.blade import Blade, Sections, coupled, sample, straight
+from ..core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
 from ..core.model import FULL
 from ..core.modes import STATIONS, Modes
 from . import scikit_fem_forms as forms
@@ -64,6 +65,10 @@ class ScikitFemBeam:
             return f"precone = {blade.precone:g} rad: it bends the blade, and the weak form is about a straight steady state"
         if (blade.tip_mass != _rigid_body(blade.tip_mass)).any():
             return "tip_mass is not a mass and moments of inertia about the tip's axes: off centre, it would bend the blade"
+        if np.isfinite(blade.root[:4]).any():
+            return "the root can slide or twist: the weak form holds its displacements and the sections there"
+        if not clamped(blade) and blade.pitch:
+            return f"pitch = {blade.pitch:g} rad with a joint at the root: its axes would not be the fields'"
         section = sample(blade, blade.stations)
         if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
             return "mass differs with direction: the weak form has one mass per length"
@@ -89,7 +94,8 @@ class ScikitFemBeam:
         begun = time.perf_counter()
         basis = _basis(_nodes(blade, elements))
         matrices = _matrices(blade, omega, basis)
-        free = basis.complement_dofs(basis.get_dofs("root"))
+        held = basis.get_dofs("root").flatten()
+        free = basis.complement_dofs(np.setdiff1d(held, list(_hinges(blade, basis))))
         M, C, K = (matrix[free][:, free] for matrix in matrices)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         q = np.zeros((basis.N, len(frequencies)), complex)
@@ -102,6 +108,13 @@ def _skfem() -> Any:
     import skfem
 
     return skfem
+
+
+def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
+    """The slopes at the root that its joint leaves free, and the springs on them."""
+    slopes = basis.get_dofs("root").nodal
+    about = {int(slopes["u_x^3"][0]): BEND_Y, int(slopes["u_x^2"][0]): BEND_Z}
+    return {slope: blade.root[axis] for slope, axis in about.items() if np.isfinite(blade.root[axis])}
 
 
 def _rigid_body(inertia: Array) -> Array:
@@ -241,7 +254,11 @@ def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
         M = M + fem.BilinearForm(forms.inertia).assemble(p.basis, **inertia)
         C = C + omega * fem.BilinearForm(forms.gyroscopic).assemble(p.basis, **inertia)
         K = K - omega**2 * fem.BilinearForm(forms.centrifugal).assemble(p.basis, **inertia)
-    return M, C, K
+    springs = np.zeros(basis.N)
+    root = 1 + stretch[parts[0].steady.get_dofs("root").nodal["u_x"][0]]
+    for slope, spring in _hinges(blade, basis).items():
+        springs[slope] = spring / root**2  # the section turns by the slope over the stretch
+    return M, C, K + dia_array((springs[None], [0]), shape=K.shape)
 
 
 def _shapes(basis: Any, q: NDArray[np.complex128], length: float) -> NDArray[np.complex128]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
-from ..core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, coupled, sample, straight
+from ..core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, clamped, coupled, sample, straight
 from .interface import CodeError
 from .spectral import gauss, intervals
 
@@ -77,6 +77,7 @@ def refusal(blade: Blade, *, twist: bool, stretch: bool, tip_inertia: bool) -> s
     lump = np.diagonal(blade.tip_mass)
     masses = np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3]
     reasons: tuple[tuple[object, str], ...] = (
+        (not clamped(blade), "the root is not clamped: this code holds it"),
         (coupled(blade), "the sections couple (offset centres, or bend-twist); this beam takes uncoupled ones"),
         (not straight(blade), "the blade is prebent or swept; this beam is straight"),
         (blade.precone != 0, f"precone {blade.precone:g} rad bends the steady state; this beam turns in its own plane"),
