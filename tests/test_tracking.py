@@ -1,7 +1,5 @@
 """Modes followed along speed: crossings and veerings told apart by closed forms, doubts kept."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -176,9 +174,12 @@ def test_speeds_out_of_order_are_refused() -> None:
         track(oscillators(0.0), [1.0, 0.5], WEIGHT, 2)
 
 
-def test_modes_far_apart_that_exchange_nothing_are_no_encounter() -> None:
-    def solve(omega: float) -> Modes:
-        found = oscillators(0.0)(omega)
-        return replace(found, frequencies=np.array([8.0, 8.0 + (1.0 + (omega - 3.0) ** 2), 30.0]))
+def test_modes_that_come_near_but_exchange_nothing_are_no_encounter() -> None:
+    """Flap at 8 rad/s, edge at 8.1 + (Ω − 3)²: nearest at 3 rad/s, uncoupled."""
 
-    assert met(track(solve, SPEEDS[:5], WEIGHT, 2)) == ()
+    def solve(omega: float) -> Modes:
+        shapes = np.zeros((2, 21, 4), complex)
+        shapes[0, :, 2] = shapes[1, :, 1] = STATIONS
+        return Modes(omega, np.array([8.0, 8.1 + (omega - 3.0) ** 2]), shapes, 10)
+
+    assert met(track(solve, SPEEDS, WEIGHT, 2)) == ()
