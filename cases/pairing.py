@@ -16,6 +16,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..core.blade import Blade, mass_at, twist_at
 from ..core.modes import STATIONS, Modes
+from ..core.participation import DOMINANT
 
 Array = NDArray[np.float64]
 
@@ -30,9 +31,6 @@ RIVAL_MAC = 0.5
 
 DEGENERATE = 2e-3
 """Relative gap of frequencies below which codes may turn two shapes into each other."""
-
-DOMINANT = 0.6
-"""Share of the modal mass that names a mode; with less it is mixed."""
 
 
 @dataclass(frozen=True)

@@ -168,6 +168,7 @@ def _show(diagram: Campbell, units: Units) -> None:
     console = terminal.output()
     for sheet in tables.sheets(diagram, units):
         console.print(tables.terminal(sheet))
+        console.print()
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
 

@@ -1,6 +1,7 @@
 """The tables of a Campbell diagram, for the terminal and for Markdown, and its numbers as CSV."""
 
 import csv
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,10 +12,15 @@ from rich.table import Table
 from tabulate import tabulate
 
 from ..cases.campbell import Campbell, Margin
-from ..core.participation import FAMILIES, spoken
+from ..core.participation import FAMILIES, MIXED, spoken
 from .units import Units
 
 TOO_NEAR = "✘"
+
+STYLES = {"flap": "blue", "edge": "dark_orange3", "torsion": "green4", "axial": "magenta", MIXED: "purple"}
+"""Of a mode's name on the console."""
+
+_MODE = re.compile(rf"\b({'|'.join(STYLES)}) \d+′*")
 
 
 @dataclass(frozen=True)
@@ -107,7 +113,7 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
         if r.apart is not None:
             row.append(f"{TOO_NEAR} within" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
         rows.append(tuple(row))
-    head = ["mode", "meets", units.speed, units.frequency]
+    head = ["mode", "meets", units.speed_label, units.frequency_label]
     note = ""
     if diagram.wanted.operating:
         head.append("from the operating range")
@@ -119,19 +125,27 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for e in diagram.encounters:
         gap = f"{e.gap * units.frequencies:.3g}"
-        a, b = e.tracks
+        lower, upper = (diagram.label_at(t, e.window[0]) for t in e.tracks)
         rows.append(
             (
                 e.kind,
                 f"{e.omega * units.speeds:.3f}",
                 f"{e.frequency * units.frequencies:.4f}",
                 gap if e.kind == "veering" else f"< {gap}" if e.gap * units.frequencies >= 1e-9 else "none",
-                f"{diagram.label(a)} × {diagram.label(b)}",
+                f"{lower} × {upper}",
                 f"{100 * e.exchanged:.0f} %" + ("" if e.whole else ", the rest beyond the speeds or others in between"),
                 f"{spoken(e.before[0])} → {spoken(e.after[0])}",
             )
         )
-    head = ("what", units.speed, units.frequency, f"gap, {units.frequency}", "modes", "exchanged", "the lower first")
+    head = (
+        "what",
+        units.speed_label,
+        units.frequency_label,
+        f"gap, {units.frequency}",
+        "modes",
+        "exchanged",
+        "the lower first",
+    )
     note = (
         "Veering: two modes come near, trade shapes and part; a crossing's gap, if it has one, is narrower than given. "
         "Exchanged: of the shapes, from one side to the other; last: the kinetic energy of the first mode, before → after."
@@ -151,7 +165,7 @@ def _doubts(diagram: Campbell, units: Units) -> Sheet:
         for d in diagram.tracks.doubts
     )
     step = f"{diagram.tracks.smallest * units.speeds:.3g} {units.speed}"
-    head = ("mode", units.speed, units.frequency, "MAC with the one taken", "with another")
+    head = ("mode", units.speed_label, units.frequency_label, "MAC with the one taken", "with another")
     note = f"Which mode goes on is not clear even with the smallest step, {step}: the one taken may be the wrong one."
     return Sheet("Not clear", head, rows, note)
 
@@ -171,8 +185,14 @@ def terminal(sheet: Sheet) -> Table:
     for k, head in enumerate(sheet.head):
         out.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
     for row in sheet.rows:
-        out.add_row(*[f"[bold red]{field}[/]" if field.startswith(TOO_NEAR) else field for field in row])
+        out.add_row(*[_styled(field) for field in row])
     return out
+
+
+def _styled(field: str) -> str:
+    if field.startswith(TOO_NEAR):
+        return f"[bold red]{field}[/]"
+    return _MODE.sub(lambda found: f"[{STYLES[found[1]]}]{found[0]}[/]", field)
 
 
 def markdown(sheet: Sheet) -> str:
