@@ -108,7 +108,25 @@ def _least(K: Array, force: Array) -> Array:
     return cast(tuple[Array, ...], found)[0]
 
 
+def _check_rates(tree: Tree, state: State) -> None:
+    """Refuse loops that move while the motions leave open how: rates would be anybody's choice."""
+    given = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
+    rest = np.setdiff1d(np.arange(len(state.q)), given)
+    moving = np.abs(state.v[rest]) > 1e-9 * np.abs(state.v).max(initial=0.0)
+    if not moving.any():
+        return
+    open_ = scipy.linalg.null_space(partition.jacobian(tree, state.kinematics.B)[:, rest], rcond=1e-9)
+    free = moving & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
+    if free.any():
+        name = tree.coordinates[rest[int(free.argmax())]]
+        raise MechanismError(
+            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too (held = false if "
+            "it is to vibrate)"
+        )
+
+
 def _checked(tree: Tree, state: State, free: NDArray[np.intp]) -> State:
+    _check_rates(tree, state)
     tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[free]
     size = np.abs(state.kinematics.B.transpose(2, 0, 1)[free] * state.cartesian.g).sum((1, 2))
     K = dynamics.tangent(tree, state.kinematics, state.cartesian)[2][np.ix_(free, free)]

@@ -103,6 +103,8 @@ def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) 
 def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Damped:
     """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped."""
     M, C, K = 0.5 * (linear.M + linear.M.T), linear.C, linear.K
+    if not len(M):  # everything is prescribed
+        return eigen.Eigen(np.zeros(0), np.zeros((0, 0), np.complex128))
     size = np.abs(K).max(initial=0.0), np.abs(C).max(initial=0.0)
     conservative = (np.abs(K - K.T).max(initial=0.0) <= 1e-9 * size[0]) and (
         np.abs(C + C.T).max(initial=0.0) <= 1e-9 * size[1]

@@ -97,7 +97,7 @@ class Solution:
         """For each mode the independent coordinate with the largest share in its kinetic energy."""
         x = self.shapes[:, self.linear.partition.independent]
         share = np.real(x.conj() * (x @ self.linear.M.T))
-        return tuple(self.independent[k] for k in share.argmax(1))
+        return tuple(self.independent[row.argmax()] for row in share)
 
 
 def solve(
@@ -126,7 +126,8 @@ def solve(
     tree, part = linear.tree, linear.partition
     shapes: Complex = np.zeros((len(values), len(tree.coordinates)), np.complex128)
     shapes[:, part.free] = (part.R @ found.vectors).T
-    shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
+    if len(values):
+        shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
     return Solution(
         values=values,
         shapes=shapes,
