@@ -1,32 +1,24 @@
 """The Campbell diagram as a figure: modes coloured by what moves in them, n per revolution behind, trouble in red."""
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ..cases.campbell import Campbell
-from ..core.participation import FAMILIES, MIXED
-from .style import INK, MUTED, WIDTH, beside, house, key, title
+from ..core.participation import FAMILIES
+from .campbell_marks import DASHES, band, blend, legend, marks, near, rays
+from .style import MUTED, WIDTH, beside, house, key, title
 from .units import Units
-
-FAMILY_COLOURS = {"flap": "#0072B2", "edge": "#D55E00", "torsion": "#009E73", "axial": "#CC79A7", MIXED: "#6E4A7E"}
-"""Of Okabe and Ito; a mixed mode's line is blended from its shares."""
-
-DASHES = {"flap": "-", "edge": (0, (7, 1.6)), "torsion": (0, (2, 1.2)), "axial": (0, (6, 1.5, 1.5, 1.5)), MIXED: "-"}
-
-RED, BAND, RAY = "#C1121F", "#EDF2F7", "#C9C9C9"
 
 PURE = 0.85
 """From this share on a stretch of line has its family's dashes, below it is solid and blended."""
 
-ROOM = 0.2
-"""Part of the width kept for the labels at the lines' ends."""
+LETTER = 0.066
+"""Width of a letter of the labels at the lines' ends, inches."""
 
 
 def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
@@ -40,18 +32,20 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
         low = 0.95
         height = 5.9
         figure = Figure((WIDTH, height))
-        axes = figure.add_axes((0.07, low / height, 0.91 - ROOM, 1 - (low + 0.66) / height))
+        longest = max(len(_label(diagram, t, units)) for t in range(diagram.tracks.count))
+        room = (0.15 + LETTER * max(longest, 18)) / WIDTH
+        axes = figure.add_axes((0.07, low / height, 0.93 - room, 1 - (low + 0.66) / height))
         tracks, wanted = diagram.tracks, diagram.wanted
         speeds = np.array(wanted.speeds) * units.speeds
         top = 1.06 * float(np.nanmax(tracks.frequencies)) * units.frequencies
         axes.set_xlim(speeds[0], speeds[-1])
         axes.set_ylim(0.0, top)
-        _band(axes, diagram, units)
-        _rays(axes, diagram, units)
+        band(axes, diagram, units)
+        rays(axes, diagram, units)
         ends: list[tuple[float, str, str]] = []
         for t in range(tracks.count):
             ends += _mode(axes, diagram, t, units)
-        _marks(axes, diagram, units)
+        marks(axes, diagram, units)
         beside(axes, ends)
         axes.annotate(
             f"{units.frequency} at {speeds[-1]:.4g} {units.speed}",
@@ -65,17 +59,9 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
         axes.set_xlabel(units.speed_label, labelpad=3)
         axes.set_ylabel(units.frequency_label)
         title(figure, heading, _below(diagram, units))
-        handles = _legend(diagram)
+        handles = legend(diagram)
         key(figure, handles, 0.07, across=-(-len(handles) // (1 + (len(handles) > 5))))
     return figure
-
-
-def blend(share: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
-    """The colour of shares (4,): each family's, weighted by the square of its share so that a pure mode looks pure."""
-    weight = np.square(np.nan_to_num(np.asarray(share, float)))
-    colours = np.array([to_rgb(FAMILY_COLOURS[f]) for f in FAMILIES])
-    red, green, blue = weight @ colours / max(float(weight.sum()), 1e-12)
-    return float(red), float(green), float(blue)
 
 
 def _below(diagram: Campbell, units: Units) -> str:
@@ -91,66 +77,6 @@ def _below(diagram: Campbell, units: Units) -> str:
     return "; ".join(words)
 
 
-def _band(axes: Axes, diagram: Campbell, units: Units) -> None:
-    if diagram.wanted.operating:
-        low, high = (o * units.speeds for o in diagram.wanted.operating)
-        axes.axvspan(low, high, color=BAND, lw=0, zorder=0)
-        box = {"facecolor": BAND, "edgecolor": "none", "pad": 1.0}
-        axes.annotate(
-            "operating",
-            (0.5 * (low + high), 1.0),
-            (0, -4),
-            ("data", "axes fraction"),
-            "offset points",
-            ha="center",
-            va="top",
-            size=7.5,
-            color=MUTED,
-            bbox=box,
-            zorder=2,
-        )
-
-
-def _rays(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """n per revolution, labelled where a ray leaves the diagram at the top; else on the ray, clear of the modes."""
-    (left, right), top = axes.get_xlim(), axes.get_ylim()[1]
-    slope = units.frequencies / units.speeds
-    for n in diagram.wanted.per_rev:
-        end = min(right, top / (n * slope))
-        if end <= left:
-            continue
-        axes.plot([left, end], [n * slope * left, n * slope * end], color=RAY, lw=0.7, zorder=1)
-        above = end < right * (1 - 1e-9)
-        at = end if above else _clear(diagram, n, left, right, top, units)
-        axes.annotate(
-            f"{n}P",
-            (at, n * slope * at),
-            (0, 3 if above else 0),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if above else "center",
-            size=7.5,
-            color=MUTED,
-            bbox=None if above else {"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-            zorder=2,
-            annotation_clip=False,
-        )
-
-
-def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, units: Units) -> float:
-    """A speed, as far right as can be, at which a label on a ray is clear of the modes and not in the operating range."""
-    tracks, wanted = diagram.tracks, diagram.wanted
-    high = wanted.operating[1] * units.speeds if wanted.operating else left
-    places = left + (right - left) * np.arange(0.97, 0.4, -0.02)
-    outside = places[places > high + 0.03 * (right - left)]
-    places = outside if len(outside) else places
-    modes = np.stack([np.interp(places / units.speeds, tracks.omega, f) for f in tracks.frequencies.T])
-    ray = n * places * units.frequencies / units.speeds
-    distance = np.nanmin(np.abs(modes * units.frequencies - ray), axis=0) / top
-    good = np.flatnonzero(distance > 0.035)
-    return float(places[good[0] if len(good) else distance.argmax()])
-
-
 def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[float, str, str]]:
     """One track, and the label at its end if it lasts to the right edge."""
     tracks = diagram.tracks
@@ -158,7 +84,7 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
     x, y = _fine(omega, frequency)
     shares = np.stack([np.interp(x, omega, diagram.shares[k, t, i]) for i in range(4)], axis=1)
-    _near(axes, diagram, x, y, units)
+    near(axes, diagram, x, y, units)
     points = np.stack([x * units.speeds, y * units.frequencies], axis=1)
     for start, stop, pure in _stretches(shares):
         part, share = points[start : stop + 1], shares[start : stop + 1]
@@ -172,8 +98,11 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
             )
     if k[-1] != len(tracks.omega) - 1:
         return []
-    family = diagram.last[t].split()[0]
-    return [(points[-1, 1], f"{diagram.label(t)}  {points[-1, 1]:.3f}", FAMILY_COLOURS[family])]
+    return [(points[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.shares[-1, t])))]
+
+
+def _label(diagram: Campbell, t: int, units: Units) -> str:
+    return f"{diagram.label(t)}  {diagram.tracks.frequencies[-1, t] * units.frequencies:.3f}"
 
 
 def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -187,87 +116,3 @@ def _stretches(shares: np.ndarray) -> list[tuple[int, int, str]]:
     kind = np.where(shares.max(1) >= PURE, shares.argmax(1), -1)
     breaks = [0, *(np.flatnonzero(np.diff(kind)) + 1).tolist(), len(kind) - 1]
     return [(a, b, FAMILIES[kind[a]] if kind[a] >= 0 else "") for a, b in pairwise(breaks) if b > a]
-
-
-def _near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:
-    """Underlay the stretches nearer to n per revolution than the margin, within the operating range."""
-    wanted = diagram.wanted
-    if not wanted.operating:
-        return
-    low, high = wanted.operating
-    grid = np.unique(np.concatenate([x[(x > low) & (x < high)], np.linspace(low, high, 401)]))
-    line = np.interp(grid, x, y)
-    rays = np.outer(wanted.per_rev, grid)
-    close = (np.abs(line - rays) < wanted.margin * rays).any(0)
-    shown = np.where(close, line, np.nan)
-    axes.plot(
-        grid * units.speeds, shown * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
-    )
-
-
-def _marks(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """Resonances as circles, filled within the operating range; crossings, veerings and doubts by their signs."""
-    wanted = diagram.wanted
-    for r in diagram.resonances:
-        inside = wanted.operating is not None and r.apart == 0.0
-        axes.plot(
-            r.omega * units.speeds,
-            r.frequency * units.frequencies,
-            marker="o",
-            ms=5.5 if inside else 4.0,
-            mfc=RED if inside else "white",
-            mec="white" if inside else MUTED,
-            mew=0.8,
-            zorder=6,
-        )
-    for e in diagram.encounters:
-        at = (e.omega * units.speeds, e.frequency * units.frequencies)
-        veers = e.kind == "veering"
-        axes.plot(
-            *at, marker="D" if veers else "x", ms=7.5 if veers else 5, mfc="none", mec=INK, mew=1.0, zorder=5, ls=""
-        )
-        if veers:
-            text = f"veering\ngap {e.gap * units.frequencies:.2g} {units.frequency}"
-            axes.annotate(
-                text,
-                at,
-                (0, 13),
-                textcoords="offset points",
-                ha="center",
-                va="bottom",
-                size=7,
-                color=INK,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
-                zorder=5,
-            )
-    for d in diagram.tracks.doubts:
-        at = (d.omega[0] * units.speeds, d.frequency * units.frequencies)
-        axes.annotate("?", at, ha="center", va="center", size=10, weight="bold", color=RED, zorder=7)
-
-
-def _legend(diagram: Campbell) -> list[Line2D]:
-    present = {diagram.names[t].split()[0] for t in range(diagram.tracks.count)}
-    present |= {diagram.last[t].split()[0] for t in range(diagram.tracks.count)}
-    out: list[Line2D] = [
-        Line2D([], [], color=FAMILY_COLOURS[f], lw=1.8, ls=DASHES[f], label=f)
-        for f in (*FAMILIES, MIXED)
-        if f in present
-    ]
-    dot = {"marker": "o", "ls": "", "mew": 0.8}
-    if any(r.apart != 0.0 for r in diagram.resonances):
-        out.append(Line2D([], [], ms=4.0, mfc="white", mec=MUTED, label="resonance", **dot))
-    if any(r.apart == 0.0 for r in diagram.resonances):
-        out.append(Line2D([], [], ms=5.5, mfc=RED, mec="white", label="resonance in operation", **dot))
-    if any(not m.kept for m in diagram.margins):
-        out.append(
-            Line2D(
-                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.wanted.margin:.3g} % of n per rev"
-            )
-        )
-    for kind, marker, size in (("veering", "D", 6.5), ("crossing", "x", 5)):
-        if any(e.kind == kind for e in diagram.encounters):
-            label = f"{kind} of modes"
-            out.append(Line2D([], [], ls="", marker=marker, ms=size, mfc="none", mec=INK, mew=1.0, label=label))
-    if diagram.tracks.doubts:
-        out.append(Line2D([], [], ls="", marker="$?$", ms=6, color=RED, label="not clear which mode goes on"))
-    return out

@@ -9,8 +9,8 @@ from ..cases.campbell import Campbell
 from ..cases.elastodyn_shapes import as_it_is, polynomials
 from ..cases.errors import CaseError
 from . import campbell as figures
+from . import campbell_csv, encounters, shapes
 from . import campbell_tables as tables
-from . import encounters, shapes
 from .style import house, save
 from .units import Units
 
@@ -35,7 +35,7 @@ def write(diagram: Campbell, folder: Path, units: Units, command: str) -> tuple[
     if close:
         drawn["encounters"] = close
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
-    written += [*tables.write_csv(diagram, folder), shapes.write_csv(diagram, k, folder)]
+    written += [*campbell_csv.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
     page.write_text(_page(diagram, k, units, command), encoding="utf-8")
     return (page, *written)

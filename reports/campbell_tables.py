@@ -1,10 +1,7 @@
-"""The tables of a Campbell diagram, for the terminal and for Markdown, and its numbers as CSV."""
+"""The tables of a Campbell diagram, for the terminal and for Markdown."""
 
-import csv
 import re
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from rich import box
@@ -12,7 +9,7 @@ from rich.table import Table
 from tabulate import tabulate
 
 from ..cases.campbell import Campbell, Margin
-from ..core.participation import FAMILIES, MIXED, spoken
+from ..core.participation import MIXED, spoken
 from .units import Units
 
 TOO_NEAR = "✘"
@@ -225,71 +222,3 @@ def verdict(diagram: Campbell, units: Units) -> str:
         words = [f"meets {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
         said.append(f"{diagram.label_over(t, low, high)} {' and '.join(w for w in words if w)}")
     return f"{TOO_NEAR} Over {over}, {'; '.join(said)}.{but}"
-
-
-def write_csv(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
-    """``campbell.csv``: a row a mode and speed; ``resonances.csv``, ``margins.csv``, ``encounters.csv``. SI units.
-
-    Raises:
-        OSError: if a file cannot be written.
-    """
-    tracks = diagram.tracks
-    lines = [
-        (
-            k + 1,
-            repr(float(tracks.omega[k])),
-            f"{tracks.omega[k] * 30 / np.pi:.9g}",
-            int(tracks.asked[k]),
-            t + 1,
-            diagram.label(t),
-            int(tracks.place[k, t]) + 1,
-            repr(float(tracks.frequencies[k, t])),
-            f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
-            *[f"{share:.6f}" for share in diagram.shares[k, t]],
-            f"{tracks.mac[k, t]:.6f}" if np.isfinite(tracks.mac[k, t]) else "",
-        )
-        for k in range(len(tracks.omega))
-        for t in range(tracks.count)
-        if tracks.place[k, t] >= 0
-    ]
-    speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
-    columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz", *FAMILIES, "mac_with_speed_before"]
-    resonances = [
-        (diagram.label_at(r.track, r.omega), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
-        for r in diagram.resonances
-    ]
-    margins = [
-        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, int(m.kept)) for m in diagram.margins
-    ]
-    met = [
-        (
-            e.kind,
-            e.omega,
-            e.frequency,
-            e.gap,
-            *[diagram.label(t) for t in e.tracks],
-            e.exchanged,
-            *e.window,
-            int(e.whole),
-        )
-        for e in diagram.encounters
-    ]
-    window = ("from_rad_s", "to_rad_s")
-    files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
-        "campbell.csv": (columns, lines),
-        "resonances.csv": (("name", "per_rev", "omega_rad_s", "frequency_rad_s", "from_operating_range"), resonances),
-        "margins.csv": (("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "kept"), margins),
-        "encounters.csv": (
-            ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s", "lower", "upper", "exchanged", *window, "whole"),
-            met,
-        ),
-    }
-    out = []
-    for name, (heads, rows) in files.items():
-        path = folder / name
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(heads)
-            writer.writerows(rows)
-        out.append(path)
-    return tuple(out)

@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..cases.campbell import Campbell
 from ..cases.encounters import Encounter
-from .campbell import blend
+from .campbell_marks import blend
 from .style import INK, MUTED, WIDTH, house, title
 from .units import Units
 
@@ -33,7 +33,7 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure | None:
     across = min(ACROSS, len(met))
     rows, panel, low = -(-len(met) // across), 2.35 + 0.5 * (ACROSS - across), 0.25
     with house():
-        height = low + 0.55 + rows * panel
+        height = low + 0.35 + rows * panel
         figure = Figure((WIDTH, height))
         for place, e in enumerate(met):
             row, column = divmod(place, across)

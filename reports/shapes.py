@@ -15,7 +15,7 @@ from ..cases.campbell import Campbell
 from ..cases.elastodyn_shapes import POWERS, WANTED, Polynomial
 from ..core.modes import STATIONS
 from ..core.participation import gyration, in_blade_axes, spoken
-from .campbell import DASHES, FAMILY_COLOURS
+from .campbell_marks import DASHES, FAMILY_COLOURS
 from .campbell_tables import Sheet
 from .style import FAINT, MUTED, WIDTH, house, key, spread, title
 from .units import Units

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
 from ..cases.variation import PRINTED, Variation
-from .campbell import DASHES, FAMILY_COLOURS
+from .campbell_marks import DASHES, FAMILY_COLOURS
 from .campbell_tables import Sheet
 from .style import INK, WIDTH, beside, house, title
 from .units import RPM

@@ -18,9 +18,10 @@ from southwell.cases.variation import Variation, variations
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import modes
-from southwell.reports import encounters, variation
-from southwell.reports.campbell import blend, draw
-from southwell.reports.campbell_tables import markdown, sheets, verdict, write_csv
+from southwell.reports import campbell_csv, encounters, variation
+from southwell.reports.campbell import draw
+from southwell.reports.campbell_marks import blend
+from southwell.reports.campbell_tables import markdown, sheets, verdict
 from southwell.reports.style import save
 from southwell.reports.units import RAD_S, RPM
 
@@ -304,7 +305,7 @@ def test_the_answer_in_one_line() -> None:
 
 
 def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:
-    write_csv(veering, tmp_path)
+    campbell_csv.write(veering, tmp_path)
     with (tmp_path / "campbell.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == veering.tracks.place.size
