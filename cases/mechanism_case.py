@@ -13,7 +13,6 @@ from .errors import CaseError, nearest
 from .mechanisms import Described
 from .results import Setting
 from .schema import rad_s
-from .verdict import unsigned
 
 Array = NDArray[np.float64]
 
@@ -86,7 +85,7 @@ def setting(case: MechanismCase) -> Setting:
         "joints that close loops": ", ".join(cut) or "none",
         "speeds": ", ".join(f"{v:.6g}" for v in speeds) + (" rpm" if rpm else " rad/s"),
         "modes compared": f"the lowest {variant.count}, and their damping ratios",
-        "target": unsigned(case.target),
+        "target": f"{case.target:g}",
     }
     return Setting(
         case.name, text.title, " ".join(text.description.split()), text.source, "rpm" if rpm else "rad_s", facts

@@ -207,8 +207,8 @@ def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> 
 
 
 def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
-    """Equal and opposite reactions; δ(reaction) beyond what moves with the copy is left to the multipliers."""
-    out.add(np.array([[copy, body]]), _between(w, -0.5 * sp.cross(w), np.zeros((6, 6))))
+    """Equal and opposite reactions, taken along with the bodies; what else they vary by is left to the multipliers."""
+    out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
 
 
 def reduced_mass(k: Kinematics, c: Cartesian) -> Array:

@@ -1,6 +1,7 @@
 """Mechanisms in TOML: the same as by hand, every fault one line, the command shows what was found."""
 
 import json
+import re
 import runpy
 from pathlib import Path
 
@@ -33,6 +34,20 @@ def test_the_example_in_toml_is_the_one_by_hand() -> None:
     for name in "MCK":
         theirs, ours = getattr(read.linear, name), getattr(by_hand.linear, name)
         np.testing.assert_allclose(theirs, ours, rtol=1e-12, atol=1e-12 * np.abs(ours).max())
+
+
+def test_the_readmes_example_prints_what_it_says(capsys) -> None:
+    """And is the one in the module's own words: lag Ω √(e S/I), c/(2 I ω)."""
+    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    (block,) = (b for b in re.findall(r"```python\n(.*?)```", readme, re.S) if "multibody" in b)
+    said = re.search(r"# ([\d.]+) rad/s, ([\d.]+) of critical", block)
+    exec(block, {})
+    frequency, ratio = map(float, re.findall(r"[\d.]+", capsys.readouterr().out))
+    lag = 30.0 * np.sqrt(0.3 * 80.0 / 210.0)
+    assert (frequency, ratio) == (pytest.approx(lag, rel=1e-6), pytest.approx(600.0 / (2 * 210.0 * lag), rel=1e-6))
+    assert said
+    assert (said[1], said[2]) == (f"{frequency:.2f}", f"{ratio:.3f}")
+    assert "0.141 of critical" in (mb.__doc__ or "")
 
 
 WHOLE = """
