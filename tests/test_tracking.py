@@ -1,15 +1,19 @@
 """Modes followed along speed: crossings and veerings told apart by closed forms, doubts kept."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import simpson
+from scipy.interpolate import CubicSpline
 
 from southwell.cases import tracking
 from southwell.cases.encounters import Encounter, encounters
 from southwell.cases.pairing import weights
 from southwell.cases.tracking import Tracks, track
-from southwell.core.blade import Blade, uniform_blade
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.participation import participation
 from southwell.core.solve import modes
@@ -183,3 +187,34 @@ def test_modes_that_come_near_but_exchange_nothing_are_no_encounter() -> None:
         return Modes(omega, np.array([8.0, 8.1 + (omega - 3.0) ** 2]), shapes, 10)
 
     assert met(track(solve, SPEEDS, WEIGHT, 2)) == ()
+
+
+def test_a_slight_twist_opens_the_crossing_by_as_much_as_perturbation_theory_says() -> None:
+    """κ = ∫ (EI_z − EI_y) θ φ_f″ φ_e″ ds of the untwisted blade's modes, and the gap is κ/ω (Leissa 1974)."""
+    s = np.linspace(0.0, 20.0, 11)
+    straight = Blade(
+        "straight",
+        stations=s,
+        stiffness=np.repeat(section_stiffness(1e9, 4e7, 4e6, 9e6), 11, axis=0),
+        mass=np.repeat(section_mass(40.0, 0.3, 0.3), 11, axis=0),
+        twist=np.zeros(11),
+        hub_radius=1.0,
+    )
+    speeds, weight = np.linspace(0.0, 8.0, 11), weights(straight)
+    twisted = replace(straight, twist=np.radians(1.0 - s / 20.0))
+
+    def met_by(blade: Blade) -> Encounter:
+        tracks = track(lambda omega: modes(blade, omega, 20, 4), speeds, weight, 2)
+        (e,) = encounters(tracks, by_track(tracks, blade), weight)
+        return e
+
+    crossing, veering = met_by(straight), met_by(twisted)
+    assert (crossing.kind, veering.kind) == ("crossing", "veering")
+    shapes = modes(straight, crossing.omega - 0.2, 20, 2).shapes
+    fine = np.linspace(0.0, 20.0, 401)
+    flap, edge = (CubicSpline(20.0 * STATIONS, shapes[k, :, column].real) for k, column in ((0, 2), (1, 1)))
+    size = [40.0 * simpson(shape(fine) ** 2, x=fine) for shape in (flap, edge)]
+    coupling = simpson(5e6 * np.radians(1.0 - fine / 20.0) * flap(fine, 2) * edge(fine, 2), x=fine)
+    expected = abs(coupling) / np.sqrt(size[0] * size[1]) / crossing.frequency
+    assert veering.gap == pytest.approx(expected, rel=0.01)
+    assert veering.omega == pytest.approx(crossing.omega, rel=1e-3)
