@@ -59,13 +59,17 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
         row += [f"{fit.coefficient:.4g}", _small(fit.residual)] if fit else ["–", "–"]
         rows.append(tuple(row))
     frequency = units.frequency
-    head = ("mode", "kinetic energy", f"{frequency} {units.at(first)}", f"{frequency} at {units.at(last)}", "change")
-    at = units.at(first)
+    at = _at(units, first)
+    head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "change")
     note = (
         f"Kinetic energy {at}: flap, edge and axial motion of the mass centres, torsion about them, in the blade's axes. "
         "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
     )
     return Sheet("Modes", (*head, "φ", "residual"), tuple(rows), note)
+
+
+def _at(units: Units, omega: float) -> str:
+    return f"at {units.at(omega)}" if omega else units.at(omega)
 
 
 def _small(relative: float) -> str:
@@ -83,7 +87,7 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
         fields = [_margin(mine[n]) if mine else "not followed so far" for n in wanted.per_rev]
         rows.append((diagram.label_over(t, low, high), *fields))
     note = (
-        f"How far a mode is above n per revolution at {units.at(low)} … {units.at(high)}, in % of n per revolution "
+        f"How far a mode is above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
         f"(far: ten times). {TOO_NEAR}: nearer than {100 * wanted.margin:.3g} % at some speed; a change of sign: they meet."
     )
     return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in wanted.per_rev]), tuple(rows), note)
