@@ -4,7 +4,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from .errors import CaseError, nearest
-from .mechanisms import Described
+from .mechanisms import Described, is_one
 from .mechanisms import read as describe
 from .schema import Case, read
 
@@ -45,8 +45,9 @@ def load(name: str) -> Case:
     if name in names():
         with as_file(files(f"{__package__}.data")) as folder:
             return read(folder / f"{name}.toml")
+    if name in mechanisms() or (name.endswith(".toml") and is_one(Path(name))):
+        raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
     if name.endswith(".toml"):
         return read(Path(name))
-    if name in mechanisms():
-        raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
-    raise CaseError(f"case: {name!r} is not known: {nearest(name, names())}; or give the path of a .toml file")
+    known = (*names(), *mechanisms())
+    raise CaseError(f"case: {name!r} is not known: {nearest(name, known)}; or give the path of a .toml file")

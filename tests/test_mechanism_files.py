@@ -284,3 +284,25 @@ def test_bad_input_at_the_command_is_status_two(capsys, tmp_path: Path) -> None:
     status, _, err = run(capsys, "mechanism", str(tmp_path / "none.toml"))
     assert (status, err.count("\n")) == (2, 1)
     assert "no such file" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("mechanism", "pitch-lnk"), "mechanism: 'pitch-lnk' is not known: did you mean pitch-link?"),
+        (("modes", "pitch-link"), "it is a mechanism, not a blade: see `southwell mechanism pitch-link`"),
+        (("modes", "FILE"), "it is a mechanism, not a blade: see `southwell mechanism"),
+        (("verify", "pitch-lnk"), "case: 'pitch-lnk' is not known: did you mean pitch-link?"),
+        (("verify", "FILE"), "speeds: missing"),
+    ],
+)
+def test_a_mechanism_where_a_blade_is_wanted_and_the_reverse(capsys, tmp_path: Path, arguments, told: str) -> None:
+    path = write(tmp_path, WHOLE)
+    status, _, err = run(capsys, *(str(path) if a == "FILE" else a for a in arguments))
+    assert (status, err.count("\n")) == (2, 1)
+    assert told in err
+
+
+def test_cases_lists_mechanisms_and_codes_lists_what_solves_them(capsys) -> None:
+    assert all(name in run(capsys, "cases")[1] for name in library.mechanisms())
+    assert "exudyn-loops" in run(capsys, "codes")[1]
