@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
+from dataclasses import dataclass
 from math import inf, isfinite, radians
 from pathlib import Path
 from typing import Annotated
@@ -26,6 +27,9 @@ from . import campbell_page, terminal
 from . import campbell_tables as tables
 from .cli import Whole, select
 from .units import BY_KEY, RAD_S, RPM, Units
+
+FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")
+"""Of a case's blade, those worth a line."""
 
 
 def command(
@@ -76,30 +80,55 @@ def command(
     workers
         Processes that share the speeds; starting one costs about as much as twenty speeds.
     """
-    chosen = select(blade)
-    speeds, units = _speeds(rpm, omega)
-    units = units or BY_KEY[settings(chosen)[0].unit]
-    pulled = _gravity(azimuth, tilt)
-    for variant in chosen.variants:
+    given = _speeds(rpm, omega)
+    subjects = _subjects(blade)
+    for subject in subjects:
+        speeds, units = given or (subject.speeds, subject.units)
         wanted = Wanted(
-            speeds=tuple(variant.speeds.tolist() if speeds is None else speeds),
+            speeds=tuple(speeds),
             modes=modes,
             per_rev=_per_rev(per_rev),
             operating=_operating(operating, units) if operating else None,
             margin=_margin(margin),
             elements=elements,
-            gravity=pulled,
+            gravity=_gravity(azimuth, tilt),
         )
-        folder = out / variant.name.partition("/")[2] if len(chosen.variants) > 1 else out
-        diagram = solve(variant.blade, wanted, units, workers)
+        folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+        diagram = solve(subject.blade, wanted, units, workers)
         _show(diagram, units)
         try:
-            written = campbell_page.write(diagram, folder, units, shlex.join(["southwell", *sys.argv[1:]]))
+            line = shlex.join(["southwell", *sys.argv[1:]])
+            written = campbell_page.write(diagram, folder, units, line, subject.about)
         except OSError as error:
             raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
         names = ", ".join(path.name for path in written)
         terminal.output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
     return 0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A blade to draw: its own speeds (rad/s) and their unit, and where it is from, a line a fact."""
+
+    blade: Blade
+    speeds: tuple[float, ...]
+    units: Units
+    about: tuple[str, ...]
+
+
+def _subjects(name: str) -> list[Subject]:
+    """The blades of a case.
+
+    Raises:
+        CaseError: if there is no such case.
+    """
+    case = select(name)
+    out = []
+    for variant, setting in zip(case.variants, settings(case), strict=True):
+        facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)
+        about = (setting.title, setting.description, f"source: {setting.source}", *facts)
+        out.append(Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about))
+    return out
 
 
 def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:
@@ -173,14 +202,14 @@ def _show(diagram: Campbell, units: Units) -> None:
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
 
 
-def _speeds(rpm: str | None, omega: str | None) -> tuple[list[float] | None, Units | None]:
+def _speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     if rpm is not None and omega is not None:
         raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
     if rpm is None and omega is None:
-        return None, None
+        return None
     option, text, units = ("--rpm", rpm or "", RPM) if omega is None else ("--omega", omega, RAD_S)
     try:
-        return (speed_range(text) / units.speeds).tolist(), units
+        return tuple((speed_range(text) / units.speeds).tolist()), units
     except ValueError as error:
         raise CaseError(f"{option}: {error}") from error
 

@@ -1,5 +1,6 @@
 """What ``southwell campbell`` leaves behind: figures as SVG and PNG, numbers as CSV, and a page that holds it all."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,8 @@ PAGE = "campbell.md"
 DPI = 180
 
 
-def write(diagram: Campbell, folder: Path, units: Units, command: str) -> tuple[Path, ...]:
-    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything.
+def write(diagram: Campbell, folder: Path, units: Units, command: str, about: Sequence[str] = ()) -> tuple[Path, ...]:
+    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything; ``about`` says where the blade is from.
 
     Raises:
         OSError: if a file cannot be written.
@@ -37,7 +38,7 @@ def write(diagram: Campbell, folder: Path, units: Units, command: str) -> tuple[
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*campbell_csv.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
-    page.write_text(_page(diagram, k, units, command), encoding="utf-8")
+    page.write_text(_page(diagram, k, units, command, about), encoding="utf-8")
     return (page, *written)
 
 
@@ -57,12 +58,13 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     return vector, raster
 
 
-def _page(diagram: Campbell, k: int, units: Units, command: str) -> str:
+def _page(diagram: Campbell, k: int, units: Units, command: str, about: Sequence[str]) -> str:
     omega = float(diagram.tracks.omega[k])
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
         f"{tables.verdict(diagram, units)}\n",
         "![Natural frequencies along rotor speed](campbell.svg)\n",
+        *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
         *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],
         *(["![Where modes meet](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
