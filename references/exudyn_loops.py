@@ -16,21 +16,15 @@ _STEP = 1e-3
 
 
 class System:
-    """A mechanism in Exudyn, asked for what it has at any coordinates; n of them, c constraint equations."""
+    """An assembled system of Exudyn's, asked for what it has at any coordinates: n of them, c constraint equations."""
 
-    def __init__(self, tree: Tree) -> None:
-        self.tree, self.size = tree, own_coordinates(tree)
-        self.velocity = np.zeros(self.size)
-        for m in tree.mechanism.motions:
-            self.velocity[tree.coordinate(m.coordinate)] = m.rate
-        self._exu, self._container, self._mbs = ex.system()
-        item, turned = _plant(self._exu, self._mbs, tree, self.velocity)
-        _close(self._exu, self._mbs, tree, item, turned)
-        self._mbs.Assemble()
-        self._settings = self._exu.SimulationSettings()
+    def __init__(self, exu: Any, container: Any, mbs: Any, size: int) -> None:
+        self.size = size
+        self._exu, self._container, self._mbs = exu, container, mbs  # the container must live as long
+        self._settings = exu.SimulationSettings()
         self._settings.solution.file.write = False
         self._settings.staticSolver.verboseMode = 0
-        self._settings.linearSolver.solverType = self._exu.LinearSolverType.EigenDense
+        self._settings.linearSolver.solverType = exu.LinearSolverType.EigenDense
         self._differences = self._settings.staticSolver.newton.numericalDifferentiation
         self._differences.minimumCoordinateSize = 1.0
         self._differences.forODE2Connectors = True  # its own derivatives hold the markers' Jacobians constant
@@ -60,7 +54,7 @@ class System:
             solver = self._at(q)
             solver.ComputeMassMatrix(self._mbs)
             M = np.array(solver.GetSystemMassMatrix())[: self.size, : self.size]
-            solver.ComputeJacobianODE2RHS(self._mbs, stiffness, damping, 0.0)
+            solver.ComputeJacobianODE2RHS(self._mbs, stiffness, damping, 0.0, 1)
             out = np.array(solver.GetSystemJacobian())[: self.size, : self.size]
             solver.FinalizeSolver(self._mbs, self._settings)
             return out
@@ -73,10 +67,9 @@ class System:
     def curvature(self, q: Array, multipliers: Array) -> Array:
         """−∂(J λ)/∂q (n, n) at fixed λ (c,)."""
         out = np.zeros((self.size, self.size))
-        if self.tree.welds:
-            for j, e in enumerate(_STEP * np.eye(self.size)):
-                a, b, c, d = (self.balance(q + k * e)[2] @ multipliers for k in (-2, -1, 1, 2))
-                out[:, j] = -(8.0 * (c - b) - (d - a)) / (12.0 * _STEP)
+        for j, e in enumerate(_STEP * np.eye(self.size) if len(multipliers) else ()):
+            a, b, c, d = (self.balance(q + k * e)[2] @ multipliers for k in (-2, -1, 1, 2))
+            out[:, j] = -(8.0 * (c - b) - (d - a)) / (12.0 * _STEP)
         return out
 
     def _at(self, q: Array) -> Any:
@@ -85,6 +78,23 @@ class System:
         solver = self._exu.MainSolverStatic()
         solver.InitializeSolver(self._mbs, self._settings)
         return solver
+
+
+def system(tree: Tree) -> System:
+    """A mechanism in Exudyn, its motions at their rates."""
+    exu, container, mbs = ex.system()
+    item, turned = _plant(exu, mbs, tree, velocity(tree))
+    _close(exu, mbs, tree, item, turned)
+    mbs.Assemble()
+    return System(exu, container, mbs, own_coordinates(tree))
+
+
+def velocity(tree: Tree) -> Array:
+    """(n,) rates of the tree's own coordinates in the steady state."""
+    out = np.zeros(own_coordinates(tree))
+    for m in tree.mechanism.motions:
+        out[tree.coordinate(m.coordinate)] = m.rate
+    return out
 
 
 def own_coordinates(tree: Tree) -> int:

@@ -22,7 +22,7 @@ from ..core.model import FULL
 from ..core.tree import Tree, compile_tree
 from . import exudyn_system as ex
 from .damped import damped_modes
-from .exudyn_loops import System, own_coordinates
+from .exudyn_loops import System, own_coordinates, system, velocity
 from .interface import CodeError, Shares
 from .mechanism_interface import MechanismModes
 
@@ -115,35 +115,35 @@ def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
     Raises:
         CodeError: no steady state near the guess, or loops that move in it.
     """
-    system = System(tree)
-    q = np.zeros(system.size)
+    q = np.zeros(own_coordinates(tree))
     for name, value in guess.items():
         if (j := tree.coordinate(name)) < len(q):
             q[j] = value
     for m in tree.mechanism.motions:
         if m.position is not None:
             q[tree.coordinate(m.coordinate)] = m.position
-    return stages(system, _settle(system, q))
+    made = system(tree)
+    return stages(tree, made, _settle(tree, made, q))
 
 
-def stages(system: System, q: Array) -> Stages:
+def stages(tree: Tree, made: System, q: Array) -> Stages:
     """The linearisation at given coordinates q (n,), with the reactions that balance it best there.
 
     Raises:
         CodeError: loops that move in the steady state.
     """
-    tree, v = system.tree, system.velocity
+    v = velocity(tree)
     held = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held]
     free = np.setdiff1d(np.arange(len(q)), held)
-    force, _, J = system.balance(q)
+    force, _, J = made.balance(q)
     if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
         raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
     multipliers = _least(J[free], -force[free])
-    M, C, K = system.matrices(q)
-    return Stages(tree.coordinates[: len(q)], q, M, C, K, system.curvature(q, multipliers), J, multipliers, free)
+    M, C, K = made.matrices(q)
+    return Stages(tree.coordinates[: len(q)], q, M, C, K, made.curvature(q, multipliers), J, multipliers, free)
 
 
-def _settle(system: System, q: Array) -> Array:
+def _settle(tree: Tree, made: System, q: Array) -> Array:
     """Newton's method on Exudyn's residual: close the loops, then balance along what they leave free.
 
     Exudyn's own static solver leaves the constraints' curvature out of its Jacobian and stops at 1e-8.
@@ -151,11 +151,11 @@ def _settle(system: System, q: Array) -> Array:
     Raises:
         CodeError: no steady state near q.
     """
-    fixed = [system.tree.coordinate(m.coordinate) for m in system.tree.mechanism.motions]
+    fixed = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
     free = np.setdiff1d(np.arange(len(q)), fixed)
     before = np.inf
     for _ in range(60):
-        force, gap, J = system.balance(q)
+        force, gap, J = made.balance(q)
         force, J = force[free], J[free]
         close = -_least(J.T, gap)
         if np.abs(gap).max(initial=0.0) > 1e-3:  # assemble first
@@ -163,7 +163,7 @@ def _settle(system: System, q: Array) -> Array:
             q[free] += close * min(1.0, 0.5 / max(float(np.abs(close).max()), 0.5))
             continue
         multipliers = _least(J, -force)
-        K = system.matrices(q)[2] + system.curvature(q, multipliers)
+        K = made.matrices(q)[2] + made.curvature(q, multipliers)
         null = scipy.linalg.null_space(J.T, rcond=1e-9) if J.shape[1] else np.eye(len(free))
         K = K[np.ix_(free, free)]
         along = _least(null.T @ K @ null, null.T @ (force - K @ close), 1e-13)

@@ -21,7 +21,7 @@ from southwell.core.joints import SCREWS, Kind
 from southwell.core.kinematics import kinematics
 from southwell.core.tree import compile_tree
 from southwell.references import exudyn_mechanism as em
-from southwell.references.exudyn_loops import System
+from southwell.references.exudyn_loops import system
 from southwell.references.interface import CodeError
 
 pytestmark = pytest.mark.skipif(em.CODE.version() is None, reason=f"not installed: {em.CODE.hint}")
@@ -35,7 +35,7 @@ def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linear
     tree, state = linear.tree, linear.state
     n = em.own_coordinates(tree)
     np.testing.assert_allclose(em.linearize(tree, guess).q, state.q[:n], atol=1e-9)
-    theirs = em.stages(System(tree), state.q[:n])
+    theirs = em.stages(tree, system(tree), state.q[:n])
 
     def near(name: str, ours: np.ndarray, other: np.ndarray, tolerance: float, size: float = 0.0) -> None:
         scale = max(float(np.abs(ours).max(initial=0.0)), size)
