@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from . import elements, inertia
 from . import spatial as sp
-from .elements import Measure
+from .elements import Law, Measure
 from .model import FULL, Model
 
 Array = NDArray[Any]
@@ -55,27 +55,23 @@ class Beams:
     """A batch of n elements.
 
     Attributes:
-        measure: of strain, see ``elements``.
-        rest: (n, 4, 4) rest pose of end b in the frame of end a.
+        law: how they measure strain.
         stiffness: (n, 6, 6) for that measure.
-        shortening: (n, 6, 6) G of the corotational measure.
         points: the inertia inside, as many points in each element (see ``alike``).
         preload: (n, 6) force conjugate to the strain, at zero strain.
         inner_preload: (n, 6) force conjugate to β, at β = 0.
-        eta: (n, 6) logarithm of ``rest``.
     """
 
-    measure: Measure
-    rest: Array
+    law: Law
     stiffness: Array
-    shortening: Array
     points: Points
     preload: Array
     inner_preload: Array
-    eta: Array = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "eta", sp.log(self.rest))
+    @property
+    def rest(self) -> Array:
+        """(n, 4, 4) rest pose of end b in the frame of end a."""
+        return self.law.rest
 
     @property
     def inner(self) -> int:
@@ -146,7 +142,9 @@ def place(beams: Beams, points: Points, eta: Array, back: Array, beta: Array) ->
     From η and β (n, 6), and ``back`` (n, 6, 6) = ``tangent_inverse(eta)``.
     """
     e = points.element
-    zeta = points.rest + (points.shape @ (eta - beams.eta)[e][..., None] + points.bubble @ beta[e][..., None])[..., 0]
+    zeta = (
+        points.rest + (points.shape @ (eta - beams.law.eta)[e][..., None] + points.bubble @ beta[e][..., None])[..., 0]
+    )
     return zeta, np.concatenate([points.shape @ back[e], points.bubble], axis=-1)
 
 
@@ -160,12 +158,12 @@ def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure
     if k.shape != (6, 6) or not np.allclose(k, k.T, rtol=1e-9, atol=1e-12 * np.abs(k).max()):
         raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
     load = np.zeros(6) if preload is None else np.asarray(preload, float)
-    return Beams(measure, rest[None], k[None], np.zeros((1, 6, 6)), NO_POINTS, load[None], np.zeros((1, 6)))
+    return Beams(elements.even(measure, rest[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
     """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, at rest."""
-    rate = elements.strain_rate(beams.measure, beams.rest, beams.shortening, beams.rest)
+    rate = elements.strain_rate(beams.law, beams.rest, np.zeros((len(rho), 6)))
     return (beams.stiffness @ rate @ rho[..., None])[..., 0]
 
 
@@ -201,22 +199,30 @@ def pencil(
         raise ValueError("axes: not given, but there are loads on the points in the rotating frame's axes")
     eta = sp.log(x)
     back = sp.tangent_inverse(eta)
-    r = elements.response(beams.measure, beams.rest, beams.shortening, x, eta, back)
+    r = elements.response(beams.law, x, eta, back, elements.inner(beams.law, beta))
     s = beams.preload + (beams.stiffness @ r.strain[..., None])[..., 0]
     turned = np.swapaxes(r.rate, -1, -2)
     w = (turned @ s[..., None])[..., 0]
     d = 12 + beams.inner
     none = np.zeros((len(x), d, d))
-    out = Pencil(np.concatenate([-w, w, np.zeros((len(x), d - 12))], axis=-1), none, none, none, none[:, :6, :6])
+    out = Pencil(np.concatenate([-w[:, :6], w[:, : d - 6]], axis=-1), none, none, none, none[:, :6, :6])
     inside = np.zeros_like(eta)
     if beams.inner:
         out, inside = _with_inertia(out, beams, eta, back, beta, frame, gravity, model, axes)
-    spring = out.spring + turned @ beams.stiffness @ r.rate
-    if not model.geometric:
-        return replace(out, spring=spring)
+    K = turned @ beams.stiffness @ r.rate
+    if model.geometric:
+        K = K + r.curvature(s, inside)
     rest = out.rest.copy()
-    rest[:, :12, :12] += on_ends(none[:, :6, :6], sp.cross(out.residual[:, 6:12]))  # −ρ ×* (wrench on b)
-    return replace(out, rest=rest, spring=spring + r.curvature(s, inside))
+    if beams.inner:  # what acts between the ends and β; between the ends alone stays a spring
+        K_beta = K[:, 6:].copy()
+        rest[:, 12:, 6:] += K_beta
+        rest[:, 12:, :6] -= K_beta[..., :6]
+        rest[:, 6:12, 12:] += K[:, :6, 6:]
+        rest[:, :6, 12:] -= K[:, :6, 6:]
+    if model.geometric:
+        none = np.zeros((len(x), 6, 6))
+        rest[:, :12, :12] += on_ends(none, sp.cross(out.residual[:, 6:12]))  # −ρ ×* (wrench on b)
+    return replace(out, rest=rest, spring=out.spring + K[:, :6, :6])
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:

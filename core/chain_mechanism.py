@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from .beams import Beams, Points
 from .discretize import Chain
+from .elements import part
 from .joints import Joint
 from .mechanism import GROUND, Beam, Body, Mechanism, Motion
 
@@ -42,10 +43,8 @@ def one(beams: Beams, k: int) -> Beams:
     none = np.zeros(int(mine.sum()), dtype=np.intp)
     at = slice(k, k + 1)
     return Beams(
-        measure=beams.measure,
-        rest=beams.rest[at],
+        law=part(beams.law, at),
         stiffness=beams.stiffness[at],
-        shortening=beams.shortening[at],
         points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
         preload=beams.preload[at],
         inner_preload=beams.inner_preload[at],

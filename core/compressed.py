@@ -17,6 +17,7 @@ from . import solve
 from . import spatial as sp
 from .beams import Beams, Points
 from .discretize import Chain
+from .elements import even
 from .model import FULL, Model
 from .modes import STATIONS, Modes
 from .segments import Segment
@@ -48,10 +49,8 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
         beams=Beams(
-            measure="corotational",
-            rest=rest,
+            law=even("corotational", rest),
             stiffness=bm.end_stiffness("corotational", rest, np.array([s.stiffness for s in segments])),
-            shortening=none,
             points=bm.riding(rest, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
             preload=np.zeros((n, 6)),
             inner_preload=np.zeros((n, 6)),

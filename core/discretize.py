@@ -11,7 +11,7 @@ from . import sections
 from . import spatial as sp
 from .beams import Beams, Points
 from .blade import Blade, clamped, mass_at
-from .elements import Measure
+from .elements import Law, Measure, even, joined
 from .inertia import moved
 from .modes import STATIONS
 
@@ -96,10 +96,8 @@ def discretize(
         nodes=nodes,
         lumps=lumps,
         beams=Beams(
-            measure=stiffness,
-            rest=rest,
+            law=Law(stiffness, rest, seg.shortening, seg.mean, seg.slope),
             stiffness=bm.end_stiffness(stiffness, rest, np.linalg.inv(seg.flexibility)),
-            shortening=seg.shortening,
             points=inside,
             preload=np.zeros((elements, 6)),
             inner_preload=np.zeros((elements, 6)),
@@ -129,9 +127,8 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
     spring = turn @ np.diag(np.where(holds, 0.0, blade.root)) @ turn.T
     beams = replace(
         b,
-        rest=before(np.eye(4)[None], b.rest),
+        law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
         stiffness=before(spring[None], b.stiffness),
-        shortening=before(none, b.shortening),
         points=inside,
         preload=before(none[:, 0], b.preload),
         inner_preload=before(none[:, 0], b.inner_preload),

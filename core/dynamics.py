@@ -177,7 +177,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     p = beam_pencil(batch.beams, x, beta, frame, fall)
     M, C, K = p.M, p.C, p.rest
     if batch.damping.any():
-        E = strain_rate(batch.beams.measure, batch.beams.rest, batch.beams.shortening, x)
+        E = strain_rate(batch.beams.law, x, beta)
         d = np.swapaxes(E, -1, -2) @ batch.damping @ E
         C = C.copy()
         C[:, :12, :12] += on_ends(d, d)

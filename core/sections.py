@@ -77,8 +77,10 @@ class Segments:
         break_element, break_shape: (m,), (m, 6, 6) the same at those.
         bubble, break_bubble: (q, 6, 6), (m, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit
             stiffness; a load that moves nothing has a zero column.
-        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫|y′|² of its displacement y across, than
-            the logarithmic strain δ of its ends tells.
+        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
+            across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
+            tells.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
     """
 
     element: Index
@@ -93,6 +95,8 @@ class Segments:
     bubble: Array
     break_bubble: Array
     shortening: Array
+    mean: Array
+    slope: Array
 
 
 def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segments:
@@ -107,7 +111,8 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     first = frames(blade, nodes[:-1])
     pose = sp.inverse(first)[element][:, None] @ frames(blade, s.ravel()).reshape(*s.shape, 4, 4)
     lever = sp.adjoint(pose)
-    turn = lever @ compliance(blade, s.ravel()).reshape(*s.shape, 6, 6) @ np.swapaxes(lever, -1, -2)
+    soft = compliance(blade, s.ravel()).reshape(*s.shape, 6, 6)
+    turn = lever @ soft @ np.swapaxes(lever, -1, -2)
     start = np.searchsorted(element, np.arange(len(nodes) - 1))
 
     def running(values: Array) -> tuple[Array, Array, Array]:
@@ -138,8 +143,12 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     part = (s - nodes[element][:, None])[..., None] / length
     along = part * last[element][:, None]
     helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
-    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear shortens nothing along its axis
-    bow = 0.5 * (_squared(static) - _squared(helicoid) + _squared(slip))
+    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear
+    local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
+    strain = local @ stiffness[element][:, None] @ ends_move
+    strain_within = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
+    bow = 0.5 * (_squared(static) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(slip))
+    uneven = 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, strain_within], axis=-1)
     return Segments(
         element=q,
         s=s.ravel(),
@@ -153,6 +162,8 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
         bubble=bubble @ unit[q],
         break_bubble=break_bubble @ unit[element],
         shortening=running(bow)[2],
+        mean=running(strain)[2],
+        slope=running(uneven)[2],
     )
 
 

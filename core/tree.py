@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from . import spatial as sp
 from .beams import Beams, Points
+from .elements import joined
 from .joints import SCREWS, Joint, coordinate_names
 from .mechanism import GROUND, Mechanism, MechanismError, check
 
@@ -186,7 +187,7 @@ def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> 
     rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
     alike: dict[tuple[str, int], list[int]] = {}
     for k, beam in enumerate(mechanism.beams):
-        alike.setdefault((beam.beams.measure, len(beam.beams.points.element)), []).append(k)
+        alike.setdefault((beam.beams.law.measure, len(beam.beams.points.element)), []).append(k)
     out = []
     for index in alike.values():
         some = [mechanism.beams[k] for k in index]
@@ -219,6 +220,7 @@ def _together(some: list[Beams]) -> Beams:
         shape=np.concatenate([p.shape for p in parts]),
         bubble=np.concatenate([p.bubble for p in parts]),
         mass=np.concatenate([p.mass for p in parts]),
+        force=np.concatenate([p.force for p in parts]),
     )
-    names = ("rest", "stiffness", "shortening", "preload", "inner_preload")
-    return Beams(some[0].measure, points=points, **{name: each(name) for name in names})
+    names = ("stiffness", "preload", "inner_preload")
+    return Beams(joined([b.law for b in some]), points=points, **{name: each(name) for name in names})

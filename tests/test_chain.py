@@ -35,7 +35,7 @@ def test_consistent_mass_reaches_the_exact_values() -> None:
     np.testing.assert_allclose(flapwise[:3], EXACT_FLAPWISE, rtol=2e-5)
 
 
-@pytest.mark.parametrize(("mass", "order", "levels"), [("half_end", 2, (20, 40, 80)), ("consistent", 4, (5, 10, 20))])
+@pytest.mark.parametrize(("mass", "order", "levels"), [("half_end", 2, (20, 40, 80)), ("consistent", 4, (20, 40, 80))])
 def test_observed_order_of_convergence(mass, order, levels) -> None:
     """log₂ of successive differences, the first two modes of the rotating cantilever in each plane."""
     blade = without_rotary_inertia(PARK)
@@ -43,15 +43,23 @@ def test_observed_order_of_convergence(mass, order, levels) -> None:
     np.testing.assert_allclose(np.log2(np.abs((f[0] - f[1]) / (f[1] - f[2]))), order, atol=0.15)
 
 
+@pytest.mark.parametrize("omega", [0.0, 1.5])
 @pytest.mark.parametrize("blade", [tapered(), curved()], ids=["tapered and twisted", "curved and coupled"])
-def test_fourth_order_or_better_for_every_kind_of_motion(blade) -> None:
-    """Bending, torsion, coupled: the first six modes at rest; differences between 10, 20 and 40 elements."""
-    f = np.array([modes(blade, 0.0, n, 6).frequencies for n in (10, 20, 40)])
-    assert (np.log2(np.abs((f[0] - f[1]) / (f[1] - f[2]))) > 3.6).all()
+def test_fourth_order_or_better_for_every_kind_of_motion(blade, omega) -> None:
+    """Bending, torsion, coupled, shear: six modes at rest and turning; changes from 10 to 20 and to 40 elements."""
+    f = np.array([modes(blade, omega, n, 6).frequencies for n in (10, 20, 40)])
+    change = np.abs(np.diff(f, axis=0)) / f[-1]
+    assert ((np.log2(change[0] / change[1]) > 3.5) | (change[1] < 1e-8)).all()
+
+
+def test_fourth_order_where_the_steady_strain_is_large() -> None:
+    """Slenderness 70, γ = 10: a steady stretch of 1 %. Elements that forget that they have grown are of second order."""
+    f = np.array([modes(yoo_shin(0.0), 10.0, n, 4).frequencies for n in (10, 20, 40)])
+    assert (np.log2(np.abs((f[0] - f[1]) / (f[1] - f[2]))) > 3.3).all()
 
 
 def test_exact_values_follow_the_fourth_order_too() -> None:
-    errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_CHORDWISE[:2] - 1) for n in (5, 10)]
+    errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_CHORDWISE[:2] - 1) for n in (10, 20)]
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
 
 
