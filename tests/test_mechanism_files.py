@@ -306,3 +306,33 @@ def test_a_mechanism_where_a_blade_is_wanted_and_the_reverse(capsys, tmp_path: P
 def test_cases_lists_mechanisms_and_codes_lists_what_solves_them(capsys) -> None:
     assert all(name in run(capsys, "cases")[1] for name in library.mechanisms())
     assert "exudyn-loops" in run(capsys, "codes")[1]
+
+
+def test_the_instant_is_the_one_asked_for(capsys, tmp_path: Path) -> None:
+    """A pendulum whose support shakes: ω² = (g + a)/l at that time, a = −A Ω² sin(Ω t)."""
+    text = """
+name = "shaken"
+gravity = [0.0, -9.81, 0.0]
+[bodies.support]
+[bodies.bob]
+mass = 2.0
+centre = [0.0, -0.5, 0.0]
+[joints.lift]
+kind = "prismatic"
+parent = "ground"
+child = "support"
+at_parent = { axis = "y" }
+at_child = { axis = "y" }
+[joints.pin]
+kind = "revolute"
+parent = "support"
+child = "bob"
+[motions]
+lift.z = { harmonics = [{ amplitude = 0.1, frequency = 6.0 }] }
+"""
+    for time in (0.0, 0.2, 0.7):
+        status, out, _ = run(capsys, "mechanism", str(write(tmp_path, text)), "--time", str(time), "--json")
+        (mode,) = json.loads(out)["modes"]
+        assert status == 0
+        expected = np.sqrt((9.81 - 0.1 * 36.0 * np.sin(6.0 * time)) / 0.5)
+        assert mode["frequency_rad_s"] == pytest.approx(expected, rel=1e-12)

@@ -157,6 +157,20 @@ class Wild:
 CODE = Wild()
 
 
+class Torso:
+    """Half a code."""
+
+    solve_mechanism = None
+
+
+TORSO = Torso()
+
+
+def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
+    with pytest.raises(codes.UnknownCodeError, match="lacks name, model, version, unsupported_mechanism"):
+        codes.code("southwell.tests.test_mechanism_matrix:TORSO")
+
+
 def test_a_code_that_raises_is_one_cells_outcome() -> None:
     m = library.mechanism("pitch-link").mechanism
     (answer,) = mechanism_worker.answers("southwell.tests.test_mechanism_matrix:CODE", [m], {}, 60.0)
