@@ -1,0 +1,281 @@
+"""ElastoDyn's blade file (FAST 7 to OpenFAST 4), and the hub that its main file describes.
+
+The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes turned by the
+structural twist. OpenFAST turns a positive twist, and pitch, with the leading edge upwind: about −x here. There is neither
+stretch nor torsion nor rotary inertia in the format: those strains are rigid, and the sections have no moments of inertia;
+FAST 7's further columns (GJStff, EAStff, FlpIner, EdgIner) are used where they are there. AdjBlMs, AdjFlSt and AdjEdSt
+multiply the table (on FlStTunr see ``_notes``). Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import (
+    AXIAL,
+    BEND_Y,
+    BEND_Z,
+    SHEAR_Y,
+    SHEAR_Z,
+    TORSION,
+    Blade,
+    BladeError,
+    section_mass,
+    section_stiffness,
+    straight,
+)
+from ..errors import CaseError
+from .source import OPENFAST_AXES, Mount, Reading, Source
+from .text import Text, fortran, fractions, keys, leading, load, table, tokens, value, whole, word
+
+Array = NDArray[np.float64]
+
+NAME = "ElastoDyn"
+COLUMNS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
+MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
+
+
+@dataclass(frozen=True)
+class Hub:
+    """What a main file says of the first blade: ``mount``, its tip mass in kg, and the blade file it names."""
+
+    mount: Mount
+    tip_mass: float
+    blade_file: Path
+
+
+def is_blade(text: Text) -> bool:
+    """Whether these are lines of a blade file."""
+    return "nblinpst" in keys(text)
+
+
+def is_main(text: Text) -> bool:
+    """Whether these are lines of a main file."""
+    named = keys(text)
+    return "tiprad" in named and "hubrad" in named
+
+
+def read(path: Path, mount: Mount | None = None, *, multiply: bool = True) -> Reading:
+    """The blade in an ElastoDyn blade file, or the first blade of a main file.
+
+    Args:
+        path: of either. A blade file's length is in the main file: ``mount.main``, or the one main file beside the
+            blade file that names it; or ``mount.length``.
+        mount: what stands in no file, or is to be different.
+        multiply: whether the file's AdjBlMs, AdjFlSt, AdjEdSt multiply the table.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    mount = mount or Mount()
+    text = load(path)
+    if is_main(text):
+        main, text = path, load(hub(text).blade_file)
+    else:
+        main = mount.main or (None if mount.length else beside(path, is_main, lambda t: hub(t).blade_file))
+    told = hub(load(main)) if main else None
+    return _blade(text, mount, told, main, multiply)
+
+
+def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
+    """The one main file in the folder of ``path`` that names ``path``; None if none does.
+
+    Raises:
+        CaseError: if several do.
+    """
+    found = []
+    for other in sorted(path.parent.glob("*")):
+        if other.suffix.lower() not in {".dat", ".inp", ".txt"} or not other.is_file() or other == path:
+            continue
+        text = load(other) if other.stat().st_size else None
+        if text and kind(text) and named(text).resolve() == path.resolve():
+            found.append(other)
+    if len(found) > 1:
+        names = ", ".join(f.name for f in found)
+        raise CaseError(f"{path}: {len(found)} main files beside it name it ({names}): say which by --main")
+    return found[0] if found else None
+
+
+def hub(text: Text) -> Hub:
+    """The hub of a main file; OpenFAST's coning is positive downwind, as ours, its pitch the other way round.
+
+    Raises:
+        CaseError: if a value is missing or none.
+    """
+    named = keys(text)
+    tip, root = value(text, named, "TipRad"), value(text, named, "HubRad")
+    if tip <= root:
+        raise CaseError(
+            f"{text.path}: TipRad {tip:g} is not beyond HubRad {root:g}: no blade between them; correct one"
+        )
+    mount = Mount(
+        length=tip - root,
+        hub_radius=root,
+        precone=np.radians(value(text, named, "PreCone1", "PreCone")),
+        pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")) if "blpitch1" in named else None,
+    )
+    mass = value(text, named, "TipMass1", "TipMass") if {"tipmass1", "tipmass"} & set(named) else 0.0
+    return Hub(mount, mass, text.path.parent / word(text, named, "BldFile1", "BldFile").replace("\\", "/"))
+
+
+def settle(mount: Mount, told: Mount | None) -> Mount:
+    """``mount`` with what it leaves open from ``told``."""
+    other = told or Mount()
+    pick = {
+        name: getattr(mount, name) if getattr(mount, name) is not None else getattr(other, name)
+        for name in ("main", "length", "hub_radius", "precone", "pitch")
+    }
+    return Mount(**pick)
+
+
+def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None, multiply: bool) -> Reading:
+    named = keys(text)
+    count = whole(text, named, "NBlInpSt")
+    factors = {name: value(text, named, name) for name in MULTIPLIERS}
+    for name, factor in factors.items():
+        if factor <= 0:
+            raise CaseError(
+                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: it multiplies; give a positive number"
+            )
+    first = max(k for k, _ in (named[name.lower()] for name in MULTIPLIERS)) + 1
+    heads = [k for k in range(first, len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "blfract"]
+    first = heads[0] + 1 if heads else first
+    columns = _columns(tokens(text.lines[heads[0]])) if heads else COLUMNS
+    missing = [name for name in NEEDED if name not in columns]
+    if missing:
+        raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(NEEDED)}; add it")
+    start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
+    found = table(text, start, count, columns)
+    found.positive(*[name for name in POSITIVE if name in columns])
+    eta = fractions(found, "BlFract")
+    settled = settle(mount, told.mount if told else None)
+    if settled.length is None:
+        raise CaseError(
+            f"{text.path}: length: stations are fractions of it, and the main file that says it is not here: "
+            "give --main FILE, or --length and --hub-radius"
+        )
+    by_mass, by_flap, by_edge = (factors[name] if multiply else 1.0 for name in MULTIPLIERS)
+    flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
+    tip = np.diag([told.tip_mass] * 3 + [0.0] * 3) if told else np.zeros((6, 6))
+    try:
+        blade = Blade(
+            name=text.path.stem,
+            stations=eta * settled.length,
+            stiffness=section_stiffness(
+                found.columns.get("EAStff", np.full(count, np.inf)),
+                found.columns.get("GJStff", np.full(count, np.inf)),
+                by_flap * found["FlpStff"],
+                by_edge * found["EdgStff"],
+            ),
+            mass=section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia),
+            twist=-np.radians(found["StrcTwst"]),
+            hub_radius=settled.hub_radius or 0.0,
+            precone=settled.precone or 0.0,
+            pitch=settled.pitch or 0.0,
+            tip_mass=tip,
+        )
+    except BladeError as error:
+        raise CaseError(f"{text.path}: {error}") from error
+    files = (text.path,) if main is None else (text.path, main)
+    axes = f"{OPENFAST_AXES}; all centres on the pitch axis"
+    return Reading(blade, Source(NAME, files, axes, _notes(text, named, factors, multiply, main, settled, columns)))
+
+
+def _columns(names: list[str]) -> tuple[str, ...]:
+    known = {name.lower(): name for name in (*COLUMNS, *POSITIVE, "FlpIner", "EdgIner")}
+    return tuple(known.get(name.lower(), name) for name in names)
+
+
+def _notes(
+    text: Text,
+    named: dict[str, tuple[int, str]],
+    factors: dict[str, float],
+    multiply: bool,
+    main: Path | None,
+    settled: Mount,
+    columns: tuple[str, ...],
+) -> tuple[str, ...]:
+    said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
+    out = [f"{said}: {'multiply the table' if multiply else 'not applied'}"]
+    if any(name in named and value(text, named, name) != 1 for name in ("flsttunr1", "flsttunr2")):
+        out.append("FlStTunr multiply ElastoDyn's modal stiffness, which sections do not have: not applied")
+    rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]
+    if rigid:
+        out.append(f"the format has no {' and no '.join(rigid)}: rigid; shear is rigid")
+    if "FlpIner" not in columns:
+        out.append("the format has no sectional moments of inertia: none")
+    if main is None:
+        given = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+        out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))
+    return tuple(out)
+
+
+def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
+    """Write the blade file, and return what the main file must say for it to be read again.
+
+    Args:
+        blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia: what the format can hold.
+        path: of the file.
+        shapes: (3, 5) coefficients of x² … x⁶ for flap 1, flap 2, edge 1; without, x² stands for all, which is no mode.
+
+    Raises:
+        CaseError: naming what the format cannot hold.
+    """
+    diagonal = np.diagonal(blade.stiffness, axis1=1, axis2=2)
+    off = ~np.eye(6, dtype=bool)
+    lacks = {
+        "finite stiffness in stretch, shear or torsion": not np.isinf(
+            diagonal[:, [AXIAL, SHEAR_Y, SHEAR_Z, TORSION]]
+        ).all(),
+        "coupled sections": bool(blade.stiffness[:, off].any() or blade.mass[:, off].any()),
+        "sectional moments of inertia": bool(blade.mass[:, 3:, 3:].any()),
+        "a curved reference axis": not straight(blade),
+        "a root that is not clamped": not np.isinf(blade.root).all(),
+        "a tip mass (the main file has it)": bool(blade.tip_mass.any()),
+    }
+    for what, here in lacks.items():
+        if here:
+            raise CaseError(f"{path}: ElastoDyn cannot hold {what}: write TOML or BeamDyn, or take it out first")
+    rows = np.column_stack(
+        [
+            blade.stations / blade.length,
+            np.zeros(len(blade.stations)),
+            -np.degrees(blade.twist),
+            blade.mass[:, 0, 0],
+            diagonal[:, BEND_Y],
+            diagonal[:, BEND_Z],
+        ]
+    )
+    columns = [*COLUMNS]
+    units = ["(-)", "(-)", "(deg)", "(kg/m)", "(Nm^2)", "(Nm^2)"]
+    polynomials = np.tile([1.0, 0, 0, 0, 0], (3, 1)) if shapes is None else np.asarray(shapes, float)
+    what = "x^2, not a mode: replace" if shapes is None else "mode shape"
+    lines = [
+        "------- ELASTODYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
+        f"{blade.name}: {blade.length!r} m long",
+        "---------------------- BLADE PARAMETERS ----------------------------------------",
+        f"{len(rows)}  NBlInpSt - Number of blade input stations (-)",
+        *(f"0.0  {name} - Structural damping in percent of critical (%)" for name in _DAMPING),
+        "---------------------- BLADE ADJUSTMENT FACTORS --------------------------------",
+        *(f"1.0  {name} - Multiplier (-)" for name in ("FlStTunr(1)", "FlStTunr(2)", *MULTIPLIERS)),
+        "---------------------- DISTRIBUTED BLADE PROPERTIES ----------------------------",
+        "  ".join(f"{name:>23}" for name in columns),
+        "  ".join(f"{name:>23}" for name in units),
+        *("  ".join(f"{fortran(x):>23}" for x in row) for row in rows),
+        "---------------------- BLADE MODE SHAPES ---------------------------------------",
+        *(
+            f"{x!r}  {name}({power}) - {what}, coefficient of x^{power}"
+            for name, row in zip(("BldFl1Sh", "BldFl2Sh", "BldEdgSh"), polynomials.tolist(), strict=True)
+            for power, x in enumerate(row, 2)
+        ),
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return Mount(length=blade.length, hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
+
+
+_DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")

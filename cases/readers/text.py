@@ -1,0 +1,239 @@
+"""Text files of numbers with words beside them: lines, values by name, tables; every fault names file and line.
+
+Tabs, CRLF, commas between numbers, Fortran's ``1.0D+03`` and comments behind the numbers are all read.
+"""
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CaseError, nearest
+
+Array = NDArray[np.float64]
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
+_NO_NUMBER = re.compile(r"[+-]?(nan|inf(inity)?)(\(\w*\))?", re.IGNORECASE)
+_KEYED = re.compile(r"""\s*("[^"]*"|'[^']*'|[^\s,]+)[\s,]+([A-Za-z]\w*)(?:\((\d+)\))?""")
+
+
+@dataclass(frozen=True)
+class Text:
+    """A file's lines; ``lines[k]`` is line k + 1."""
+
+    path: Path
+    lines: tuple[str, ...]
+
+    def at(self, k: int) -> str:
+        """Where line ``k`` (from 0) is, for a message."""
+        return f"{self.path}: line {min(k, len(self.lines) - 1) + 1}"
+
+    def blank(self, k: int) -> bool:
+        """Whether nothing is on line ``k``."""
+        return not self.lines[k].strip()
+
+
+def load(path: Path) -> Text:
+    """The lines of a file.
+
+    Raises:
+        CaseError: if it cannot be read, is no text, or empty.
+    """
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file: correct the path") from None
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+    if b"\0" in raw:
+        raise CaseError(f"{path}: not a text file: give the blade's input file")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:  # names in older files are in Latin-1, in which every byte is a character
+        text = raw.decode("latin-1")
+    if not text.strip():
+        raise CaseError(f"{path}: empty: was it written to the end?")
+    return Text(path, tuple(text.splitlines()))
+
+
+def number(token: str) -> float | None:
+    """A token as a number, NaN and infinities included; None if it is none."""
+    if _NUMBER.fullmatch(token):
+        return float(token.lower().replace("d", "e"))
+    return math.nan if _NO_NUMBER.fullmatch(token) else None
+
+
+def tokens(line: str) -> list[str]:
+    """What stands between blanks, tabs and commas."""
+    return line.replace(",", " ").split()
+
+
+def leading(line: str) -> list[float]:
+    """The numbers a line begins with."""
+    out: list[float] = []
+    for token in tokens(line):
+        value = number(token)
+        if value is None:
+            break
+        out.append(value)
+    return out
+
+
+def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
+    """The numbers on line ``k``, one a column; words may follow them.
+
+    Raises:
+        CaseError: if there are fewer or more, or one is not finite.
+    """
+    if k >= len(text.lines):
+        raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: truncated? give it whole")
+    found = leading(text.lines[k])
+    if len(found) != len(columns):
+        rest = tokens(text.lines[k])[len(found) :]
+        cause = (
+            f"{rest[0]!r} is not a number" if rest and len(found) < len(columns) else "a column missing or too many?"
+        )
+        raise CaseError(
+            f"{text.at(k)}: {len(found)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
+            f"{', …' if len(columns) > 6 else ''}): {cause} correct the line"
+        )
+    for name, value in zip(columns, found, strict=True):
+        if not math.isfinite(value):
+            raise CaseError(f"{text.at(k)}: {name}: {value}: not a finite number; a gap in the data? give a value")
+    return found
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of numbers by column, and the line each row is on."""
+
+    text: Text
+    columns: dict[str, Array]
+    lines: tuple[int, ...]
+
+    def __getitem__(self, name: str) -> Array:
+        return self.columns[name]
+
+    def need(self, condition: Array, name: str, value: Array, remedy: str) -> None:
+        """Refuse the first row at which ``condition`` is false.
+
+        Raises:
+            CaseError: with its line and value.
+        """
+        if not condition.all():
+            k = int(np.argmin(condition))
+            raise CaseError(f"{self.text.at(self.lines[k])}: {name}: {value[k]:g}: {remedy}")
+
+    def positive(self, *names: str, zero: bool = False) -> None:
+        """Refuse negative values in columns (and zero ones, unless allowed).
+
+        Raises:
+            CaseError: naming the first.
+        """
+        for name in names:
+            good = self[name] >= 0 if zero else self[name] > 0
+            self.need(good, name, self[name], "it must be positive; wrong sign or column? correct it")
+
+
+def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
+    """``count`` rows from line ``first``, blank lines between them skipped.
+
+    Raises:
+        CaseError: as ``row``; and if the table ends early or goes on.
+    """
+    rows, lines, k = [], [], first
+    while len(rows) < count:
+        while k < len(text.lines) and text.blank(k):
+            k += 1
+        if k >= len(text.lines) or not leading(text.lines[k]):
+            raise CaseError(
+                f"{text.at(k)}: the table ends after {len(rows)} of {count} rows: truncated? give all, or correct the count"
+            )
+        rows.append(row(text, k, columns))
+        lines.append(k)
+        k += 1
+    if k < len(text.lines) and len(leading(text.lines[k])) == len(columns) > 1:
+        raise CaseError(f"{text.at(k)}: another row after the {count} announced: correct the count or remove rows")
+    values = np.array(rows).reshape(count, len(columns))
+    return Table(text, dict(zip(columns, values.T, strict=True)), tuple(lines))
+
+
+def fractions(found: Table, name: str) -> Array:
+    """The stations as fractions of the length: from 0 to 1, strictly rising.
+
+    Raises:
+        CaseError: naming the line of the first that is not so.
+    """
+    eta = found[name]
+    if len(eta) < 2:
+        raise CaseError(f"{found.text.at(found.lines[0])}: {len(eta)} station: a blade needs at least a root and a tip")
+    ends = np.ones(len(eta), bool)
+    ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
+    found.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
+    rises = np.concatenate([[True], np.diff(eta) > 0])
+    found.need(rises, name, eta, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
+    return eta
+
+
+def keys(text: Text) -> dict[str, tuple[int, str]]:
+    """Values by name where a line reads ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``."""
+    out: dict[str, tuple[int, str]] = {}
+    for k, line in enumerate(text.lines):
+        found = _KEYED.match(line)
+        if found:
+            out.setdefault(found[2].lower() + (found[3] or ""), (k, found[1].strip("\"'")))
+    return out
+
+
+def value(text: Text, named: dict[str, tuple[int, str]], *names: str) -> float:
+    """The number called by the first of ``names`` that is there.
+
+    Raises:
+        CaseError: if none is, or it is not a finite number.
+    """
+    k, token = named[_name(text, named, names)]
+    out = number(token)
+    if out is None or not math.isfinite(out):
+        raise CaseError(f"{text.at(k)}: {names[0]}: {token!r} is not a finite number: correct it")
+    return out
+
+
+def whole(text: Text, named: dict[str, tuple[int, str]], name: str) -> int:
+    """The count called ``name``, at least 1.
+
+    Raises:
+        CaseError: as ``value``, and if it is not whole.
+    """
+    out = value(text, named, name)
+    if out != int(out) or out < 1:
+        raise CaseError(f"{text.at(named[name.lower()][0])}: {name}: {out:g}: it is a count; give a whole number")
+    return int(out)
+
+
+def word(text: Text, named: dict[str, tuple[int, str]], *names: str) -> str:
+    """The word called by the first of ``names`` that is there, without quotes.
+
+    Raises:
+        CaseError: if none is.
+    """
+    return named[_name(text, named, names)][1]
+
+
+def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -> str:
+    names = tuple(names)
+    for name in names:
+        if name.lower() in named:
+            return name.lower()
+    raise CaseError(
+        f"{text.path}: {names[0]}: not there: each value stands before its name (`1.0 {names[0]} - …`): "
+        f"{nearest(names[0].lower(), named) if len(named) < 60 else 'were the comments removed?'} add it"
+    )
+
+
+def fortran(x: float) -> str:
+    """A number with all its digits."""
+    return f"{x:.17E}"
