@@ -1,6 +1,7 @@
 """Mode shapes: ElastoDyn's polynomials against closed forms, their conventions, figures and CSV."""
 
 import csv
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +13,10 @@ from matplotlib.text import Text
 
 from southwell.cases import library
 from southwell.cases.campbell import Campbell, Wanted, campbell
-from southwell.cases.elastodyn_shapes import DIGITS, POWERS, as_it_is, fit, polynomials, principal
+from southwell.cases.elastodyn_shapes import DIGITS, POWERS, Polynomial, as_it_is, fit, polynomials, principal
 from southwell.cases.errors import CaseError
+from southwell.cases.readers import elastodyn
+from southwell.cases.readers.source import Mount
 from southwell.core import spatial as sp
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS
@@ -181,3 +184,42 @@ def test_the_papers_blade_has_shapes_for_elastodyn() -> None:
     found = polynomials(blade, 1.0, 20)
     assert [p.mode for p in found] == ["flap 1", "flap 2", "edge 1"]
     assert all(p.largest < 0.01 for p in found)
+
+
+BLADES = os.environ.get("SOUTHWELL_BLADES")
+real = pytest.mark.skipif(not BLADES, reason="set SOUTHWELL_BLADES to a folder of public blade files")
+
+PUBLISHED = {
+    "flap 1": (0.0622, 1.7254, -3.2452, 4.7131, -2.2555),
+    "flap 2": (-0.5809, 1.2067, -15.5349, 29.7347, -13.8255),
+    "edge 1": (0.3627, 2.5337, -3.5772, 2.376, -0.6952),
+}
+"""NREL 5-MW, in its ElastoDyn blade file (Jonkman et al., NREL/TP-500-38060, 2009); as printed, to 4 decimals."""
+
+
+@real
+def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without_twist() -> None:
+    file = Path(str(BLADES)) / "nrel5mw" / "NRELOffshrBsline5MW_Blade.dat"
+    blade = elastodyn.read(file, Mount(length=61.5, hub_radius=1.5)).blade
+    omega, x = 12.1 * np.pi / 30, np.linspace(0.0, 1.0, 51)
+
+    def off(found: tuple[Polynomial, ...]) -> dict[str, float]:
+        return {p.mode: np.abs(p.at(x) - np.power.outer(x, POWERS) @ PUBLISHED[p.mode]).max() for p in found}
+
+    plain, twisted = off(polynomials(blade, omega)), off(as_it_is(blade, modes(blade, omega, 50, 8)))
+    for name, within in (("flap 1", 5e-3), ("flap 2", 2e-2), ("edge 1", 2e-3)):
+        assert plain[name] < within
+        assert plain[name] < twisted[name]
+
+
+@real
+def test_flap_and_edge_of_the_iea_15mw_blade_veer_near_0_8_hz() -> None:
+    file = Path(str(BLADES)) / "iea15" / "IEA-15-240-RWT_ElastoDyn_blade.dat"
+    blade = elastodyn.read(file, Mount(length=117.0, hub_radius=3.97)).blade
+    drawn = campbell(blade, Wanted(tuple(np.arange(0.0, 45.1, 2.5) * np.pi / 30), modes=3, elements=30))
+    (met,) = drawn.encounters
+    assert met.kind == "veering"
+    assert met.frequency / (2 * np.pi) == pytest.approx(0.8, abs=0.03)
+    assert met.exchanged > 0.8
+    assert [drawn.label(t) for t in (0, 1)] == ["flap 1 → edge 1", "edge 1 → flap 1"]
+    assert not drawn.tracks.doubts
