@@ -84,3 +84,20 @@ def fault(matrix: Array) -> str | None:
     if least <= 0:
         return f"not positive definite (least scaled eigenvalue {least:.2g}): a coupling too large? check the entries"
     return None
+
+
+def mass_fault(matrix: Array) -> str | None:
+    """What is wrong with a section's mass (6, 6): as ``fault``, but moments of inertia may be zero."""
+    d = np.diag(matrix)
+    bad = np.where(np.arange(6) < 3, d <= 0, d < 0)
+    if bad.any():
+        i = int(np.argmax(bad))
+        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
+    scale = np.sqrt(np.outer(d, d)) + 1e-9 * d[0]
+    i, j = np.unravel_index((np.abs(matrix - matrix.T) / scale).argmax(), (6, 6))
+    if abs(matrix[i, j] - matrix[j, i]) > 1e-3 * scale[i, j]:
+        return (
+            f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
+            "it must be symmetric; a sign or digit lost? correct one"
+        )
+    return None
