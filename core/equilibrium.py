@@ -17,6 +17,7 @@ from .tree import Tree
 Array = NDArray[Any]
 
 _STEPS = 100
+_SMALL, _SHORTEST = 1e-2, 1e-3
 
 
 @dataclass(frozen=True)
@@ -80,15 +81,43 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
         change = float(np.abs(step).max(initial=0.0))
         if not np.isfinite(change):
             break
-        q = q.copy()
-        q[free] += step * min(1.0, 0.5 / max(change, 0.5))
-        lam = lam + more.reshape(-1, 6)
+        q, lam = _moved(tree, q, lam, free, step, more, (K, J))
         if change < 1e-11 or (change < 1e-8 and change > 0.3 * before):
             return _checked(tree, _state(tree, q, lam), free)
         before = change
     raise MechanismError(
         "no steady state was found near the guess: give a better one, or check for a missing spring or joint"
     )
+
+
+def _moved(
+    tree: Tree,
+    q: Array,
+    lam: Array,
+    free: NDArray[np.intp],
+    step: Array,
+    more: Array,
+    linear: tuple[Array, Array],
+) -> tuple[Array, Array]:
+    """Newton's step, shortened where it is large until the next one, by the same matrices, would be shorter.
+
+    This natural monotonicity test needs no scale for forces and moments (P. Deuflhard, *Newton Methods for Nonlinear
+    Problems*, 2004, sec. 3.3).
+    """
+    size = float(np.abs(step).max(initial=0.0))
+    part = min(1.0, 0.5 / max(size, 0.5))
+    length = float(np.linalg.norm(step))
+    while True:
+        there, forces = q.copy(), lam + part * more.reshape(-1, 6)
+        there[free] += part * step
+        if size < _SMALL or part < _SHORTEST:
+            return there, forces
+        state = _state(tree, there, forces)
+        tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, there, state.v)[free]
+        following = _constrained_step(*linear, tau, partition.misfit(tree, state.kinematics.poses))[0]
+        if np.linalg.norm(following) <= (1.0 - 0.25 * part) * length:
+            return there, forces
+        part *= 0.5
 
 
 def _constrained_step(K: Array, J: Array, tau: Array, gap: Array) -> tuple[Array, Array]:
