@@ -128,7 +128,7 @@ def settle(mount: Mount, told: Mount | None) -> Mount:
     other = told or Mount()
     pick = {
         name: getattr(mount, name) if getattr(mount, name) is not None else getattr(other, name)
-        for name in ("main", "length", "hub_radius", "precone", "pitch")
+        for name in ("main", "length", "hub_radius", "precone", "pitch", "subset")
     }
     return Mount(**pick)
 

@@ -41,6 +41,7 @@ class Mount:
         hub_radius: from the rotor's axis to the root, m.
         precone: rad, towards +z (downwind).
         pitch: rad, in the sense of our twist (y towards z: the leading edge downwind).
+        subset: set and subset of a HAWC2 structural file that has several.
     """
 
     main: Path | None = None
@@ -48,6 +49,7 @@ class Mount:
     hub_radius: float | None = None
     precone: float | None = None
     pitch: float | None = None
+    subset: tuple[int, int] | None = None
 
 
 OPENFAST_AXES = (
