@@ -1,5 +1,6 @@
 """BeamDyn's reference curve: natural cubic splines through key points, arc length, and the sections' orientation."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +34,7 @@ def line(length: float) -> Axis:
 
 def measured(spline: CubicSpline, z: Array) -> Axis:
     bare = Axis(spline, z, np.zeros(len(z)))
-    lengths = [_piece(bare.spline, a, b) for a, b in zip(z[:-1], z[1:], strict=True)]
+    lengths = [_piece(bare.spline, a, b) for a, b in itertools.pairwise(z)]
     return bare._replace(arc=np.concatenate([[0.0], np.cumsum(lengths)]))
 
 

@@ -74,14 +74,18 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     assert text is not None
     found = _subset(text, wanted)
     r = found["r"]
-    found.need(np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0")
+    found.need(
+        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
+    )
     rises = np.concatenate([[True], np.diff(r) > 0])
     found.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     if htc is not None and body is not None:
         stations, curve, twist = _half_chords(htc, body, r)
-        notes.append("sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way")
+        notes.append(
+            "sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way"
+        )
     else:
         notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")
     settled = settle(mount, None)
@@ -113,7 +117,9 @@ def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:
             heads[current, int(found[1])] = (k, int(found[2]))
     if wanted is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
-        raise CaseError(f"{text.path}: {len(heads)} sets: subsets {names}: say which by --subset, or give the htc by --main")
+        raise CaseError(
+            f"{text.path}: {len(heads)} sets: subsets {names}: say which by --subset, or give the htc by --main"
+        )
     wanted = wanted or next(iter(heads))
     if wanted not in heads:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
