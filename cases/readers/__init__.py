@@ -1,7 +1,7 @@
 """Blades from the files they come in: the format is known by what the file says, the axes are converted at the door.
 
 ``reading(path)`` gives the blade with its source, ``read(path)`` the blade alone; a format's own module has its own
-``read``, and ``own.write``, ``elastodyn.write``, ``beamdyn_write.write`` write files that are read as the same blade.
+``read``, and ``own.write``, ``elastodyn_write.write``, ``beamdyn_write.write`` write files that are read as the same blade.
 """
 
 from collections.abc import Callable

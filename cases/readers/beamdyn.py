@@ -1,11 +1,11 @@
 """BeamDyn's main file (key points: prebend, sweep, twist) and its blade file (6×6 matrices at stations), old and new.
 
 BeamDyn's axes are x downwind, y to the trailing edge, z along the blade; matrices are about the reference curve, order
-(Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a
-y-component, both then turned by the twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in
-ElastoDyn); ours swing from the blade's axes by the shortest way, half the product of prebend's and sweep's slopes away. Positions and twist between key points are natural cubic
-splines in z (BeamDyn, ``ComputeSplineCoef``); stations are fractions of the curve's arc length. Source: Q. Wang, J. Jonkman, M. Sprague, B. Jonkman, *BeamDyn
-User's Guide and Theory Manual*, NREL, 2016.
+(Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a y-component, both then turned by the
+twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in ElastoDyn). Ours swing from the
+blade's axes by the shortest way, half the product of prebend's and sweep's slopes away. Positions and twist between key
+points are natural cubic splines in z; stations are fractions of the curve's arc length. Source: Q. Wang, J. Jonkman,
+M. Sprague, B. Jonkman, *BeamDyn User's Guide and Theory Manual*, NREL, 2016.
 """
 
 from dataclasses import replace

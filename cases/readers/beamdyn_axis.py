@@ -28,11 +28,13 @@ class Axis(NamedTuple):
 
 
 def line(length: float) -> Axis:
+    """A straight, untwisted axis."""
     z = np.array([0.0, length])
     return measured(CubicSpline(z, np.zeros((2, 3)), bc_type="natural"), z)
 
 
 def measured(spline: CubicSpline, z: Array) -> Axis:
+    """The axis of splines through key points at ``z``, its arc length by Gauss quadrature."""
     bare = Axis(spline, z, np.zeros(len(z)))
     lengths = [_piece(bare.spline, a, b) for a, b in itertools.pairwise(z)]
     return bare._replace(arc=np.concatenate([[0.0], np.cumsum(lengths)]))

@@ -132,8 +132,8 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
 
     file: Annotated[str, Meta(description="path from the case file's folder")]
     main: Annotated[str | None, Meta(description="main file that says how it is mounted")] = None
-    length: Annotated[float | None, Meta(gt=0, description="m, where no file says it")] = None
-    hub_radius: Annotated[float | None, Meta(ge=0, description="m, where no file says it")] = None
+    length: Annotated[float, Meta(gt=0, description="m, where no file says it")] | None = None
+    hub_radius: Annotated[float, Meta(ge=0, description="m, where no file says it")] | None = None
     subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
 
     def blade(self, name: str, folder: Path) -> Blade:
