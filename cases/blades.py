@@ -4,13 +4,24 @@ Every kind is straight, without offsets: shear is rigid (Euler–Bernoulli), the
 """
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, ClassVar
 
 import numpy as np
 from msgspec import Meta, Struct
 
-from ..core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
+from ..core import spatial as sp
+from ..core.blade import (
+    Blade,
+    BladeError,
+    mass_at,
+    section_mass,
+    section_stiffness,
+    stiffness_at,
+    twist_at,
+    uniform_blade,
+)
 from .errors import CaseError, nearest
 
 POISSON = 0.3
@@ -82,7 +93,14 @@ class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
     length: Annotated[float, _positive("from root to tip, m")]
     hub_radius: Annotated[float, Meta(ge=0, description="from the rotor's axis to the root, m")] = 0.0
     bending_factor: Annotated[float, _positive("multiplies both bending stiffnesses of the table, dimensionless")] = 1.0
+    mass_factor: Annotated[float, _positive("multiplies masses and moments of inertia of the table, dimensionless")] = (
+        1.0
+    )
     twisted: Annotated[bool, Meta(description="whether the table's twist is used")] = True
+    centred: Annotated[bool, Meta(description="leave out the offset of the mass centres")] = False
+    pieces: Annotated[
+        tuple[float, ...], Meta(description="ends, in fractions of length, of pieces that are as their middle is")
+    ] = ()
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
         "fraction [-]",
@@ -93,7 +111,7 @@ class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
         "GJ [N m^2]",
         "EA [N]",
     )
-    OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]")
+    OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, its table read from ``folder``.
@@ -108,18 +126,51 @@ class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
             raise CaseError(
                 f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
             )
-        I_flap, I_edge = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL)
+        I_flap, I_edge, ahead = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL)
+        sections = offset(section_mass(mass, I_flap, I_edge), ahead * (not self.centred))
         try:
-            return Blade(
+            blade = Blade(
                 name=name,
                 stations=fraction * self.length,
                 stiffness=section_stiffness(axial, torsion, self.bending_factor * flap, self.bending_factor * edge),
-                mass=section_mass(mass, I_flap, I_edge),
+                mass=self.mass_factor * sections,
                 twist=np.radians(twist) * self.twisted,
                 hub_radius=self.hub_radius,
             )
+            return stepped(blade, np.array(self.pieces)) if self.pieces else blade
         except BladeError as error:
             raise CaseError(f"{path}: {error}") from error
+
+
+STEP = 1e-7
+"""Width of the change between two pieces, of the length."""
+
+
+def stepped(blade: Blade, ends: np.ndarray) -> Blade:
+    """The blade with the properties of each piece's middle all along the piece; ``ends`` in fractions of its length.
+
+    Raises:
+        BladeError: ends that do not ascend from 0 to 1.
+    """
+    if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or (np.diff(ends) <= STEP).any():
+        raise BladeError(f"pieces: {ends.tolist()}: ends of pieces ascend from 0 to 1; correct them")
+    middle = 0.5 * (ends[1:] + ends[:-1]) * blade.length
+    inside = np.concatenate([ends[:1], np.repeat(ends[1:-1], 2) + np.tile([-STEP, 0.0], len(ends) - 2), ends[-1:]])
+    piece = np.repeat(np.arange(len(middle)), 2)
+    return replace(
+        blade,
+        stations=inside * blade.length,
+        stiffness=stiffness_at(blade, middle)[piece],
+        mass=mass_at(blade, middle)[piece],
+        twist=twist_at(blade, middle)[piece],
+        curve=np.zeros((0, 3)),
+    )
+
+
+def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """Section masses (n, 6, 6) given about their centres, about an axis that lies ``ahead`` (n,) m behind those, along y."""
+    from_axis = sp.adjoint(sp.pose(np.eye(3), np.multiply.outer(-ahead, [0.0, 1.0, 0.0])))
+    return np.swapaxes(from_axis, -1, -2) @ mass @ from_axis
 
 
 BladeData = Beam | Dimensionless | Stations

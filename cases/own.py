@@ -23,8 +23,11 @@ from .study import Refining, Settled, Wanted, settle, solve
 SURE = 5e-5
 """Core is refined until its own uncertainty, relative, is no more than this: a quarter of what a code is allowed."""
 
-START, CAP = 15, 960
-"""Core's coarsest and finest reference discretisation, in elements."""
+START, MOST, CAP = 15, 100, 960
+"""Core's coarsest reference discretisation, the most it begins with for a table of many stations, and the finest; elements."""
+
+JUMP = 1e-4
+"""Length of an interval, of the blade's, in which properties jump rather than vary."""
 
 MARGIN = 4
 """Modes solved beyond the highest one wanted, so that each has a chance of its partner."""
@@ -65,9 +68,13 @@ def answers(
 
 
 def refining(blade: Blade) -> Refining:
-    """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations."""
-    shortest = float(np.diff(blade.stations).min()) / blade.length
-    start = max(START, math.ceil(1.0 / shortest - 1e-9))
+    """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations.
+
+    Not those that make a step of a table whose properties jump: elements integrate across them.
+    """
+    intervals = np.diff(blade.stations) / blade.length
+    shortest = float(intervals[intervals > JUMP].min(initial=1.0))
+    start = min(max(START, math.ceil(1.0 / shortest - 1e-9)), MOST)
     return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
 
 

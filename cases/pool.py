@@ -7,6 +7,7 @@ import os
 import signal
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import suppress
 from multiprocessing import active_children, get_context, parent_process
 from threading import Thread, main_thread
 from types import FrameType
@@ -36,7 +37,8 @@ class Pool(ProcessPoolExecutor):
         """Interrupt every process and drop what is pending; returns when all are gone."""
         for child in active_children():
             if child.pid is not None:
-                os.kill(child.pid, signal.SIGINT)
+                with suppress(ProcessLookupError):  # it has just gone
+                    os.kill(child.pid, signal.SIGINT)
         self.shutdown(wait=True, cancel_futures=True)
 
 

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .reference import Reference
 from .results import Cell, Level
 from .schema import Discretisation
 from .uncertainty import from_print
+from .verdict import percent
 
 
 @dataclass(frozen=True)
@@ -26,16 +27,18 @@ class Printed:
     Attributes:
         name: the table's and the series', ``park2010/present``.
         series: the numbers.
-        unit: what the series' speeds and frequencies are multiplied by to be rad/s.
+        unit: what the series' frequencies are multiplied by to be rad/s.
+        speed: what its speeds are multiplied by.
     """
 
     name: str
     series: Series
     unit: float
+    speed: float
 
     def at(self, omega: float, families: Sequence[str]) -> list[Datum | None]:
         """The number for each of a reference's modes, by family and ordinal within it, at rotor speed ``omega``."""
-        here = {(d.family, d.mode): d for d in self.series.data if np.isclose(d.speed * self.unit, omega, rtol=1e-9)}
+        here = {(d.family, d.mode): d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)}
         seen: Counter[str] = Counter()
         found = []
         for family in families:
@@ -50,21 +53,33 @@ def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
     Raises:
         TableError: if there is no such table.
     """
-    if not uniform(blade):
-        return []
-    section = sample(blade, 0.0)
-    hub_ratio = blade.hub_radius / blade.length
-    slenderness = blade.length * np.sqrt(section.EA[0] / section.EI_z[0])
-    rate = np.sqrt(section.EI_z[0] / (section.mass[0] * blade.length**4))
     return [
-        Printed(f"{name}/{series.name}", series, 1.0 if table.unit == "rad/s" else float(rate))
+        Printed(f"{name}/{series.name}", series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
         for name in names
         for table in [load(name)]
         for series in table.series
-        if np.isclose(series.hub_ratio, hub_ratio, rtol=1e-6, atol=1e-9)
-        and (series.slenderness is None or np.isclose(series.slenderness, slenderness, rtol=1e-6))
-        and not series.tip_mass_ratio
+        if (series.blade == blade.name if series.blade else _alike(blade, series))
     ]
+
+
+UNITS = {"rad/s": (1.0, 1.0), "rpm, Hz": (2 * np.pi, np.pi / 30)}
+"""What frequencies and speeds of a table are multiplied by to be rad/s; dimensionless ones by the beam's own rate."""
+
+
+def _rate(blade: Blade) -> float:
+    section = sample(blade, 0.0)
+    return float(np.sqrt(section.EI_z[0] / (section.mass[0] * blade.length**4)))
+
+
+def _alike(blade: Blade, series: Series) -> bool:
+    if not uniform(blade) or series.tip_mass_ratio:
+        return False
+    section = sample(blade, 0.0)
+    slenderness = blade.length * np.sqrt(section.EA[0] / section.EI_z[0])
+    return bool(
+        np.isclose(series.hub_ratio, blade.hub_radius / blade.length, rtol=1e-6, atol=1e-9)
+        and (series.slenderness is None or np.isclose(series.slenderness, slenderness, rtol=1e-6))
+    )
 
 
 def rows(
@@ -72,6 +87,9 @@ def rows(
 ) -> tuple[list[Cell], list[Level]]:
     """Cells of every number that the table has for core's modes; ``source``: what it was computed with, if known."""
     cells = []
+    held = table.series
+    if held.target:
+        head = replace(head, target=max(head.target, held.target))
     for omega, reference in core:
         data = table.at(omega, reference.core.names)
         if any(data):
@@ -81,6 +99,8 @@ def rows(
                     value = from_print(datum.printed, table.unit)
                     note = f"suspect print: {datum.evidence}" if datum.suspect else ""
                     cell = printed(head, omega, i, reference, value, note)
+                    if held.grounds and cell.verdict == "pass":
+                        cell = replace(cell, reason=f"held to {percent(head.target)}: {held.grounds}")
                     cells.append(excused(cell, value, coarse[i], source.what) if source else cell)
     return cells, []
 

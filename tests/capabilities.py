@@ -20,6 +20,7 @@ class Can:
         lacks: physical effects it leaves out.
         estimate: gives a bracket instead of a converged number.
         twin: is given core's own discretisation and held to rounding.
+        coupled: sections whose strains or motions couple.
     """
 
     taper: bool = True
@@ -29,13 +30,15 @@ class Can:
     lacks: tuple[str, ...] = ()
     estimate: bool = False
     twin: bool = False
+    coupled: bool = False
 
 
 CODES = {
     "exudyn-ancf": Can(unlike=False, twist=False, lacks=("rotary inertia",)),
     "exudyn-tree": Can(),
     "scikit-fem": Can(),
-    "pinocchio": Can(twin=True),
+    "pinocchio": Can(twin=True, coupled=True),
+    "pybmodes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
@@ -48,13 +51,16 @@ class Asks:
     """What a case's blade needs of a code.
 
     Attributes:
+        coupled: sections whose mass centres lie off the axis.
         axial: axial modes are compared.
-        gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %.
+        gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
+            none, moments of inertia matter at rest.
     """
 
     taper: bool = False
     twist: bool = False
     unlike: bool = False
+    coupled: bool = False
     axial: bool = False
     gentle: float = math.inf
 
@@ -69,6 +75,10 @@ BLADES = {
     "yoo-shin-chordwise/delta-1": Asks(axial=True, gentle=0.0),
     "yoo-shin-chordwise/delta-5": Asks(axial=True, gentle=0.0),
     "wright-flapwise": Asks(),
+    "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
+    "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
+    "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True),
+    "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True),
 }
 
 TABLES = {
@@ -79,13 +89,15 @@ TABLES = {
     "yoo_shin1998/p-version": "yoo-shin-chordwise/delta-0",
     "yoo_shin1998/coupled": "yoo-shin-chordwise/delta-0",
     "yoo_shin1998/uncoupled": "yoo-shin-chordwise/delta-0",
+    "openfast/elastodyn": "nrel-5mw",
+    "bmodes3/cert-1": "windpact-1.5/bmodes",
 }
 """Printed series, and the blade they are about."""
 
 
 def solves(can: Can, asks: Asks) -> bool:
     """Whether a code can be expected to solve a blade."""
-    return all(getattr(can, need) or not getattr(asks, need) for need in ("taper", "twist", "unlike"))
+    return all(getattr(can, need) or not getattr(asks, need) for need in ("taper", "twist", "unlike", "coupled"))
 
 
 def allowed(can: Can, asks: Asks, omega: float) -> set[str]:

@@ -17,7 +17,7 @@ from ...core.model import Model
 
 Family = Literal["chordwise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
-Unit = Literal["rad/s", "dimensionless"]
+Unit = Literal["rad/s", "rpm, Hz", "dimensionless"]
 
 
 class TableError(ValueError):
@@ -60,9 +60,19 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
     description: Annotated[str, Meta(description="of the authors' model and method")]
     lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the authors' model leaves out")]
     data: Annotated[tuple[Datum, ...], Meta(min_length=1)]
-    hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length")]
+    hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length; of a uniform beam")] = 0.0
+    blade: Annotated[str, Meta(description="the case's blade it is about, where that is no uniform beam")] = ""
+    target: (
+        Annotated[float, Meta(gt=0, description="what the numbers can be held to, where coarser than the case's")]
+        | None
+    ) = None
+    grounds: Annotated[str, Meta(description="of such a target")] = ""
     slenderness: Annotated[float, Meta(gt=0, description="α = √(A L² / I); none: inextensible")] | None = None
     tip_mass_ratio: Annotated[float, Meta(ge=0, description="μ, tip mass over the beam's mass")] = 0.0
+
+    def __post_init__(self) -> None:
+        if (self.target is None) != (not self.grounds):
+            raise ValueError(f"series {self.name}: target and grounds go together: give both or neither")
 
     @property
     def model(self) -> Model:
