@@ -4,6 +4,7 @@ import os
 import shlex
 import sys
 from collections.abc import Sequence
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -128,6 +129,10 @@ def _solve(
             done = matrix.run(chosen, names, pool, keep)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
     except KeyboardInterrupt:
+        return results.read(path), False
+    except BrokenProcessPool:
+        lost = "a worker process was killed, most likely for want of memory: try fewer --workers, or fewer cases at once"
+        print(f"southwell: {lost}", file=sys.stderr)
         return results.read(path), False
     finally:
         pool.stop()
