@@ -5,7 +5,6 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from dataclasses import dataclass
 from math import inf, isfinite, radians
 from pathlib import Path
 from typing import Annotated
@@ -18,18 +17,15 @@ from ..cases.campbell import Campbell, Wanted, campbell, solver
 from ..cases.errors import CaseError
 from ..cases.pool import Pool
 from ..cases.prestress import gravity
+from ..cases.readers import Mount
 from ..cases.schema import speed_range
-from ..cases.settings import settings
 from ..cases.tracking import Solver
 from ..core.blade import Blade
 from ..core.modes import Modes
-from . import campbell_page, terminal
+from . import campbell_page, campbell_subjects, terminal
 from . import campbell_tables as tables
-from .cli import Whole, select
-from .units import BY_KEY, RAD_S, RPM, Units
-
-FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")
-"""Of a case's blade, those worth a line."""
+from .cli import Whole
+from .units import RAD_S, RPM, Units
 
 
 def command(
@@ -46,6 +42,12 @@ def command(
     elements: Whole = 50,
     azimuth: float | None = None,
     tilt: float = 0.0,
+    main: Path | None = None,
+    length: float | None = None,
+    hub_radius: float | None = None,
+    precone: float | None = None,
+    pitch: float | None = None,
+    subset: str | None = None,
     workers: Whole = 1,
 ) -> int:
     """A blade's Campbell diagram: modes by name along rotor speed, where they meet n per revolution or each other.
@@ -56,7 +58,8 @@ def command(
     Parameters
     ----------
     blade
-        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file.
+        A blade's file: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV. Or a case by name
+        (`southwell cases`), one of its blades as `case/blade`, or its TOML file.
     rpm
         Rotor speeds in revolutions per minute, `first:last:step` with both ends; a case's own speeds by default.
     omega
@@ -77,12 +80,34 @@ def command(
         Degrees from the blade pointing up, in the direction of rotation: the blade under gravity there. Without: no gravity.
     tilt
         Degrees the rotor's axis points above the horizontal; with --azimuth.
+    main
+        The main file that says how the blade sits on the hub, of a blade's file that does not.
+    length
+        From root to tip, m, if no file says it or it is to be another.
+    hub_radius
+        From the rotor's axis to the root, m, likewise.
+    precone
+        Degrees, downwind, likewise.
+    pitch
+        Degrees, leading edge downwind, likewise.
+    subset
+        Set and subset of a HAWC2 structural file that has several, as `5:1`.
     workers
         Processes that share the speeds; starting one costs about as much as twenty speeds.
     """
     given = _speeds(rpm, omega)
-    subjects = _subjects(blade)
+    mount = Mount(
+        main=main,
+        length=length,
+        hub_radius=hub_radius,
+        precone=_angle("--precone", precone),
+        pitch=_angle("--pitch", pitch),
+        subset=_subset(subset) if subset is not None else None,
+    )
+    subjects = campbell_subjects.subjects(blade, mount)
     for subject in subjects:
+        if not (given or subject.speeds):
+            raise CaseError(f"--rpm: missing: {blade} says no speeds: give them, as in 0:15:0.5")
         speeds, units = given or (subject.speeds, subject.units)
         wanted = Wanted(
             speeds=tuple(speeds),
@@ -95,7 +120,7 @@ def command(
         )
         folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
         diagram = solve(subject.blade, wanted, units, workers)
-        _show(diagram, units)
+        _show(diagram, units, subject.about)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
             written = campbell_page.write(diagram, folder, units, line, subject.about)
@@ -104,31 +129,6 @@ def command(
         names = ", ".join(path.name for path in written)
         terminal.output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
     return 0
-
-
-@dataclass(frozen=True)
-class Subject:
-    """A blade to draw: its own speeds (rad/s) and their unit, and where it is from, a line a fact."""
-
-    blade: Blade
-    speeds: tuple[float, ...]
-    units: Units
-    about: tuple[str, ...]
-
-
-def _subjects(name: str) -> list[Subject]:
-    """The blades of a case.
-
-    Raises:
-        CaseError: if there is no such case.
-    """
-    case = select(name)
-    out = []
-    for variant, setting in zip(case.variants, settings(case), strict=True):
-        facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)
-        about = (setting.title, setting.description, f"source: {setting.source}", *facts)
-        out.append(Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about))
-    return out
 
 
 def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:
@@ -193,8 +193,11 @@ def _one(blade: Blade, wanted: Wanted, omega: float) -> Modes:
     return solver(blade, wanted)(omega)
 
 
-def _show(diagram: Campbell, units: Units) -> None:
+def _show(diagram: Campbell, units: Units, about: Sequence[str]) -> None:
     console = terminal.output()
+    for line in about:
+        console.print(line, style="dim", markup=False)
+    console.print()
     for sheet in tables.sheets(diagram, units):
         console.print(tables.terminal(sheet))
         console.print()
@@ -214,13 +217,17 @@ def _speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Unit
         raise CaseError(f"{option}: {error}") from error
 
 
+def _angle(option: str, degrees: float | None) -> float | None:
+    if degrees is not None and not isfinite(degrees):
+        raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 90")
+    return None if degrees is None else radians(degrees)
+
+
 def _gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
-    for option, value in (("--azimuth", azimuth), ("--tilt", tilt)):
-        if value is not None and not isfinite(value):
-            raise CaseError(f"{option} {value}: not a finite number of degrees: give one, as in 90")
-    if azimuth is None:
+    at, up = _angle("--azimuth", azimuth), _angle("--tilt", tilt)
+    if at is None:
         return 0.0, 0.0, 0.0
-    x, y, z = gravity(radians(azimuth), radians(tilt)).tolist()
+    x, y, z = gravity(at, up or 0.0).tolist()
     return x, y, z
 
 
@@ -245,6 +252,14 @@ def _operating(text: str, units: Units) -> tuple[float, float]:
     if not (0 <= low <= high < inf and high > 0):
         raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
     return low / units.speeds, high / units.speeds
+
+
+def _subset(text: str) -> tuple[int, int]:
+    try:
+        first, second = (int(p) for p in text.split(":"))
+    except ValueError:
+        raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
+    return first, second
 
 
 def _margin(text: str) -> float:

@@ -1,5 +1,6 @@
 """``southwell campbell``: what a user types, sees, finds in the folder; every wrong input is one line and status 2."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,9 @@ def beam(tmp_path: Path) -> Path:
         ("campbell park-cantilever --workers 0", "--workers"),
         ("campbell park-cantilever --azimuth up", "--azimuth"),
         ("campbell park-cantilever --azimuth nan", "--azimuth nan: not a finite number of degrees"),
+        ("campbell missing.dat --rpm 0:10:5", "missing.dat"),
+        ("campbell park-cantilever --subset one", "--subset: 'one' is not set:subset, as in 5:1"),
+        ("campbell park-cantilever --pitch inf", "--pitch inf: not a finite number of degrees"),
         ("campbell yoo-shin-chordwise/delta-0 --omega 0:200:100 --elements 8", "200 rad/s"),
     ],
 )
@@ -92,6 +96,50 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell "):
         assert needed in page
     assert (out / "campbell.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same beam as a case's, mounted elsewhere: the hub radius of the command line counts."""
+    file, out = tmp_path / "blade.toml", tmp_path / "out"
+    file.write_text("name = 'own'\n" + BEAM[BEAM.index("[blade]") : BEAM.index("[speeds]")])
+    status, _, err = southwell(f"campbell {file} -o {out}", capsys)
+    assert (status, err) == (2, f"southwell: --rpm: missing: {file} says no speeds: give them, as in 0:15:0.5\n")
+    status, shown, _ = southwell(f"campbell {file} --omega 0:20:10 --hub-radius 3 --elements 8 -o {out}", capsys)
+    assert status == 0
+    assert "Southwell TOML: blade.toml" in shown
+    assert "- Southwell TOML: blade.toml" in (out / "campbell.md").read_text()
+    rows = [row.split(",") for row in (out / "campbell.csv").read_text().splitlines()]
+    at = rows[0].index("frequency_rad_s")
+    found = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
+    (out / "case.toml").write_text(BEAM.replace("hub_radius = 0.1", "hub_radius = 3.0"))
+    blade = library.load(str(out / "case.toml")).variants[0].blade
+    np.testing.assert_allclose(found, modes(blade, 20.0, 8, 6).frequencies, rtol=1e-9)
+
+
+@pytest.mark.skipif(not os.environ.get("SOUTHWELL_BLADES"), reason="set SOUTHWELL_BLADES to public blade files")
+@pytest.mark.parametrize(
+    ("file", "mount", "first"),
+    [
+        ("nrel5mw/NRELOffshrBsline5MW_Blade.dat", "--length 61.5 --hub-radius 1.5", "AdjBlMs = 1.04536"),
+        ("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat", "--hub-radius 1.5", "BeamDyn"),
+        ("nrel5mw/NREL_5MW_st.txt", "--hub-radius 1.5 --subset 5:1", "HAWC2"),
+        ("iea15/IEA_15MW_RWT_Blade_st_FPM.st", "--hub-radius 3.97", "HAWC2"),
+        ("iea3.4/IEA-3.4-130-RWT_ElastoDyn_blade.dat", "--length 63 --hub-radius 2", "ElastoDyn"),
+    ],
+)
+def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
+    file: str, mount: str, first: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = Path(os.environ["SOUTHWELL_BLADES"]) / file
+    line = f"campbell {path} {mount} --rpm 0:12:4 --modes 3 --elements 24 --operating 4:12 -o {tmp_path}"
+    status, shown, err = southwell(line, capsys)
+    assert (status, err) == (0, "")
+    assert first in shown
+    rows = [row.split(",") for row in (tmp_path / "campbell.csv").read_text().splitlines()]
+    name, place = rows[0].index("name"), rows[0].index("speed_number")
+    assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flap 1", "edge 1", "flap 2"]
 
 
 def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
