@@ -1,4 +1,16 @@
-"""What a blade weighs and where: totals about the rotor's axis and the root, and the centres of its sections."""
+"""What a blade is before it is solved: its mass and moments, and the centres and principal axes of its sections.
+
+All of it is read off the 6×6 matrices, whatever the reference axis they are about. With the compliance ``S`` of a section
+(strains (axial, y, z, torsion, about y, about z) from forces in that order):
+
+* the tension centre is where an axial force bends nothing;
+* the shear centre is where a force across turns nothing: ``y = −S(τ, z) / S(τ, τ)``, ``z = S(τ, y) / S(τ, τ)``;
+* the principal axes are those of the bending part of ``S``, which no shift of the axis changes.
+
+(Hodges, *Nonlinear Composite Beam Theory*, 2006, ch. 4; D. H. Hodges' generalised shear centre.) The mass centre comes
+from the first moments ``M(x, ψ) = −m y``, ``M(x, θ) = m z``. A strain that is rigid has no compliance: a centre that only it
+could tell is then on the reference axis, as every centre is of a section without couplings.
+"""
 
 from dataclasses import dataclass
 
@@ -6,118 +18,141 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import spatial as sp
-from ..core.blade import Blade, mass_at
-from ..core.sections import compliance, frames, root
+from ..core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at
+from ..core.inertia import moved
+from ..core.sections import frames, root
 
 Array = NDArray[np.float64]
 
-GAUSS = 4
-"""Points between stations: mass is linear there and the curve a cubic, so that totals keep nearly all digits."""
+ROUND = 1e-3
+"""Bending stiffnesses nearer to each other than this, relative, have no principal axes worth naming."""
+
+_GAUSS = 6
 
 
 @dataclass(frozen=True)
-class Totals:
-    """A blade at rest as one rigid body, its tip mass with it.
+class Mass:
+    """A rigid body's mass properties about a point, from its 6×6 inertia there.
 
     Attributes:
-        mass: kg, tip mass included.
-        tip_mass: kg.
-        centre: (3,) m, centre of mass in the hub's axes.
-        first_moment: kg m, of mass about the rotor's axis: ∫ r dm with r the distance from the axis.
-        second_moment: kg m², of mass about the rotor's axis.
-        root_first, root_second: the same with the distance along the blade from the root: ∫ s dm, ∫ s² dm, as blade
-            makers state them.
-        tip_radius: m, the tip's distance from the rotor's axis.
+        mass: kg.
+        centre: (3,) m, of mass, from the point.
+        moments: (3, 3) kg m², second moments (moment of inertia) about the point.
     """
 
     mass: float
-    tip_mass: float
     centre: Array
-    first_moment: float
-    second_moment: float
-    root_first: float
-    root_second: float
-    tip_radius: float
+    moments: Array
+
+    @property
+    def first(self) -> Array:
+        """(3,) kg m, first moments about the point."""
+        return self.mass * self.centre
 
 
 @dataclass(frozen=True)
-class Centres:
-    """Sections at the stations, in section axes.
+class Sections:
+    """At each station, in the section's own axes, m and rad; (n,) each, centres (n, 2) along y and z.
 
     Attributes:
-        mass, tension, shear: (n, 2) m, (y, z) of the centres from the reference axis: where a force of inertia, an axial
-            force, and a transverse force act without turning, bending or twisting the section.
-        EA, GJ, EI_y, EI_z: (n,) stiffness in axial and torsional strain and in bending, other strains free: each about its
-            own centre; ``inf`` where rigid.
-        per_length: (n,) kg/m.
+        mass_centre, tension_centre, shear_centre: from the reference axis.
+        principal: angle from the section's y and z to the nearest principal bending axes, about x, within ±π/4; NaN for a
+            section that bends alike every way.
+        mass_axes: the same for the axes of the sectional inertia about the mass centre; NaN without inertia.
+        EA, GJ: N, N m²; about the tension and shear centre.
+        EI_flap, EI_edge: N m², in the principal axes: resisting motion along z and y.
     """
 
-    mass: Array
-    tension: Array
-    shear: Array
+    mass_centre: Array
+    tension_centre: Array
+    shear_centre: Array
+    principal: Array
+    mass_axes: Array
     EA: Array
     GJ: Array
-    EI_y: Array
-    EI_z: Array
-    per_length: Array
+    EI_flap: Array
+    EI_edge: Array
 
 
-def totals(blade: Blade) -> Totals:
-    """Totals by Gauss quadrature between the stations."""
-    x, w = np.polynomial.legendre.leggauss(GAUSS)
-    ends = blade.stations
-    s = (ends[:-1, None] + np.diff(ends)[:, None] * (x + 1) / 2).ravel()
-    ds = (np.diff(ends)[:, None] * w / 2).ravel()
-    pose = frames(blade, s)
-    sections = mass_at(blade, s) * ds[:, None, None]
-    tip = frames(blade, ends[-1:])[0]
-    body = _moved(sections, pose).sum(0) + _moved(blade.tip_mass[None], tip[None])[0]
-    m = body[0, 0]
-    centre = np.array([-body[4, 2], -body[5, 0], -body[3, 1]]) / m
-
-    lumps, where = np.append(sections[:, 0, 0], blade.tip_mass[0, 0]), np.concatenate([pose, tip[None]])
-    offsets = [np.array([0.0, -k[0, 5], k[0, 4]]) / k[0, 0] for k in sections]
-    tip_offset = _centre(blade.tip_mass) if blade.tip_mass[0, 0] else np.zeros(3)
-    at = where[:, :3, 3] + np.einsum("nij,nj->ni", where[:, :3, :3], np.array([*offsets, tip_offset]))
-    along = at @ root(blade)[:3, 0] - blade.hub_radius
-    return Totals(
-        mass=float(m),
-        tip_mass=float(blade.tip_mass[0, 0]),
-        centre=centre,
-        first_moment=float(lumps @ np.hypot(at[:, 0], at[:, 1])),
-        second_moment=float(body[5, 5]),
-        root_first=float(lumps @ along),
-        root_second=float(lumps @ along**2),
-        tip_radius=float(np.hypot(tip[0, 3], tip[1, 3])),
-    )
+def about_hub(blade: Blade) -> Mass:
+    """About the hub's centre in the hub's axes (z the rotor's), precone and pitch included, tip mass included."""
+    return _properties(_inertia(blade))
 
 
-def _moved(bodies: Array, pose: Array) -> Array:
-    """Rigid bodies' inertia (n, 6, 6) from their own frames to the frame their poses are given in."""
-    back = sp.adjoint(sp.inverse(pose))
-    return np.swapaxes(back, -1, -2) @ bodies @ back
+def about_root(blade: Blade) -> Mass:
+    """About the root in the blade's axes (x along the blade, coned and pitched with it), tip mass included."""
+    return _properties(moved(_inertia(blade), sp.inverse(root(blade))))
 
 
-def _centre(body: Array) -> Array:
-    return np.array([-body[4, 2], -body[5, 0], -body[3, 1]]) / body[0, 0]
+def _inertia(blade: Blade) -> Array:
+    """(6, 6) about the hub's centre: Gauss quadrature between stations, between which mass is linear."""
+    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    h = np.diff(blade.stations)
+    s = (blade.stations[:-1, None] + h[:, None] * (x + 1) / 2).ravel()
+    per_length = mass_at(blade, s) * (h[:, None] * w / 2).ravel()[:, None, None]
+    parts = np.concatenate([per_length, blade.tip_mass[None]])
+    return moved(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
 
 
-def centres(blade: Blade) -> Centres:
-    """Centres and stiffness of the sections at the stations."""
-    c = compliance(blade, blade.stations)
+def _properties(inertia: Array) -> Mass:
+    mass = float(inertia[0, 0])
+    cross = inertia[3:, :3] / mass  # of the centre
+    return Mass(mass, np.array([cross[2, 1], cross[0, 2], cross[1, 0]]), inertia[3:, 3:])
+
+
+def sections(blade: Blade) -> Sections:
+    """Centres, principal axes and engineering stiffnesses of the sections at the stations."""
     m = blade.mass
-    # an axial force at (y, z) bends by c[4:, 0] + c[4:, 4:] (z, −y); a transverse one twists by c[3, 1] − z c[3, 3], …
-    z, minus_y = np.linalg.solve(c[:, 4:, 4:], -c[:, 4:, 0, None])[..., 0].T
-    rigid = np.isinf(blade.stiffness[:, range(6), range(6)])
-    bend = np.linalg.inv(c[:, 4:, 4:])
-    ea = c[:, 0, 0] - np.einsum("ni,nij,nj->n", c[:, 0, 4:], bend, c[:, 4:, 0])
-    return Centres(
-        mass=np.stack([-m[:, 0, 5], m[:, 0, 4]], axis=1) / m[:, :1, 0],
-        tension=np.stack([-minus_y, z], axis=1) * ~rigid[:, :1],
-        shear=np.stack([-c[:, 3, 2], c[:, 3, 1]], axis=1) / c[:, 3, 3, None],
-        EA=np.where(rigid[:, 0], np.inf, 1 / ea),
-        GJ=np.where(rigid[:, 3], np.inf, 1 / c[:, 3, 3]),
-        EI_y=bend[:, 0, 0],
-        EI_z=bend[:, 1, 1],
-        per_length=m[:, 0, 0],
+    mass = m[:, 0, 0]
+    mass_centre = np.stack([-m[:, AXIAL, BEND_Z], m[:, AXIAL, BEND_Y]], axis=1) / mass[:, None]
+    s = _compliance(blade)
+    bend = s[:, BEND_Y:, BEND_Y:]
+    alone = np.linalg.solve(bend, -s[:, BEND_Y:, AXIAL][..., None])[
+        ..., 0
+    ]  # moments that undo the bending of a unit force
+    tension = np.stack([-alone[:, 1], alone[:, 0]], axis=1)
+    torsion = s[:, TORSION, TORSION]
+    across = np.stack([-s[:, TORSION, SHEAR_Z], s[:, TORSION, SHEAR_Y]], axis=1)
+    shear = np.divide(across, torsion[:, None], out=np.zeros_like(across), where=torsion[:, None] > 0)
+    axial = s[:, AXIAL, AXIAL] + (s[:, AXIAL, BEND_Y:] * alone).sum(1)
+    principal, flap, edge = _axes(np.linalg.inv(bend))
+    own = m[:, 4:, 4:] - mass[:, None, None] * _spread(mass_centre)
+    return Sections(
+        mass_centre=mass_centre,
+        tension_centre=tension,
+        shear_centre=shear,
+        principal=principal,
+        mass_axes=_axes(own)[0],
+        EA=_inverse(axial),
+        GJ=_inverse(torsion),
+        EI_flap=flap,
+        EI_edge=edge,
     )
+
+
+def _compliance(blade: Blade) -> Array:
+    """(n, 6, 6) with nothing for rigid strains."""
+    soft = np.flatnonzero(np.isfinite(blade.stiffness).all(axis=(0, 2)))
+    out = np.zeros_like(blade.stiffness)
+    out[:, soft[:, None], soft] = np.linalg.inv(blade.stiffness[:, soft[:, None], soft])
+    return out
+
+
+def _axes(stiffness: Array) -> tuple[Array, Array, Array]:
+    """Angle to the nearest principal axes of symmetric (n, 2, 2) about y and z, and the values there."""
+    a, b, c = stiffness[:, 0, 0], stiffness[:, 0, 1], stiffness[:, 1, 1]
+    middle, radius = (a + c) / 2, np.hypot((a - c) / 2, b)
+    angle = 0.5 * np.arctan2(2 * b, a - c)
+    angle = angle - np.pi / 2 * np.round(angle / (np.pi / 2))
+    first = np.where(a >= c, middle + radius, middle - radius)
+    return np.where(2 * radius > ROUND * np.abs(middle), angle, np.nan), first, 2 * middle - first
+
+
+def _spread(centre: Array) -> Array:
+    """(n, 2, 2) second moments about y and z of unit masses at ``centre`` (n, 2)."""
+    y, z = centre.T
+    return np.stack([np.stack([z * z, -y * z], axis=1), np.stack([-y * z, y * y], axis=1)], axis=1)
+
+
+def _inverse(compliance: Array) -> Array:
+    return np.divide(1.0, compliance, out=np.full_like(compliance, np.inf), where=compliance > 0)
