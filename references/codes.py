@@ -22,6 +22,7 @@ OURS = {
     "exudyn-tree": "southwell.references.exudyn_tree:CODE",
     "scikit-fem": "southwell.references.scikit_fem_beam:CODE",
     "pinocchio": "southwell.references.pinocchio_chain:CODE",
+    "pybmodes": "southwell.references.pybmodes_beam:CODE",
     "yoo-shin": "southwell.references.yoo_shin:CODE",
     "assumed-modes": "southwell.references.assumed_modes:CODE",
     "southwell-equation": "southwell.references.southwell_equation:CODE",
@@ -83,8 +84,9 @@ def code(name: str) -> Any:
     return found
 
 
-CAPS = {"pinocchio": 40}
-"""Finest refinement that a code can be asked for, where memory sets it (Pinocchio keeps dense cubes of all freedoms)."""
+CAPS = {"pinocchio": 40, "pybmodes": 320}
+"""Finest refinement that a code can be asked for, where memory sets it: Pinocchio keeps dense cubes of all freedoms, and
+pyBModes dense squares."""
 
 
 def cap(code: Code) -> int:

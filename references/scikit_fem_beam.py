@@ -18,9 +18,9 @@ from ..core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, samp
 from ..core.model import FULL
 from ..core.modes import STATIONS, Modes
 from . import scikit_fem_forms as forms
+from .grading import element_ends
 from .interface import CodeError, Shares
 from .quadratic import gyroscopic_modes
-from .spectral import intervals
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class ScikitFemBeam:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        basis = _basis(_nodes(blade, elements))
+        basis = _basis(element_ends(blade, elements, COARSEST))
         matrices = _matrices(blade, omega, basis)
         held = basis.get_dofs("root").flatten()
         free = basis.complement_dofs(np.setdiff1d(held, list(_hinges(blade, basis))))
@@ -120,22 +120,6 @@ def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
 def _rigid_body(inertia: Array) -> Array:
     """What of a 6×6 inertia is a mass and three moments of inertia."""
     return np.diag([inertia[0, 0]] * 3 + list(np.diag(inertia)[3:]))
-
-
-def _nodes(blade: Blade, elements: int) -> Array:
-    """Ends of the elements: the same number in every interval between kinks, graded where bending stiffness changes.
-
-    There the larger of its two ratios is shared out evenly, so that curvature, moment over stiffness, is resolved.
-    """
-    ends = intervals(blade)
-    pieces = -(-elements // min(len(ends) - 1, COARSEST))
-    at = sample(blade, ends)
-    change = np.diff(np.log([at.EI_y, at.EI_z]))
-    change = np.take_along_axis(change, np.abs(change).argmax(0)[None], 0).T
-    even = np.arange(pieces) / pieces
-    graded = np.abs(change) > 1e-6
-    share = np.where(graded, np.expm1(even * change) / np.expm1(np.where(graded, change, 1.0)), even)
-    return np.append((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel(), ends[-1])
 
 
 def _basis(nodes: Array) -> Any:
