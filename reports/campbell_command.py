@@ -5,7 +5,6 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from math import inf, isfinite, radians
 from pathlib import Path
 from typing import Annotated
 
@@ -16,16 +15,15 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from ..cases.campbell import Campbell, Wanted, campbell, solver
 from ..cases.errors import CaseError
 from ..cases.pool import Pool
-from ..cases.prestress import gravity
 from ..cases.readers import Mount
-from ..cases.schema import speed_range
 from ..cases.tracking import Solver
 from ..core.blade import Blade
 from ..core.modes import Modes
+from . import campbell_options as options
 from . import campbell_page, campbell_subjects, terminal
 from . import campbell_tables as tables
 from .cli import Whole
-from .units import RAD_S, RPM, Units
+from .units import Units
 
 
 def command(
@@ -95,14 +93,14 @@ def command(
     workers
         Processes that share the speeds; starting one costs about as much as twenty speeds.
     """
-    given = _speeds(rpm, omega)
+    given = options.speeds(rpm, omega)
     mount = Mount(
         main=main,
         length=length,
         hub_radius=hub_radius,
-        precone=_angle("--precone", precone),
-        pitch=_angle("--pitch", pitch),
-        subset=_subset(subset) if subset is not None else None,
+        precone=options.angle("--precone", precone),
+        pitch=options.angle("--pitch", pitch),
+        subset=options.subset(subset) if subset is not None else None,
     )
     subjects = campbell_subjects.subjects(blade, mount)
     for subject in subjects:
@@ -112,11 +110,11 @@ def command(
         wanted = Wanted(
             speeds=tuple(speeds),
             modes=modes,
-            per_rev=_per_rev(per_rev),
-            operating=_operating(operating, units) if operating else None,
-            margin=_margin(margin),
+            per_rev=options.per_rev(per_rev),
+            operating=options.operating(operating, units) if operating else None,
+            margin=options.margin(margin),
             elements=elements,
-            gravity=_gravity(azimuth, tilt),
+            gravity=options.gravity(azimuth, tilt),
         )
         folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
         diagram = solve(subject.blade, wanted, units, workers)
@@ -203,70 +201,3 @@ def _show(diagram: Campbell, units: Units, about: Sequence[str]) -> None:
         console.print()
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
-
-
-def _speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
-    if rpm is not None and omega is not None:
-        raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
-    if rpm is None and omega is None:
-        return None
-    option, text, units = ("--rpm", rpm or "", RPM) if omega is None else ("--omega", omega, RAD_S)
-    try:
-        return tuple((speed_range(text) / units.speeds).tolist()), units
-    except ValueError as error:
-        raise CaseError(f"{option}: {error}") from error
-
-
-def _angle(option: str, degrees: float | None) -> float | None:
-    if degrees is not None and not isfinite(degrees):
-        raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 90")
-    return None if degrees is None else radians(degrees)
-
-
-def _gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
-    at, up = _angle("--azimuth", azimuth), _angle("--tilt", tilt)
-    if at is None:
-        return 0.0, 0.0, 0.0
-    x, y, z = gravity(at, up or 0.0).tolist()
-    return x, y, z
-
-
-def _per_rev(text: str) -> tuple[int, ...]:
-    first, colon, last = text.partition(":")
-    try:
-        found = tuple(range(int(first), int(last) + 1)) if colon else tuple(sorted({int(p) for p in text.split(",")}))
-    except ValueError:
-        raise CaseError(
-            f"--per-rev: {text!r} is neither first:last nor whole numbers with commas, as in 1:6 or 1,3,6"
-        ) from None
-    if not found or found[0] < 1:
-        raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last, as in 1:6")
-    return found
-
-
-def _operating(text: str, units: Units) -> tuple[float, float]:
-    try:
-        low, high = (float(p) for p in text.split(":"))
-    except ValueError:
-        raise CaseError(f"--operating: {text!r} is not lowest:highest, as in 6.9:12.1") from None
-    if not (0 <= low <= high < inf and high > 0):
-        raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
-    return low / units.speeds, high / units.speeds
-
-
-def _subset(text: str) -> tuple[int, int]:
-    try:
-        first, second = (int(p) for p in text.split(":"))
-    except ValueError:
-        raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
-    return first, second
-
-
-def _margin(text: str) -> float:
-    try:
-        value = float(text.removesuffix("%")) * (0.01 if text.endswith("%") else 1.0)
-    except ValueError:
-        raise CaseError(f"--margin: {text!r} is neither a percentage nor a fraction, as in 10% or 0.1") from None
-    if not 0 <= value < 1:
-        raise CaseError(f"--margin: {text!r}: needs 0 ≤ margin < 1 of n per revolution, as in 10% or 0.1")
-    return value
