@@ -1,5 +1,6 @@
 """``southwell show``: what a blade is, in numbers and a figure, and how its file was read."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -8,14 +9,15 @@ from cyclopts import Parameter
 from numpy.typing import NDArray
 from rich import box
 from rich.console import Group
+from rich.markup import escape
 from rich.table import Table
 
 from ..cases.errors import CaseError
-from ..cases.properties import Centres, Totals, centres, totals
-from ..cases.readers.source import Source
+from ..cases.properties import Sections, about_hub, about_root, sections
+from ..cases.readers import Mount
 from ..core.blade import Blade, straight
-from . import terminal
-from .blade_argument import Mounting, choose
+from . import campbell_options as options
+from . import campbell_subjects, terminal
 
 Array = NDArray[np.float64]
 
@@ -38,7 +40,12 @@ def command(
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     all: Annotated[bool, Parameter(negative=())] = False,
-    mounting: Mounting | None = None,
+    main: Path | None = None,
+    length: float | None = None,
+    hub_radius: float | None = None,
+    precone: float | None = None,
+    pitch: float | None = None,
+    subset: str | None = None,
 ) -> int:
     """A blade's mass, centre, moments, sections and axes, and how its file was read.
 
@@ -50,76 +57,90 @@ def command(
         Folder for a figure of the properties along the span (SVG, PNG) and a CSV of all stations.
     all
         Every station in the table.
+    main
+        The main file that says how the blade sits on the hub, of a blade's file that does not.
+    length
+        From root to tip, m, if no file says it or it is to be another.
+    hub_radius
+        From the rotor's axis to the root, m, likewise.
+    precone
+        Degrees, downwind, likewise.
+    pitch
+        Degrees, leading edge downwind, likewise.
+    subset
+        Set and subset of a HAWC2 structural file that has several, as `5:1`.
     """
-    chosen = choose(blade, mounting)
-    for variant in chosen.variants:
-        console = terminal.output()
-        console.print(summary(variant.blade, chosen.source))
-        console.print(stations(variant.blade, None if all else ROWS))
+    mount = Mount(
+        main=main,
+        length=length,
+        hub_radius=hub_radius,
+        precone=options.angle("--precone", precone),
+        pitch=options.angle("--pitch", pitch),
+        subset=options.subset(subset) if subset is not None else None,
+    )
+    subjects = campbell_subjects.subjects(blade, mount)
+    console = terminal.output()
+    for subject in subjects:
+        console.print(summary(subject.blade, subject.about))
+        console.print(stations(subject.blade, None if all else ROWS))
         if out is not None:
-            folder = out / variant.name.partition("/")[2] if len(chosen.variants) > 1 else out
+            folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
             try:
-                written = write(variant.blade, folder)
+                written = write(subject.blade, folder)
             except OSError as error:
                 raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
             console.print(f"{folder}: {', '.join(path.name for path in written)}", markup=False, soft_wrap=True)
     return 0
 
 
-def facts(blade: Blade, found: Totals) -> dict[str, str]:
-    """What is said of a blade, by name."""
-    x, y, z = np.where(np.abs(found.centre) < 1e-9 * blade.length, 0.0, found.centre)
+def facts(blade: Blade) -> dict[str, str]:
+    """What is said of a blade, by name; its tip mass included."""
+    hub, root = about_hub(blade), about_root(blade)
+    x, y, z = np.where(np.abs(hub.centre) < 1e-9 * blade.length, 0.0, hub.centre)
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
     loose = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
-    curve = (
-        "straight"
-        if straight(blade)
-        else (f"prebend {_farthest(blade.curve[:, 2]):.5g} m, sweep {_farthest(blade.curve[:, 1]):.5g} m (largest)")
-    )
-    out = {
-        "mass": f"{found.mass:.6g} kg" + (f", of which {found.tip_mass:.6g} kg at the tip" if found.tip_mass else ""),
+    bends = f"prebend {_farthest(blade.curve[:, 2]):.5g} m, sweep {_farthest(blade.curve[:, 1]):.5g} m (largest)"
+    tip = blade.tip_mass[0, 0]
+    return {
+        "mass": f"{hub.mass:.6g} kg" + (f", of which {tip:.6g} kg at the tip" if tip else ""),
         "centre of mass": f"x {x:.6g}, y {y:.4g}, z {z:.4g} m in the hub's axes",
-        "first moment": f"{found.first_moment:.7g} kg m about the rotor's axis, {found.root_first:.7g} kg m about the root",
-        "second moment": (
-            f"{found.second_moment:.7g} kg m² about the rotor's axis, {found.root_second:.7g} kg m² about the root"
+        "first moment": (
+            f"{np.hypot(*hub.first[:2]):.7g} kg m about the rotor's axis, {root.first[0]:.7g} kg m along the blade from the root"
         ),
-        "length": f"{blade.length:.6g} m along the reference axis, tip at radius {found.tip_radius:.6g} m",
+        "second moment": (
+            f"{hub.moments[2, 2]:.7g} kg m² about the rotor's axis, {root.moments[2, 2]:.7g} kg m² about the root, edgewise"
+        ),
+        "length": f"{blade.length:.6g} m along the reference axis",
         "hub radius": f"{blade.hub_radius:.6g} m",
         "precone": f"{np.degrees(blade.precone):.5g}° (positive downwind)",
-        "pitch": f"{0.0 - np.degrees(blade.pitch):.5g}° (positive with the leading edge upwind)",
+        "pitch": f"{np.degrees(blade.pitch):.5g}° (positive with the leading edge downwind)",
         "root": "clamped" if not loose else f"{', '.join(loose)}; the rest held",
-        "reference axis": f"{curve}; {len(blade.stations)} stations",
+        "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,
     }
-    return out
 
 
 def _farthest(values: Array) -> float:
     return float(values[np.abs(values).argmax()])
 
 
-def summary(blade: Blade, source: Source | None) -> Group:
-    """Facts in a table, and how the file was read."""
+def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
+    """Facts in a table, and how the blade was read."""
     table = Table(
         box=None, show_header=False, pad_edge=False, title=blade.name, title_justify="left", title_style="bold"
     )
     table.add_column(style="dim")
     table.add_column(overflow="fold")
-    told = facts(blade, totals(blade))
-    if source is not None:
-        told["read from"] = f"{source.format}: {', '.join(str(p) for p in source.files)}"
-        told["its axes"] = source.axes
-        told["notes"] = "\n".join(source.notes)
-    for name, text in told.items():
+    for name, text in (facts(blade) | {"from": "\n".join(about)}).items():
         if text:
-            table.add_row(name, text.replace("[", r"\["))
+            table.add_row(name, escape(text))
     return Group(table)
 
 
-def rows(blade: Blade, found: Centres) -> Array:
+def rows(blade: Blade, found: Sections) -> Array:
     """A row a station, columns as in ``COLUMNS``."""
-    stiff = (found.per_length, found.EI_y, found.EI_z, found.GJ, found.EA, np.degrees(blade.twist))
-    return np.column_stack([blade.stations, *stiff, found.mass, found.tension, found.shear])
+    stiff = (blade.mass[:, 0, 0], found.EI_flap, found.EI_edge, found.GJ, found.EA, np.degrees(blade.twist))
+    return np.column_stack([blade.stations, *stiff, found.mass_centre, found.tension_centre, found.shear_centre])
 
 
 def stations(blade: Blade, most: int | None) -> Table:
@@ -127,7 +148,7 @@ def stations(blade: Blade, most: int | None) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in COLUMNS:
         table.add_column(column.replace(" [", "\n").replace("]", ""), justify="right", no_wrap=True)
-    values = rows(blade, centres(blade))
+    values = rows(blade, sections(blade))
     n = len(values)
     picked = np.unique(np.linspace(0, n - 1, min(n, most or n)).round().astype(int))
     for row in values[picked]:
@@ -149,7 +170,7 @@ def write(blade: Blade, folder: Path) -> list[Path]:
 
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "stations.csv"
-    values = rows(blade, centres(blade))
+    values = rows(blade, sections(blade))
     lines = [",".join(COLUMNS), *(",".join(repr(float(x)) for x in row) for row in values)]
     table.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return [*span.write(blade, folder), table]

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..cases.properties import centres
+from ..cases.properties import Sections, sections
 from ..core.blade import Blade
 from .style import COLOURS, MUTED, WIDTH, house
 
@@ -17,14 +17,14 @@ Lines = list[tuple[str, Array]]
 
 def draw(blade: Blade) -> Figure:
     """Six panels over the arc length: one quantity each, rigid stiffness said and not drawn."""
-    found = centres(blade)
+    found = sections(blade)
     y, z = (blade.curve[:, k] for k in (1, 2))
-    stiffness: Lines = [("flap EI", found.EI_y), ("edge EI", found.EI_z), ("torsion GJ", found.GJ)]
+    stiffness: Lines = [("flap EI", found.EI_flap), ("edge EI", found.EI_edge), ("torsion GJ", found.GJ)]
     panels: list[tuple[str, str, Lines, bool]] = [
-        ("Mass", "kg/m", [("", found.per_length)], False),
+        ("Mass", "kg/m", [("", blade.mass[:, 0, 0])], False),
         ("Stiffness", "N m²", stiffness, True),
         ("Axial stiffness EA", "N", [("", found.EA)], True),
-        ("Twist", "degrees, leading edge downwind", [("", np.degrees(blade.twist))], False),
+        ("Twist", "degrees, y towards z", [("", np.degrees(blade.twist))], False),
         ("Centres, towards the leading edge", "m from the reference axis", _centres(found, 0), False),
         (
             "Reference axis",
@@ -45,8 +45,8 @@ def draw(blade: Blade) -> Figure:
     return figure
 
 
-def _centres(found: object, k: int) -> Lines:
-    return [(name, getattr(found, name)[:, k]) for name in ("mass", "tension", "shear")]
+def _centres(found: Sections, k: int) -> Lines:
+    return [(name, getattr(found, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
 
 
 def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
