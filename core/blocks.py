@@ -5,14 +5,17 @@ next only through its last six rows.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve_banded, cholesky_banded, solve_banded
+from scipy.linalg import cholesky_banded, get_lapack_funcs, solve_banded
 
 Array = NDArray[np.float64]
 Numbers = NDArray[Any]
+
+(_pbtrs,) = get_lapack_funcs(("pbtrs",), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -54,8 +57,15 @@ def rows(t: Tridiagonal) -> Array:
 def times(rows: Array, x: Numbers) -> Numbers:
     """(n, r, k) product of rows (n, r, 6 + 2d) as of ``rows``, one or several matrices' above each other, with x (dn, k)."""
     n, d = len(rows), (rows.shape[-1] - 6) // 2
-    padded = np.concatenate([np.zeros((6, x.shape[1])), x, np.zeros((d, x.shape[1]))])
-    return rows @ padded.take(d * np.arange(n)[:, None] + np.arange(6 + 2 * d), axis=0)
+    padded = np.zeros((6 + len(x) + d, x.shape[1]), x.dtype)
+    padded[6 : 6 + len(x)] = x
+    return rows @ padded.take(_windows(n, d), axis=0)
+
+
+@lru_cache
+def _windows(n: int, d: int) -> NDArray[np.intp]:
+    """(n, 6 + 2d) where each block's window lies."""
+    return d * np.arange(n)[:, None] + np.arange(6 + 2 * d)
 
 
 def dense(t: Tridiagonal) -> Array:
@@ -76,8 +86,8 @@ class Factor:
     band: Array
 
     def solve(self, b: Array) -> Array:
-        """Solve for one or many right-hand sides (n,) or (n, k)."""
-        return cho_solve_banded((self.band, False), b, check_finite=False)
+        """Solve for right-hand sides (n, k)."""
+        return _pbtrs(self.band, b)[0]
 
 
 def cholesky(t: Tridiagonal) -> Factor:

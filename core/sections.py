@@ -12,6 +12,7 @@ quadrature between the stations (properties are linear there), with the collocat
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +81,7 @@ class Segments:
         shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
             across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
             tells.
-        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``. These three are empty where ``breaks`` were given.
     """
 
     element: Index
@@ -115,13 +116,21 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     turn = lever @ soft @ np.swapaxes(lever, -1, -2)
     start = np.searchsorted(element, np.arange(len(nodes) - 1))
 
+    def over(weights: Array, values: Array) -> Array:
+        """Weighted sums over the Gauss points of each interval, times its length: (i, w, k, l)."""
+        sums = weights @ values.reshape(len(values), GAUSS, -1)
+        return h[:, None, None, None] * sums.reshape(len(values), len(weights), *values.shape[2:])
+
+    def whole(values: Array) -> Array:
+        """Integral over each element."""
+        return np.add.reduceat(over(b[None], values)[:, 0], start, axis=0)
+
     def running(values: Array) -> tuple[Array, Array, Array]:
         """Integral from the element's start to its Gauss points and to the intervals' starts, and over all of it."""
-        parts = h[:, None, None] * np.einsum("j,ijkl->ikl", b, values)
+        parts = over(b[None], values)[:, 0]
         begun = np.cumsum(parts, axis=0) - parts
         begun -= begun[start][element]
-        inside = begun[:, None] + h[:, None, None, None] * np.einsum("qj,ijkl->iqkl", a, values)
-        return inside, begun, np.add.reduceat(parts, start, axis=0)
+        return begun[:, None] + over(a, values), begun, np.add.reduceat(parts, start, axis=0)
 
     within, before, flexibility = running(turn)
     stiffness = np.linalg.inv(flexibility)
@@ -134,21 +143,29 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
     loose, loose_break, tip = running(turn @ carried)
     bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
     break_bubble = loose_break - break_shape @ tip[element]
-    work = running(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))[2]
+    work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
     unit = _unit_stiffness(work)
-    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
-    ends_move = sp.tangent(last)[element][:, None]
-    static = _across(pose, shape.reshape(turn.shape) @ ends_move, turn @ stiffness[element][:, None] @ ends_move)
-    length = np.diff(nodes)[element][:, None, None]
-    part = (s - nodes[element][:, None])[..., None] / length
-    along = part * last[element][:, None]
-    helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
-    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear
-    local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
-    strain = local @ stiffness[element][:, None] @ ends_move
-    strain_within = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
-    bow = 0.5 * (_squared(static) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(slip))
-    uneven = 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, strain_within], axis=-1)
+    uneven = (np.zeros((0, 6, 6)), np.zeros((0, 6, 6)), np.zeros((0, 6, 12)))
+    if breaks is None:
+        local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
+        static = local @ stiffness[element][:, None]
+        loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
+        last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
+        length = np.diff(nodes)[element][:, None, None]
+        part = (s - nodes[element][:, None])[..., None] / length
+        uneven = tuple(
+            whole(v)
+            for v in _uneven(
+                pose,
+                part,
+                length,
+                last[element][:, None],
+                shape.reshape(turn.shape),
+                turn @ stiffness[element][:, None],
+                static,
+                loaded,
+            )
+        )
     return Segments(
         element=q,
         s=s.ravel(),
@@ -161,10 +178,33 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
         break_shape=break_shape,
         bubble=bubble @ unit[q],
         break_bubble=break_bubble @ unit[element],
-        shortening=running(bow)[2],
-        mean=running(strain)[2],
-        slope=running(uneven)[2],
+        shortening=uneven[0],
+        mean=uneven[1],
+        slope=uneven[2],
     )
+
+
+def _uneven(
+    pose: Array, part: Array, length: Array, last: Array, shape: Array, rate: Array, static: Array, loaded: Array
+) -> tuple[Array, Array, Array]:
+    """What G, A and B of ``elements`` integrate, at the Gauss points (i, q, …).
+
+    Args:
+        pose: (i, q, 4, 4) of the points in the element's frame.
+        part: (i, q, 1) of the element's length that lies before them.
+        length: (i, 1, 1) of the elements, m.
+        last: (i, 1, 6) logarithm of the elements' rest poses.
+        shape, rate: (i, q, 6, 6) the points' twists from that of b, and their rates along the arc.
+        static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
+    """
+    ends_move = sp.tangent(last)
+    along = part * last
+    displaced = _across(pose, shape @ ends_move, rate @ ends_move)
+    helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
+    strain = static @ ends_move
+    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear
+    bow = 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(slip))
+    return bow, strain, 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
 
 
 def _squared(slope: Array) -> Array:
@@ -185,6 +225,7 @@ def _unit_stiffness(work: Array) -> Array:
     return vector * np.where(active, 1.0 / np.sqrt(np.where(active, value, 1.0)), 0.0)[:, None, :]
 
 
+@lru_cache
 def collocation(n: int) -> tuple[Array, Array, Array]:
     """Gauss points c and weights b on [0, 1], and the matrix ∫₀^{c_q} ℓ_j of their Lagrange polynomials."""
     x, w = np.polynomial.legendre.leggauss(n)
