@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from southwell.cases import library
 from southwell.core import spatial as sp
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
@@ -145,3 +146,13 @@ def test_a_mode_without_a_dominant_motion_is_mixed_and_its_shares_are_given() ->
     assert numbered(families(shares)) == ("mixed 1", "flap 1", "edge 1")
     assert spoken(shares[0]) == "55 % flap, 42 % edge"
     assert spoken(shares[2]) == "90 % edge, 8 % torsion"
+
+
+def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
+    """At 60 rpm BModes prints 4.1912 Hz; a sum of squared metres and radians would call it the first torsion."""
+    for variant in library.load("windpact-1.5").variants:
+        found = solve(variant.blade, 2 * np.pi, 40, 6)
+        shares = participation(found, variant.blade)
+        assert 4.1 < found.frequencies[2] / (2 * np.pi) < 4.4
+        assert numbered(families(shares)) == ("flap 1", "edge 1", "flap 2", "edge 2", "flap 3", "torsion 1")
+        assert shares[2, FLAP] > 0.99
