@@ -1,6 +1,7 @@
 """The ways a case file can give its blade, and what ``core`` makes of each.
 
-Every kind is straight, without offsets: shear is rigid (Euler–Bernoulli), the sections' principal axes turn with twist.
+Beams and stations are straight: shear is rigid (Euler–Bernoulli), the sections' principal axes turn with twist. Whole
+sections, and files of other formats, are in ``readers.sections``. Every kind may say how it is mounted on the hub.
 """
 
 import csv
@@ -9,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, ClassVar
 
 import numpy as np
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from ..core import spatial as sp
 from ..core.blade import (
@@ -23,6 +24,7 @@ from ..core.blade import (
     uniform_blade,
 )
 from .errors import CaseError, nearest
+from .readers.sections import FromFile, Mounted, Sections
 
 POISSON = 0.3
 """For the torsional stiffness of a dimensionless beam, which has no influence on its bending."""
@@ -32,7 +34,7 @@ def _positive(description: str) -> Meta:
     return Meta(gt=0, description=description)
 
 
-class Beam(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="beam"):
+class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     """A uniform beam from its material and cross-section."""
 
     length: Annotated[float, _positive("from root to tip, m")]
@@ -49,7 +51,7 @@ class Beam(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", ta
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used."""
         inertia = self.density if self.rotary_inertia else 0.0
-        return uniform_blade(
+        blade = uniform_blade(
             name,
             self.length,
             self.hub_radius,
@@ -61,9 +63,10 @@ class Beam(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", ta
             I_y=inertia * self.I_y,
             I_z=inertia * self.I_z,
         )
+        return self.mounted(blade)
 
 
-class Dimensionless(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="dimensionless"):
+class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless"):
     """A uniform beam as the literature has it: length, mass per length and bending stiffness (both ways) are 1.
 
     Speeds and frequencies are then in units of ``√(EI / (ρ A L⁴))``, and ``rad/s`` reads as that unit. No rotary inertia.
@@ -74,7 +77,7 @@ class Dimensionless(Struct, frozen=True, forbid_unknown_fields=True, tag_field="
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used."""
-        return uniform_blade(
+        blade = uniform_blade(
             name,
             length=1.0,
             hub_radius=self.hub_ratio,
@@ -84,9 +87,10 @@ class Dimensionless(Struct, frozen=True, forbid_unknown_fields=True, tag_field="
             EI_z=1.0,
             mass=1.0,
         )
+        return self.mounted(blade)
 
 
-class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="stations"):
+class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
     """A blade from a table of stations along its span: a CSV file beside the case file, ``#`` starting a comment."""
 
     file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
@@ -137,7 +141,7 @@ class Stations(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
                 twist=np.radians(twist) * self.twisted,
                 hub_radius=self.hub_radius,
             )
-            return stepped(blade, np.array(self.pieces)) if self.pieces else blade
+            return self.mounted(stepped(blade, np.array(self.pieces)) if self.pieces else blade)
         except BladeError as error:
             raise CaseError(f"{path}: {error}") from error
 
@@ -173,7 +177,7 @@ def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
     return np.swapaxes(from_axis, -1, -2) @ mass @ from_axis
 
 
-BladeData = Beam | Dimensionless | Stations
+BladeData = Beam | Dimensionless | Stations | Sections | FromFile
 
 
 def _read(path: Path, needed: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, np.ndarray]:

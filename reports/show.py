@@ -105,7 +105,7 @@ def facts(blade: Blade) -> dict[str, str]:
         "mass": f"{hub.mass:.6g} kg" + (f", of which {tip:.6g} kg at the tip" if tip else ""),
         "centre of mass": f"x {x:.6g}, y {y:.4g}, z {z:.4g} m in the hub's axes",
         "first moment": (
-            f"{np.hypot(*hub.first[:2]):.7g} kg m about the rotor's axis, {root.first[0]:.7g} kg m along the blade from the root"
+            f"{np.hypot(*hub.first[:2]):.7g} kg m about the rotor's axis, {root.first[0]:.7g} kg m about the root"
         ),
         "second moment": (
             f"{hub.moments[2, 2]:.7g} kg m² about the rotor's axis, {root.moments[2, 2]:.7g} kg m² about the root, edgewise"

@@ -14,7 +14,7 @@ from ...core.blade import Blade
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
 from ..toml import convert, document, finite
-from .sections import FromFile, Sections, describe
+from .sections import describe
 from .source import Mount, Reading, Source
 
 NAME = "Southwell TOML"
@@ -25,7 +25,7 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A blade file."""
 
     name: Annotated[str, Meta(min_length=1, description="what to call it")]
-    blade: BladeData | Sections | FromFile
+    blade: BladeData
     title: Annotated[str, Meta(description="one line")] = ""
     source: Annotated[str, Meta(description="where the data come from")] = ""
 
