@@ -124,7 +124,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             CaseError: if the table is missing or malformed.
         """
         path = folder / self.file
-        columns = _read(path, self.COLUMNS, self.OPTIONAL)
+        columns = read_table(path, self.COLUMNS, self.OPTIONAL)
         fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
         if fraction[-1] != 1.0:
             raise CaseError(
@@ -180,9 +180,14 @@ def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 BladeData = Beam | Dimensionless | Stations | Sections | FromFile
 
 
-def _read(path: Path, needed: tuple[str, ...], optional: tuple[str, ...]) -> dict[str, np.ndarray]:
+def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:
+    """Columns of a CSV file by name, ``#`` starting a comment.
+
+    Raises:
+        CaseError: naming file, line and column.
+    """
     if not path.is_file():
-        raise CaseError(f"{path}: blade.file: no such file: it is looked for beside the case file; correct the name")
+        raise CaseError(f"{path}: no such file: a case's is looked for beside the case file; correct the name")
     with path.open(encoding="utf-8", newline="") as file:
         lines = [(k, line) for k, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
     rows = [[cell.strip() for cell in row] for row in csv.reader(line for _, line in lines)]

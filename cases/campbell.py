@@ -34,6 +34,7 @@ class Wanted:
         margin: the least distance wanted of a mode from n per revolution within the operating range, relative.
         elements: of the discretisation.
         gravity: (3,) m/s² in the hub's axes, see ``prestress``.
+        load: for each of the blade's stations a steady force per length, N/m, likewise; none by default.
     """
 
     speeds: Sequence[float]
@@ -43,6 +44,7 @@ class Wanted:
     margin: float = 0.1
     elements: int = 50
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    load: tuple[tuple[float, float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -96,8 +98,10 @@ def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda 
         CaseError: if a speed has no stable steady state.
     """
     gravity = np.array(wanted.gravity) if any(wanted.gravity) else NO_GRAVITY
+    load = np.array(wanted.load) if wanted.load else None
     waiting: deque[float] = deque()
-    stream = sweep(blade, iter(waiting.popleft, None), wanted.elements, wanted.modes + SPARE, gravity=gravity)
+    speeds = iter(waiting.popleft, None)
+    stream = sweep(blade, speeds, wanted.elements, wanted.modes + SPARE, gravity=gravity, load=load)
 
     def solve(omega: float) -> Modes:
         waiting.append(omega)

@@ -74,6 +74,8 @@ def _below(diagram: Campbell, units: Units) -> str:
         words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * wanted.margin:.3g} %")
     if any(wanted.gravity):
         words.append("under gravity")
+    if wanted.load:
+        words.append("under the load given")
     return "; ".join(words)
 
 

@@ -40,6 +40,7 @@ def command(
     elements: Whole = 50,
     azimuth: float | None = None,
     tilt: float = 0.0,
+    load: Path | None = None,
     main: Path | None = None,
     length: float | None = None,
     hub_radius: float | None = None,
@@ -78,6 +79,9 @@ def command(
         Degrees from the blade pointing up, in the direction of rotation: the blade under gravity there. Without: no gravity.
     tilt
         Degrees the rotor's axis points above the horizontal; with --azimuth.
+    load
+        A steady load that bends the blade before it vibrates: a CSV table of `fraction [-]`, `fx [N/m]`, `fy [N/m]`,
+        `fz [N/m]`, in axes that turn with the hub (x outwards, y in the direction of motion, z along the rotor's axis).
     main
         The main file that says how the blade sits on the hub, of a blade's file that does not.
     length
@@ -115,6 +119,7 @@ def command(
             margin=options.margin(margin),
             elements=elements,
             gravity=options.gravity(azimuth, tilt),
+            load=options.load(load, subject.blade),
         )
         folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
         diagram = solve(subject.blade, wanted, units, workers)

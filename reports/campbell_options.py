@@ -1,10 +1,12 @@
 """What is typed after ``southwell campbell``, made into numbers; each raises a CaseError that names the option."""
 
 from math import inf, isfinite, radians
+from pathlib import Path
 
 from ..cases import prestress
 from ..cases.errors import CaseError
 from ..cases.schema import speed_range
+from ..core.blade import Blade
 from .units import RAD_S, RPM, Units
 
 
@@ -35,6 +37,11 @@ def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
         return 0.0, 0.0, 0.0
     x, y, z = prestress.gravity(at, up or 0.0).tolist()
     return x, y, z
+
+
+def load(path: Path | None, blade: Blade) -> tuple[tuple[float, float, float], ...]:
+    """The load of a file at the blade's stations; none without one."""
+    return () if path is None else tuple((x, y, z) for x, y, z in prestress.load(path, blade).tolist())
 
 
 def per_rev(text: str) -> tuple[int, ...]:

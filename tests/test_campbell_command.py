@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from southwell.cases import library
+from southwell.cases.prestress import LOAD, STANDARD_GRAVITY
 from southwell.core.solve import modes
 from southwell.reports.campbell_command import Told
 from southwell.reports.units import RPM
@@ -160,6 +161,39 @@ def test_gravity_at_an_azimuth_stiffens_a_blade_that_hangs(
         head, row = rows[0].split(","), rows[1].split(",")
         first.append(float(row[head.index("frequency_rad_s")]))
     assert first[2] < first[0] < first[1]
+
+
+def test_a_load_of_the_beams_weight_is_gravity(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its weight per length towards the tip as a table, or gravity with the blade hanging: the same first frequency."""
+    (blade,) = (v.blade for v in library.load(str(beam)).variants)
+    weight = blade.mass[0, 0, 0] * STANDARD_GRAVITY
+    table = tmp_path / "load.csv"
+    table.write_text(f"# weight\n{','.join(LOAD)}\n0,{weight},0,0\n1,{weight},0,0\n")
+    first = []
+    for option in ("--azimuth 180", f"--load {table}"):
+        status, *_ = southwell(f"campbell {beam} --modes 1 --elements 8 {option} -o {tmp_path / 'out'}", capsys)
+        assert status == 0
+        rows = (tmp_path / "out" / "campbell.csv").read_text().splitlines()
+        first.append(float(rows[1].split(",")[rows[0].split(",").index("frequency_rad_s")]))
+    assert first[0] == pytest.approx(first[1], rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,1,0,0\n0.5,1,0,0\n", ["load.csv", "fraction", "0.5", "tip"]),
+        ("0,1,0,0\n1,x,0,0\n", ["load.csv", "line 3", "fx"]),
+    ],
+)
+def test_a_bad_load_is_one_line(
+    rows: str, words: list[str], beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "load.csv"
+    table.write_text(f"{','.join(LOAD)}\n{rows}")
+    status, _, told = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
+    assert status == 2
+    assert told.count("\n") == 1
+    assert all(word in told for word in words)
 
 
 def test_several_processes_give_the_same_numbers(
