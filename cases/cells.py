@@ -33,6 +33,7 @@ class Head:
     version: str
     role: str
     target: float
+    shares: str = ""
 
 
 def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
@@ -52,6 +53,7 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
         target=head.target,
         verdict=verdict,
         reason=reason,
+        shares=head.shares,
     )
 
 

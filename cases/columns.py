@@ -4,7 +4,7 @@ A column's work is a picklable function of the speeds and of core's references t
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from typing import Any
@@ -74,7 +74,7 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
     for table in about(blade, case.text.compare.tables):
-        head = Head(variant.name, table.name, "", "table", target)
+        head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         out.append(Column(table.name, felt(table.series.model, blade), head, work))
@@ -82,9 +82,8 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
     if codes and not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
     for name, code in takers.items():
-        out.append(
-            _code(Head(variant.name, code.name, code.version() or "", "code", target), name, code, blade, timeout)
-        )
+        head = Head(variant.name, code.name, code.version() or "", "code", target, getattr(code, "shares", ""))
+        out.append(_code(head, name, code, blade, timeout))
     return out
 
 
@@ -100,7 +99,7 @@ def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Co
         return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
     model = felt(code.model, blade)
     if code.shares == "discretisation":
-        head = Head(head.case, head.code, head.version, "same discretisation", SAME)
+        head = replace(head, role="same discretisation", target=SAME)
         return Column(
             code.name,
             model,

@@ -12,11 +12,12 @@ from platform import python_version
 from typing import Any
 
 from ..references.codes import code
-from . import mechanism_columns
+from . import controls, mechanism_columns
 from .columns import Column, Rows, columns
+from .controls import Wrong
 from .mechanism_case import MechanismCase, Turning
 from .reference import references
-from .results import Cell, Level, Run
+from .results import Cell, Control, Level, Run
 from .schema import Case, Variant
 from .settings import settings
 
@@ -45,12 +46,13 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Task:
-    """One thing to solve of one blade: core's references (no column), or a column."""
+    """One thing to solve of one blade: core's references (no column), or a column; and core's with mistakes."""
 
     variant: Variant | Turning
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
     column: Column | None = None
+    mistakes: Callable[[], list[Wrong]] | None = None
 
     @property
     def label(self) -> str:
@@ -82,9 +84,11 @@ def run(
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
+    wrong: list[tuple[_Task, Future[list[Wrong]]]] = []
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
+        wrong = [(task, executor.submit(task.mistakes)) for task in plans if task.mistakes]
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -97,8 +101,9 @@ def run(
                         pending[answer] = replace(task, column=column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
+        noticed = [row for task, future in wrong for row in _noticed(task, future.result(), rows)]
     finally:
-        for future in pending:
+        for future in [*pending, *(future for _, future in wrong)]:
             future.cancel()
     ordered = [rows[task.variant.name, column.name] for task in plans for column in task.columns]
     return Run(
@@ -106,6 +111,7 @@ def run(
         levels=tuple(level for _, levels in ordered for level in levels),
         versions=versions({c.name: c.version() for c in known.values()}),
         settings=tuple(setting for case in cases for setting in settings(case)),
+        controls=tuple(noticed),
     )
 
 
@@ -120,8 +126,15 @@ def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float) ->
         made = tuple(columns(case, v, codes, timeout))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        out.append(_Task(v, made, question))
+        out.append(_Task(v, made, question, mistakes=partial(controls.solve, v, case.text.compare)))
     return out
+
+
+def _noticed(task: _Task, wrongs: list[Wrong], rows: dict[tuple[str, str], Rows]) -> list[Control]:
+    """What the columns of one blade notice of core's mistakes."""
+    name = task.variant.name
+    cells = [cell for column in task.columns for cell in rows[name, column.name][0]]
+    return controls.judged(name, wrongs, cells)
 
 
 def versions(codes: dict[str, str | None]) -> dict[str, str]:

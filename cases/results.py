@@ -1,7 +1,7 @@
 """What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``.
 
 That file has one JSON object a line. Most are cells, by their fields; ``kind`` tells them from refinements' answers, from
-the settings of the cases, which come first, and from the line about the run itself.
+the settings of the cases, which come first, the negative controls, and the line about the run itself.
 """
 
 from collections.abc import Iterable
@@ -40,6 +40,7 @@ class Cell:
         verdict: see ``cases.verdict``.
         reason: why, where the verdict is not a plain pass; names and quantifies the cause of a known difference.
         full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks some).
+        shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``; empty for core itself.
         elements: the finest refinement used.
         order: observed order of convergence, where there is one.
         mac: mass-weighted MAC of the pairing.
@@ -65,6 +66,7 @@ class Cell:
     order: float | None = None
     mac: float | None = None
     seconds: float | None = None
+    shares: str = ""
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,36 @@ class Level:
     code: str
     elements: int
     frequency: float
+
+
+@dataclass(frozen=True)
+class Control:
+    """What one deliberate mistake in core does to one blade at one speed, and which independent answers notice.
+
+    Attributes:
+        control: the mistake's name, see ``cases.mistakes``.
+        case: as in ``Cell``.
+        omega: rotor speed, rad/s.
+        mode: the one that changes most, by name: ``chordwise 1``; empty if the mistake leaves no steady state.
+        right: its frequency in core as it is, rad/s.
+        wrong: with the mistake, rad/s; None if no mode is like it.
+        caught: codes and printed tables, independent of core, that fail against it.
+        missed: those that do not.
+    """
+
+    control: str
+    case: str
+    omega: float
+    mode: str
+    right: float | None
+    wrong: float | None
+    caught: tuple[str, ...]
+    missed: tuple[str, ...]
+
+    @property
+    def change(self) -> float | None:
+        """Relative difference of wrong from right."""
+        return self.wrong / self.right - 1.0 if self.right and self.wrong else None
 
 
 @dataclass(frozen=True)
@@ -110,6 +142,7 @@ class Run:
         versions: package or code → version.
         command: what was typed, to reproduce.
         settings: of each case's blade.
+        controls: what became of core made wrong on purpose.
     """
 
     cells: tuple[Cell, ...]
@@ -117,14 +150,16 @@ class Run:
     versions: dict[str, str] = field(default_factory=dict)
     command: str = ""
     settings: tuple[Setting, ...] = ()
+    controls: tuple[Control, ...] = ()
 
 
 def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
-    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, versions and command."""
+    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, controls, versions and command."""
     lines: list[dict[str, Any]] = [{"kind": "cell", **msgspec.to_builtins(c)} for c in cells]
     lines += [{"kind": "level", **msgspec.to_builtins(v)} for v in levels]
     if run:
         lines += [{"kind": "setting", **msgspec.to_builtins(s)} for s in run.settings]
+        lines += [{"kind": "control", **msgspec.to_builtins(c)} for c in run.controls]
         lines.append({"kind": "run", "versions": run.versions, "command": run.command})
     with path.open("ab") as file:
         file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
@@ -150,8 +185,10 @@ def read(path: Path) -> Run:
             raise ValueError(
                 f"{path}: line {number}: not a result ({error}): was it written by another version?"
             ) from error
-    return Run(tuple(rows[Cell]), tuple(rows[Level]), settings=tuple(rows[Setting]), **about)
+    return Run(
+        tuple(rows[Cell]), tuple(rows[Level]), settings=tuple(rows[Setting]), controls=tuple(rows[Control]), **about
+    )
 
 
-KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting}
+KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting, "control": Control}
 """What a line of each kind is."""

@@ -70,8 +70,8 @@ def verify(
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
-    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive;
-    interrupted, it keeps and reports what is there, status 130.
+    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive, or if
+    core made wrong on purpose (every run tries) is not caught; interrupted, it keeps and reports what is there, status 130.
 
     Parameters
     ----------
@@ -131,12 +131,14 @@ def _solve(
     except KeyboardInterrupt:
         return results.read(path), False
     except BrokenProcessPool:
-        lost = "a worker process was killed, most likely for want of memory: try fewer --workers, or fewer cases at once"
+        lost = (
+            "a worker process was killed, most likely for want of memory: try fewer --workers, or fewer cases at once"
+        )
         print(f"southwell: {lost}", file=sys.stderr)
         return results.read(path), False
     finally:
         pool.stop()
-    run = replace(about, cells=done.cells, levels=levels)
+    run = replace(about, cells=done.cells, levels=levels, controls=done.controls)
     ordered = path.with_suffix(".part")
     ordered.unlink(missing_ok=True)
     results.append(ordered, run.cells, run.levels, run)
@@ -352,6 +354,8 @@ def _show(run: Run, folder: Path) -> None:
     for line in markdown.headline(run):
         console.print(line.replace("**", ""), markup=False)
     console.print(terminal.matrix(run))
+    if run.controls:
+        console.print(terminal.controls(run))
     console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
 
 

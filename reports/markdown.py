@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, lumped, summary
+from . import bench, controls, lumped, summary
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -24,6 +24,7 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
     "campbell": campbell,
     "differences": differences,
     "convergence": convergence,
+    "mistakes": controls.mistakes,
 }
 """Drawn for each blade; the key ends the file's name."""
 
@@ -92,6 +93,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
         heat=heat(run),
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
         cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
+        controls=_controls(run),
         lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
@@ -99,6 +101,16 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
         command=run.command,
         cost=cost,
     )
+
+
+def _controls(run: Run) -> dict[str, str]:
+    if not run.controls:
+        return {}
+    tables = (
+        table([{k: plain(v) for k, v in row.items()} for row in controls.overview(run)]),
+        table([{plain(k): v for k, v in row.items()} for row in controls.by_case(run)]),
+    )
+    return {"overview": tables[0], "by_case": tables[1], "sentence": controls.sentence(run)}
 
 
 def headline(run: Run) -> list[str]:
@@ -111,6 +123,8 @@ def headline(run: Run) -> list[str]:
             where = f"{worst.case}, {column(worst)}, {summary.labels(run.cells)[worst]}, "
             where += units(run, worst.case).at(worst.omega)
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(where)}).")
+    if told := controls.headline(run):
+        lines.append(told)
     return lines
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import get_args
 
+from ..cases.controls import outcomes
 from ..cases.results import Cell, Run, Verdict
 
 SYMBOL: dict[Verdict, str] = {
@@ -29,8 +30,9 @@ BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
 
 
 def status(run: Run) -> int:
-    """Exit status: 1 if any cell fails or is inconclusive, or there is none at all; else 0."""
-    return int(not run.cells or any(c.verdict in BAD for c in run.cells))
+    """Exit status: 1 if any cell fails or is inconclusive, there is none at all, or a negative control is missed; else 0."""
+    blind = any(outcome.status == "missed" for outcome in outcomes(run.controls))
+    return int(not run.cells or blind or any(c.verdict in BAD for c in run.cells))
 
 
 def gravest(cells: Iterable[Cell]) -> Verdict:

@@ -13,6 +13,7 @@ from rich.table import Table
 from ..cases.matrix import Progress as Step
 from ..cases.results import Cell, Run, Verdict
 from ..cases.sweep import Named
+from . import controls as mistakes
 from . import summary
 from .summary import SYMBOL, amount, broad, columns
 from .units import Units
@@ -88,6 +89,18 @@ def matrix(run: Run) -> Table:
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
         out.add_row(case.replace("/", "/\n "), *[_field([c for c in mine if broad(c) == name]) for name in names])
+    return out
+
+
+def controls(run: Run) -> Table:
+    """What became of core made wrong on purpose: a line a mistake."""
+    out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for head in ("core made wrong on purpose", "outcome", "largest change", "caught by"):
+        out.add_column(head, overflow="fold")
+    for row in mistakes.overview(run):
+        names = row["caught by"].split(", ") if row["caught by"] else []
+        style = "bold red" if "missed" in row["outcome"] else ""
+        out.add_row(row["core made wrong"], row["outcome"], row["largest change"], str(len(names)), style=style)
     return out
 
 
