@@ -107,15 +107,14 @@ def sections(blade: Blade) -> Sections:
     mass_centre = np.stack([-m[:, AXIAL, BEND_Z], m[:, AXIAL, BEND_Y]], axis=1) / mass[:, None]
     s = _compliance(blade)
     bend = s[:, BEND_Y:, BEND_Y:]
-    alone = np.linalg.solve(bend, -s[:, BEND_Y:, AXIAL][..., None])[
-        ..., 0
-    ]  # moments that undo the bending of a unit force
+    flexural: Array = np.linalg.inv(bend).astype(float)
+    alone = -(flexural @ s[:, BEND_Y:, AXIAL][..., None])[..., 0]  # moments that undo the bending of a unit axial force
     tension = np.stack([-alone[:, 1], alone[:, 0]], axis=1)
     torsion = s[:, TORSION, TORSION]
     across = np.stack([-s[:, TORSION, SHEAR_Z], s[:, TORSION, SHEAR_Y]], axis=1)
     shear = np.divide(across, torsion[:, None], out=np.zeros_like(across), where=torsion[:, None] > 0)
     axial = s[:, AXIAL, AXIAL] + (s[:, AXIAL, BEND_Y:] * alone).sum(1)
-    principal, flap, edge = _axes(np.linalg.inv(bend))
+    principal, flap, edge = _axes(flexural)
     own = m[:, 4:, 4:] - mass[:, None, None] * _spread(mass_centre)
     return Sections(
         mass_centre=mass_centre,
