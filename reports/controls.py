@@ -17,7 +17,7 @@ from .units import BY_KEY, RAD_S, Units
 SIGN: dict[Status, str] = {"caught": "✔", "missed": "✘", "needs a case": "–", "needs a code": "○"}
 
 FLOOR = 1e-5
-"""Smaller changes are drawn at the lower edge."""
+"""Smaller changes, relative, are none."""
 
 
 def said(outcome: Outcome) -> str:
@@ -61,7 +61,8 @@ def overview(run: Run) -> list[dict[str, str]]:
     rows = []
     for outcome in outcomes(run.controls):
         worst = largest(outcome)
-        where = f"{percent(worst.change or 0.0)}: {_where(run, worst)}" if worst else ""
+        change = abs(worst.change or 0.0) if worst else 0.0
+        where = f"{percent(worst.change or 0.0)}: {_where(run, worst)}" if worst and change >= FLOOR else "none"
         rows.append(
             {
                 "core made wrong": outcome.mistake.name,

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, controls, lumped, summary
+from . import bench, controls, lumped, summary, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -87,12 +87,13 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
         keep_trailing_newline=True,
     )
     environment.filters["plain"] = plain
-    found = lumped.taken(run)
+    found, borne_out = lumped.taken(run), witnesses.table(run)
     return environment.get_template("report.md.jinja").render(
         headline=headline(run),
         heat=heat(run),
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
         cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
+        witnesses=table([{k: plain(v) for k, v in row.items()} for row in borne_out]) if borne_out else "",
         controls=_controls(run),
         lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
@@ -123,9 +124,7 @@ def headline(run: Run) -> list[str]:
             where = f"{worst.case}, {column(worst)}, {summary.labels(run.cells)[worst]}, "
             where += units(run, worst.case).at(worst.omega)
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(where)}).")
-    if told := controls.headline(run):
-        lines.append(told)
-    return lines
+    return lines + [told for told in (witnesses.headline(run), controls.headline(run)) if told]
 
 
 def heat(run: Run) -> str:
@@ -135,6 +134,9 @@ def heat(run: Run) -> str:
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
         rows.append({"case": plain(case)} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
+    if any(c.shares for c in run.cells):
+        shares = {plain(n): witnesses.shared([c for c in run.cells if broad(c) == n]) for n in names}
+        rows.append({"case": "*shares with core*"} | shares)
     return table(rows)
 
 

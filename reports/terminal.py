@@ -14,7 +14,7 @@ from ..cases.matrix import Progress as Step
 from ..cases.results import Cell, Run, Verdict
 from ..cases.sweep import Named
 from . import controls as mistakes
-from . import summary
+from . import summary, witnesses
 from .summary import SYMBOL, amount, broad, columns
 from .units import Units
 
@@ -89,6 +89,10 @@ def matrix(run: Run) -> Table:
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
         out.add_row(case.replace("/", "/\n "), *[_field([c for c in mine if broad(c) == name]) for name in names])
+    if any(c.shares for c in run.cells):
+        shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in names]
+        out.add_section()
+        out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
     return out
 
 
