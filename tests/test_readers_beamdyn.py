@@ -39,7 +39,7 @@ def test_matrices_keep_their_energy_and_the_centres_their_side() -> None:
 
 def test_positions_and_twist_are_the_splines_through_the_key_points() -> None:
     found = readers.read(MAIN)
-    x, y, twist = (CubicSpline(Z, v, bc_type="natural") for v in (X, Y, [12.0, 10, 7, 4, 1]))
+    x, y, _twist = (CubicSpline(Z, v, bc_type="natural") for v in (X, Y, [12.0, 10, 7, 4, 1]))
     length = quad(lambda z: np.sqrt(1 + x(z, 1) ** 2 + y(z, 1) ** 2), 0, 40, epsabs=1e-12, points=Z[1:-1])[0]
     assert found.length == pytest.approx(length, rel=1e-12)
     at = found.curve[:, 0]
@@ -210,7 +210,7 @@ def test_a_truncated_file(tmp_path: Path) -> None:
 def test_a_blade_file_without_length(tmp_path: Path) -> None:
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
     with pytest.raises(
-        CaseError, match="length: .*give that file instead, or --length for a straight, untwisted blade"
+        CaseError, match=r"length: .*give that file instead, or --length for a straight, untwisted blade"
     ):
         readers.read(tmp_path / BLADE.name)
     assert readers.read(tmp_path / BLADE.name, STRAIGHT).length == 40.0
