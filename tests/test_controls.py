@@ -148,6 +148,28 @@ def test_a_blind_judge_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "is not noticed: no geometric stiffness" in told.headline(blind)
 
 
+def test_a_control_made_harmless_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever repairs a mistake by accident is told: it is not caught any more in the case it must be seen in."""
+    harmless = tuple(replace(m, wrong=m.right) if m.name == "no hub radius" else m for m in mistakes.MISTAKES)
+    monkeypatch.setattr(controls, "MISTAKES", harmless)
+    case = library.load("park-cantilever")
+    wrongs = controls.solve(replace(case.variants[0], speeds=np.array([0.0, OMEGA])), case.text.compare)
+    found = replace(run(), controls=tuple(controls.judged("park-cantilever", wrongs, run().cells)))
+    assert status(found)["no hub radius"] == "missed"
+    assert {s for name, s in status(found).items() if name != "no hub radius"} == {"caught", "needs a case"}
+    assert summary.status(found) == 1
+    assert "is not noticed: no hub radius" in told.headline(found)
+
+
+def test_a_blade_that_a_mistake_leaves_singular_has_no_modes_to_tell_of() -> None:
+    """A free lag hinge on the rotor's axis is not held by anything: its frequency is nought, or not a number."""
+    lagging = replace(park(), hub_radius=0.6, root=np.array([np.inf] * 5 + [0.0]))
+    variant = replace(library.load("park-cantilever").variants[0], blade=lagging, speeds=np.array([OMEGA]))
+    wrongs = controls.solve(variant, library.load("park-cantilever").text.compare)
+    assert next(w for w in wrongs if w.mistake == "no Coriolis").modes
+    assert len(wrongs) == len(mistakes.MISTAKES)
+
+
 def row(**changes: object) -> Control:
     fields = {"control": "no hub radius", "case": "park-cantilever", "omega": 10.0, "mode": "chordwise 1"}
     numbers = {"right": 10.0, "wrong": 11.0, "caught": (), "missed": ("x",)}
@@ -160,9 +182,9 @@ def row(**changes: object) -> Control:
         ({}, "missed"),
         ({"caught": ("y",)}, "caught"),
         ({"missed": ()}, "needs a code"),
-        ({"wrong": 10.01}, "needs a case"),  # a thousandth: within the target
+        ({"wrong": 10.0}, "missed"),  # a control that does nothing tests nothing
         ({"case": "my-beam"}, "needs a case"),
-        ({"wrong": None, "right": None, "mode": ""}, "needs a case"),
+        ({"wrong": None, "right": None, "mode": "", "missed": ()}, "needs a code"),
     ],
 )
 def test_what_becomes_of_a_mistake(changes: dict, expected: str) -> None:
