@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..cases import library, readers
+from ..cases.errors import CaseError
 from ..cases.readers import Mount, own
 from ..cases.settings import settings
 from ..core.blade import Blade
@@ -36,6 +37,10 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
         about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
         return [Subject(found.blade, (), RPM, about)]
     case = select(name)
+    if mount != Mount():
+        raise CaseError(
+            f"{name}: a case says itself how its blade sits on the hub: leave out --main, --length and the like"
+        )
     out = []
     for variant, setting in zip(case.variants, settings(case), strict=True):
         facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)

@@ -30,7 +30,8 @@ from ..references import codes as registry
 from ..references.codes import UnknownCodeError
 from . import mechanisms as answer
 from . import summary, terminal
-from .units import BY_KEY, RAD_S, RPM, Units
+from .mounting import Mounting
+from .units import RAD_S, RPM, Units
 
 PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
@@ -156,13 +157,15 @@ def modes(
     elements: Whole = 50,
     modes: Whole = 10,
     json: Annotated[bool, Parameter(negative=())] = False,
+    mounting: Mounting | None = None,
 ) -> int:
     """Natural frequencies by the in-house solver, with their families.
 
     Parameters
     ----------
     case
-        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file.
+        A case by name (`southwell cases`), one of its blades as `case/blade`, or its TOML file; or a blade's file: ElastoDyn,
+        BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV.
     omega
         Rotor speed in rad/s, or a range `first:last:step` with both ends; the case's own speeds by default.
     rpm
@@ -174,16 +177,19 @@ def modes(
     json
         Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz.
     """
-    chosen = select(case)
+    from . import campbell_subjects  # which itself selects cases by this module
+
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []
-    for variant in chosen.variants:
-        found = sweep(variant.blade, variant.speeds.tolist() if speeds is None else speeds, elements, modes)
-        rows += [_tidy(variant.name, row) for row in found]
+    for subject in campbell_subjects.subjects(case, (mounting or Mounting()).mount()):
+        if speeds is None and not subject.speeds:
+            raise UsageError(f"--rpm: missing: {case} says no speeds: give them, as in 0:15:5")
+        blade = subject.blade
+        found = sweep(blade, subject.speeds if speeds is None else speeds, elements, modes)
+        rows += [_tidy(blade.name, row) for row in found]
         if not json:
-            own = units or BY_KEY[settings(chosen)[0].unit]
-            title = f"{variant.name}: {len(variant.blade.stations)} stations, {elements} elements"
-            terminal.output().print(terminal.frequencies(found, title, own))
+            title = f"{blade.name}: {len(blade.stations)} stations, {elements} elements"
+            terminal.output().print(terminal.frequencies(found, title, units or subject.units))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
     return PASSED

@@ -14,10 +14,9 @@ from rich.table import Table
 
 from ..cases.errors import CaseError
 from ..cases.properties import Sections, about_hub, about_root, sections
-from ..cases.readers import Mount
 from ..core.blade import Blade, straight
-from . import campbell_options as options
 from . import campbell_subjects, terminal
+from .mounting import Mounting
 
 Array = NDArray[np.float64]
 
@@ -40,12 +39,7 @@ def command(
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     all: Annotated[bool, Parameter(negative=())] = False,
-    main: Path | None = None,
-    length: float | None = None,
-    hub_radius: float | None = None,
-    precone: float | None = None,
-    pitch: float | None = None,
-    subset: str | None = None,
+    mounting: Mounting | None = None,
 ) -> int:
     """A blade's mass, centre, moments, sections and axes, and how its file was read.
 
@@ -57,28 +51,8 @@ def command(
         Folder for a figure of the properties along the span (SVG, PNG) and a CSV of all stations.
     all
         Every station in the table.
-    main
-        The main file that says how the blade sits on the hub, of a blade's file that does not.
-    length
-        From root to tip, m, if no file says it or it is to be another.
-    hub_radius
-        From the rotor's axis to the root, m, likewise.
-    precone
-        Degrees, downwind, likewise.
-    pitch
-        Degrees, leading edge downwind, likewise.
-    subset
-        Set and subset of a HAWC2 structural file that has several, as `5:1`.
     """
-    mount = Mount(
-        main=main,
-        length=length,
-        hub_radius=hub_radius,
-        precone=options.angle("--precone", precone),
-        pitch=options.angle("--pitch", pitch),
-        subset=options.subset(subset) if subset is not None else None,
-    )
-    subjects = campbell_subjects.subjects(blade, mount)
+    subjects = campbell_subjects.subjects(blade, (mounting or Mounting()).mount())
     console = terminal.output()
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))

@@ -1,0 +1,71 @@
+"""Options that say what a blade's file leaves to others: how long it is and how it sits on the hub."""
+
+from dataclasses import dataclass
+from math import isfinite, radians
+from pathlib import Path
+
+from cyclopts import Parameter
+
+from ..cases.errors import CaseError
+from ..cases.readers import Mount
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Mounting:
+    """What a blade's file leaves to others; of a case, none.
+
+    Parameters
+    ----------
+    main
+        The main file that says how the blade sits on the hub, of a blade's file that does not.
+    length
+        From root to tip, m, if no file says it or it is to be another.
+    hub_radius
+        From the rotor's axis to the root, m, likewise.
+    precone
+        Degrees, downwind, likewise.
+    pitch
+        Degrees, leading edge downwind, likewise.
+    subset
+        Set and subset of a HAWC2 structural file that has several, as `5:1`.
+    """
+
+    main: Path | None = None
+    length: float | None = None
+    hub_radius: float | None = None
+    precone: float | None = None
+    pitch: float | None = None
+    subset: str | None = None
+
+    def mount(self) -> Mount:
+        """The same for a reader, in radians.
+
+        Raises:
+            CaseError: naming the option that cannot be.
+        """
+        for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
+            if value is not None and not (isfinite(value) and value >= least):
+                raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
+        return Mount(
+            main=self.main,
+            length=self.length,
+            hub_radius=self.hub_radius,
+            precone=_angle("--precone", self.precone),
+            pitch=_angle("--pitch", self.pitch),
+            subset=None if self.subset is None else _subset(self.subset),
+        )
+
+
+def _angle(option: str, degrees: float | None) -> float | None:
+    if degrees is not None and not isfinite(degrees):
+        raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
+    return None if degrees is None else radians(degrees)
+
+
+def _subset(text: str) -> tuple[int, int]:
+    try:
+        first, second = (int(p) for p in text.split(":"))
+    except ValueError:
+        raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
+    return first, second
