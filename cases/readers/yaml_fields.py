@@ -1,0 +1,141 @@
+"""Fields of a YAML file that know the line they are on."""
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from ..errors import CaseError, nearest
+from .text import Text, number
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Field:
+    """A node of the file and the keys that lead to it."""
+
+    text: Text
+    name: str
+    node: yaml.Node
+
+    @property
+    def at(self) -> str:
+        """Where it is, for a message."""
+        return _at(self.text, self.node, self.name)
+
+    def find(self, *path: str) -> "Field | None":
+        """The field under these keys; None if one of them is not there.
+
+        Raises:
+            CaseError: if something on the way has no keys.
+        """
+        here = self
+        for key in path:
+            found = here._keys().get(key)
+            if found is None:
+                return None
+            here = Field(self.text, f"{here.name}.{key}".lstrip("."), found)
+        return here
+
+    def get(self, *path: str) -> "Field":
+        """The field under these keys.
+
+        Raises:
+            CaseError: naming the first key that is not there.
+        """
+        here = self
+        for key in path:
+            found = here.find(key)
+            if found is None:
+                raise CaseError(f"{here.at}: no key {key}: {nearest(key, here._keys())}; add it")
+            here = found
+        return here
+
+    def number(self) -> float:
+        """A finite number.
+
+        Raises:
+            CaseError: if it is none.
+        """
+        return _number(self.text, self.node, self.name)
+
+    def word(self) -> str:
+        """What stands there.
+
+        Raises:
+            CaseError: if that is a list or has keys.
+        """
+        if not isinstance(self.node, yaml.ScalarNode):
+            raise CaseError(f"{self.at}: one word is needed: correct it")
+        return str(self.node.value)
+
+    def numbers(self) -> Array:
+        """A list of finite numbers, (n,).
+
+        Raises:
+            CaseError: naming the line of the first that is none.
+        """
+        return np.array([_number(self.text, node, self.name) for node in self._items()])
+
+    def rows(self, width: int) -> Array:
+        """A list of lists of ``width`` finite numbers, (n, width).
+
+        Raises:
+            CaseError: naming the line of the first that is not so.
+        """
+        rows = [Field(self.text, f"{self.name}[{k}]", node) for k, node in enumerate(self._items())]
+        for row in rows:
+            count = len(row._items())
+            if count != width:
+                raise CaseError(f"{row.at}: {count} numbers instead of {width}: one missing or too many? correct it")
+        return np.array([row.numbers() for row in rows]).reshape(-1, width)
+
+    def item(self, k: int) -> str:
+        """Where item ``k`` of a list is, for a message."""
+        return _at(self.text, self._items()[k], self.name)
+
+    def _items(self) -> list[yaml.Node]:
+        if not isinstance(self.node, yaml.SequenceNode):
+            raise CaseError(f"{self.at}: a list is needed: correct it")
+        return self.node.value
+
+    def _keys(self) -> dict[str, yaml.Node]:
+        if isinstance(self.node, yaml.ScalarNode) and self.node.tag == "!include":
+            raise CaseError(f"{self.at}: stands in another file ({self.node.value}): put its text here")
+        if not isinstance(self.node, yaml.MappingNode):
+            raise CaseError(f"{self.at}: keys are needed: indented wrongly? correct it")
+        return {str(key.value): value for key, value in self.node.value}
+
+
+def fields(text: Text) -> Field:
+    """The file's outermost field.
+
+    Raises:
+        CaseError: if it is not YAML.
+    """
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where there is one: twenty times faster
+    try:
+        node = yaml.compose("\n".join(text.lines), Loader=loader)
+    except yaml.MarkedYAMLError as error:
+        line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise CaseError(f"{text.path}{line}: not YAML: {error.problem}: correct it") from error
+    except yaml.YAMLError as error:
+        raise CaseError(f"{text.path}: not YAML: {' '.join(str(error).split())}: correct it") from error
+    if node is None:
+        raise CaseError(f"{text.path}: nothing but comments: give the blade's file")
+    return Field(text, "", cast(yaml.Node, node))
+
+
+def _number(text: Text, node: yaml.Node, name: str) -> float:
+    said = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
+    found = number(said)
+    if found is None or not np.isfinite(found):
+        raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: a gap in the data? correct it")
+    return found
+
+
+def _at(text: Text, node: yaml.Node, name: str) -> str:
+    return text.at(node.start_mark.line) + (f": {name}" if name else "")
