@@ -72,12 +72,14 @@ def _rate(blade: Blade) -> float:
 
 
 def _alike(blade: Blade, series: Series) -> bool:
-    if not uniform(blade) or series.tip_mass_ratio:
+    if not uniform(replace(blade, tip_mass=np.zeros((6, 6)))):
         return False
     section = sample(blade, 0.0)
+    point = series.tip_mass_ratio * section.mass[0] * blade.length * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     slenderness = blade.length * np.sqrt(section.EA[0] / section.EI_z[0])
     return bool(
-        np.isclose(series.hub_ratio, blade.hub_radius / blade.length, rtol=1e-6, atol=1e-9)
+        np.allclose(blade.tip_mass, point, rtol=1e-6, atol=1e-12)
+        and np.isclose(series.hub_ratio, blade.hub_radius / blade.length, rtol=1e-6, atol=1e-9)
         and (series.slenderness is None or np.isclose(series.slenderness, slenderness, rtol=1e-6))
     )
 

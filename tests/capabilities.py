@@ -21,6 +21,8 @@ class Can:
         estimate: gives a bracket instead of a converged number.
         twin: is given core's own discretisation and held to rounding.
         coupled: sections whose strains or motions couple.
+        hinged: a root that is not clamped.
+        tip: a mass at the tip.
     """
 
     taper: bool = True
@@ -31,14 +33,16 @@ class Can:
     estimate: bool = False
     twin: bool = False
     coupled: bool = False
+    hinged: bool = False
+    tip: bool = True
 
 
 CODES = {
     "exudyn-ancf": Can(unlike=False, twist=False, lacks=("rotary inertia",)),
     "exudyn-tree": Can(),
-    "scikit-fem": Can(),
+    "scikit-fem": Can(hinged=True),
     "pinocchio": Can(twin=True, coupled=True),
-    "pybmodes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
+    "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
@@ -52,6 +56,8 @@ class Asks:
 
     Attributes:
         coupled: sections whose mass centres lie off the axis.
+        hinged: a hinge or spring at the root.
+        tip: a mass at the tip.
         axial: axial modes are compared.
         gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
             none, moments of inertia matter at rest.
@@ -61,6 +67,8 @@ class Asks:
     twist: bool = False
     unlike: bool = False
     coupled: bool = False
+    hinged: bool = False
+    tip: bool = False
     axial: bool = False
     gentle: float = math.inf
 
@@ -79,6 +87,13 @@ BLADES = {
     "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
     "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True),
     "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True),
+    "articulated/flap": Asks(hinged=True),
+    "articulated/both": Asks(hinged=True),
+    "articulated/sprung": Asks(hinged=True),
+    "rotating-cable": Asks(unlike=True, hinged=True),
+    "tip-mass": Asks(tip=True),
+    "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
+    "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
 }
 
 TABLES = {
@@ -91,13 +106,18 @@ TABLES = {
     "yoo_shin1998/uncoupled": "yoo-shin-chordwise/delta-0",
     "openfast/elastodyn": "nrel-5mw",
     "bmodes3/cert-1": "windpact-1.5/bmodes",
+    "southwell1921/cable": "rotating-cable",
+    "bir2010/analytical": "tip-mass",
 }
 """Printed series, and the blade they are about."""
 
 
+NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip")
+
+
 def solves(can: Can, asks: Asks) -> bool:
     """Whether a code can be expected to solve a blade."""
-    return all(getattr(can, need) or not getattr(asks, need) for need in ("taper", "twist", "unlike", "coupled"))
+    return all(getattr(can, need) or not getattr(asks, need) for need in NEEDS)
 
 
 def allowed(can: Can, asks: Asks, omega: float) -> set[str]:
