@@ -68,7 +68,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     found, stiffness, mass = _sections(text)
     eta = fractions(found, "station_eta")
     files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if told and mount.main else ())
-    blade = _blade(path.stem, axis, eta, stiffness, mass, settled)
+    blade = assemble(path.stem, axis, eta, stiffness, mass, settled)
     if told and told.tip_mass:
         blade = replace(blade, tip_mass=np.diag([told.tip_mass] * 3 + [0.0] * 3))
     notes = [
@@ -181,7 +181,12 @@ def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[floa
     return row(text, k, tuple(f"{what} {j + 1}{c}" for c in range(1, 7)))
 
 
-def _blade(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
+def assemble(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
+    """A blade of sections at fractions ``eta`` (n,) of a curve's length, in BeamDyn's axes; stations at key points too.
+
+    Raises:
+        CaseError: what cannot be.
+    """
     length = axis.arc[-1]
     own = eta * length
     points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > SAME * length]
