@@ -64,7 +64,7 @@ def solve(variant: Variant, compare: Compare) -> list[Wrong]:
                 if m.right not in known:
                     known[m.right] = _solved(m.right, variant.blade, omega, compare)
                 right, wrong = known[m.right], _solved(m.wrong, variant.blade, omega, compare)
-                modes = _changed(right, wrong, variant.blade, compare) if right and wrong else ()
+                modes = changed(right, wrong, variant.blade, compare) if right and wrong else ()
                 out.append(Wrong(m.name, omega, modes))
     return out
 
@@ -78,7 +78,8 @@ def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes
         return None
 
 
-def _changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[Changed, ...]:
+def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[Changed, ...]:
+    """The modes of ``right`` that a case compares, named, and those of ``wrong`` most like them."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
     wanted, family = qualifying(right, weight, compare), families(right, weight)

@@ -12,12 +12,12 @@ from platform import python_version
 from typing import Any
 
 from ..references.codes import code
-from . import controls, mechanism_columns
+from . import controls, mechanism_columns, shares
 from .columns import Column, Rows, columns
 from .controls import Wrong
 from .mechanism_case import MechanismCase, Turning
 from .reference import references
-from .results import Cell, Control, Level, Run
+from .results import Cell, Control, Level, Run, Share
 from .schema import Case, Variant
 from .settings import settings
 
@@ -53,6 +53,7 @@ class _Task:
     core: Callable[[], dict[Any, list[Any]]]
     column: Column | None = None
     mistakes: Callable[[], list[Wrong]] | None = None
+    shares: Callable[[], list[Share]] | None = None
 
     @property
     def label(self) -> str:
@@ -85,10 +86,12 @@ def run(
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
     wrong: list[tuple[_Task, Future[list[Wrong]]]] = []
+    split: list[tuple[_Task, Future[list[Share]]]] = []
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
         wrong = [(task, executor.submit(task.mistakes)) for task in plans if task.mistakes]
+        split = [(task, executor.submit(task.shares)) for task in plans if task.shares]
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -102,8 +105,9 @@ def run(
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
         noticed = [row for task, future in wrong for row in _noticed(task, future.result(), rows)]
+        parts = [row for task, future in split for row in _parts(task, future.result(), rows)]
     finally:
-        for future in [*pending, *(future for _, future in wrong)]:
+        for future in [*pending, *(future for _, future in [*wrong, *split])]:
             future.cancel()
     ordered = [rows[task.variant.name, column.name] for task in plans for column in task.columns]
     return Run(
@@ -112,6 +116,7 @@ def run(
         versions=versions({c.name: c.version() for c in known.values()}),
         settings=tuple(setting for case in cases for setting in settings(case)),
         controls=tuple(noticed),
+        shares=tuple(parts),
     )
 
 
@@ -126,15 +131,23 @@ def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float) ->
         made = tuple(columns(case, v, codes, timeout))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        out.append(_Task(v, made, question, mistakes=partial(controls.solve, v, case.text.compare)))
+        mistakes = partial(controls.solve, v, case.text.compare)
+        out.append(_Task(v, made, question, mistakes=mistakes, shares=partial(shares.solve, case, v)))
     return out
 
 
 def _noticed(task: _Task, wrongs: list[Wrong], rows: dict[tuple[str, str], Rows]) -> list[Control]:
     """What the columns of one blade notice of core's mistakes."""
-    name = task.variant.name
-    cells = [cell for column in task.columns for cell in rows[name, column.name][0]]
-    return controls.judged(name, wrongs, cells)
+    return controls.judged(task.variant.name, wrongs, _cells(task, rows))
+
+
+def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:
+    """What core's differences are made of, and how sure the numbers are that they are seen in."""
+    return parts + shares.uncertain(task.variant.name, parts, _cells(task, rows))
+
+
+def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
+    return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
 
 
 def versions(codes: dict[str, str | None]) -> dict[str, str]:

@@ -112,6 +112,29 @@ class Control:
 
 
 @dataclass(frozen=True)
+class Share:
+    """What one cause does to one of core's frequencies: a part of the differences that a reader sees.
+
+    Attributes:
+        case: as in ``Cell``.
+        omega: rotor speed, rad/s.
+        mode: by name: ``flapwise 2``.
+        cause: discretisation, model form, or rounding.
+        part: which: ``lumped mass, 50 elements``.
+        change: relative; None where no mode is like it.
+        bound: whether ``change`` is the most that it can be, of either sign.
+    """
+
+    case: str
+    omega: float
+    mode: str
+    cause: str
+    part: str
+    change: float | None
+    bound: bool = False
+
+
+@dataclass(frozen=True)
 class Setting:
     """What a report says of a case's blade, so that old results can be shown without the case's file.
 
@@ -143,6 +166,7 @@ class Run:
         command: what was typed, to reproduce.
         settings: of each case's blade.
         controls: what became of core made wrong on purpose.
+        shares: where differences come from.
     """
 
     cells: tuple[Cell, ...]
@@ -151,15 +175,18 @@ class Run:
     command: str = ""
     settings: tuple[Setting, ...] = ()
     controls: tuple[Control, ...] = ()
+    shares: tuple[Share, ...] = ()
 
 
 def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
-    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, controls, versions and command."""
+    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, controls, shares,
+    versions and command."""
     lines: list[dict[str, Any]] = [{"kind": "cell", **msgspec.to_builtins(c)} for c in cells]
     lines += [{"kind": "level", **msgspec.to_builtins(v)} for v in levels]
     if run:
         lines += [{"kind": "setting", **msgspec.to_builtins(s)} for s in run.settings]
         lines += [{"kind": "control", **msgspec.to_builtins(c)} for c in run.controls]
+        lines += [{"kind": "share", **msgspec.to_builtins(s)} for s in run.shares]
         lines.append({"kind": "run", "versions": run.versions, "command": run.command})
     with path.open("ab") as file:
         file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
@@ -186,9 +213,14 @@ def read(path: Path) -> Run:
                 f"{path}: line {number}: not a result ({error}): was it written by another version?"
             ) from error
     return Run(
-        tuple(rows[Cell]), tuple(rows[Level]), settings=tuple(rows[Setting]), controls=tuple(rows[Control]), **about
+        tuple(rows[Cell]),
+        tuple(rows[Level]),
+        settings=tuple(rows[Setting]),
+        controls=tuple(rows[Control]),
+        shares=tuple(rows[Share]),
+        **about,
     )
 
 
-KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting, "control": Control}
+KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting, "control": Control, "share": Share}
 """What a line of each kind is."""

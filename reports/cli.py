@@ -139,7 +139,7 @@ def _solve(
         return results.read(path), False
     finally:
         pool.stop()
-    run = replace(about, cells=done.cells, levels=levels, controls=done.controls)
+    run = replace(about, cells=done.cells, levels=levels, controls=done.controls, shares=done.shares)
     ordered = path.with_suffix(".part")
     ordered.unlink(missing_ok=True)
     results.append(ordered, run.cells, run.levels, run)

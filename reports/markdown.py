@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, controls, lumped, summary, witnesses
+from . import bench, controls, lumped, shares, summary, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -163,6 +163,8 @@ class Section:
     figures: list[str]
     reasons: str
     count: int
+    shares: str
+    shares_at: str
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
@@ -174,7 +176,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     printed = [c.omega for c in cells if c.role == "table"]
     focus = max(printed or speeds, default=None)
     tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
-    reasons = why(cells, unit)
+    reasons, split = why(cells, unit), shares.rows(run, case)
     return Section(
         name=case,
         setting=setting,
@@ -186,6 +188,8 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
+        shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
+        shares_at=shares.heading(run, case, unit),
     )
 
 
