@@ -22,7 +22,7 @@ from ..core.modes import STATIONS, Modes
 from .interface import Code, Shares
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
 from .spectral import clamped
-from .straight_beam import LEVELS, line, refusal, refuse, tension, version
+from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
 
 Array = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ class AssumedModes:
         start = perf_counter()
         parts = [
             part(bending.shape, *stationary_modes(bending.mass, bending.stiffness(omega)))
-            for bending in bendings(blade, elements)
+            for bending in bendings(blade, terms(blade, elements))
         ]
         return union(parts, omega, elements, count, perf_counter() - start)
 

@@ -34,7 +34,7 @@ from ..core.modes import STATIONS, Modes
 from .interface import Code, CodeError, Shares
 from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
 from .spectral import clamped, pinned
-from .straight_beam import LEVELS, Line, line, refusal, refuse, version
+from .straight_beam import LEVELS, Line, line, refusal, refuse, terms, version
 
 Array = NDArray[np.float64]
 
@@ -175,7 +175,7 @@ class ExactBeam:
         """
         refuse(self.unsupported(blade))
         start = perf_counter()
-        beam = stretched(blade, omega, elements)
+        beam = stretched(blade, omega, terms(blade, elements))
         torsion = bool(beam.at.I_x.any() and np.isfinite(blade.stiffness[:, TORSION, TORSION]).all())
         problems = (in_plane(beam), out_of_plane(beam, torsion))
         parts = [part(shape, *coupled_modes(M, C, K, count)) for M, C, K, shape in problems]

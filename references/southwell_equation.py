@@ -28,7 +28,7 @@ from .assumed_modes import Bending, bendings
 from .interface import Code, Shares
 from .ritz import Y, integral, part, stationary_modes, union
 from .spectral import pinned
-from .straight_beam import LEVELS, line, refusal, refuse, tension, version
+from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
 
 Array = NDArray[np.float64]
 
@@ -80,8 +80,9 @@ class SouthwellEquation:
         refuse(self.unsupported(blade))
         start = perf_counter()
         parts = []
-        for bending in bendings(blade, elements):
-            beta = cable(blade, bending.planes, elements)
+        number = terms(blade, elements)
+        for bending in bendings(blade, number):
+            beta = cable(blade, bending.planes, number)
             value, lower, upper, phi = squared(bending, beta, omega, count)
             frequency, low, high = np.sqrt(value), np.sqrt(lower), np.sqrt(upper)
             reach = np.maximum(high - frequency, frequency - low) / frequency

@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 LEVELS: tuple[int, ...] = (8, 16, 32)
 """Terms in each interval. A uniform beam, each plane: 8 give mode 3 to 1e-6, 16 mode 5 to 1e-10, 32 mode 10 to rounding."""
 
+MANY = 8
+"""Intervals beyond which each is so short that fewer terms do: the fewest but five, twice as many at the finest."""
+
 EXTRA = 8
 """Gauss points beyond those that polynomial integrands need, for the twist's sines and the steady stretch's quotients."""
 
@@ -40,6 +43,13 @@ class Line:
     I_x: Array
     I_y: Array
     I_z: Array
+
+
+def terms(blade: Blade, level: int) -> int:
+    """Polynomials in each interval at a level of refinement: as many as the level says, or fewer of a blade of many kinks."""
+    if len(intervals(blade)) - 1 <= MANY:
+        return level
+    return round(5.0 * np.sqrt(level / LEVELS[0]))
 
 
 def line(blade: Blade, terms: int) -> Line:

@@ -26,7 +26,7 @@ from .assumed_modes import bendings
 from .interface import Code, Shares
 from .ritz import X, Y, apart, coupled_modes, integral, part, shape_of, skew, stationary_modes, union
 from .spectral import clamped, pinned
-from .straight_beam import LEVELS, line, refusal, refuse, version
+from .straight_beam import LEVELS, line, refusal, refuse, terms, version
 
 Array = NDArray[np.float64]
 
@@ -78,8 +78,9 @@ class YooShin:
         """
         refuse(self.unsupported(blade))
         start = perf_counter()
-        M, C, K, shape = chordwise(blade, omega, elements)
-        _, flap = bendings(blade, elements)
+        number = terms(blade, elements)
+        M, C, K, shape = chordwise(blade, omega, number)
+        _, flap = bendings(blade, number)
         parts = (
             part(shape, *coupled_modes(M, C, K, count)),
             part(flap.shape, *stationary_modes(flap.mass, flap.stiffness(omega))),
