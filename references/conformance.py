@@ -9,7 +9,7 @@ In a third party's own tests, with pytest::
             pytest.skip(outcome.reason)
         assert outcome.verdict == "pass", outcome.reason
 
-On the command line: ``southwell codes --check NAME``. Every check either holds the code to a closed form, a printed number or a
+On the command line: ``southwell conform NAME``. Every check either holds the code to a closed form, a printed number or a
 symmetry (``conformance_checks``), or, for what a code may drop without a word, asks whether its answer is nearer to
 core's with it than without.
 """

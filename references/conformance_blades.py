@@ -1,4 +1,4 @@
-"""What conformance is judged by: simple blades whose frequencies are closed forms or printed numbers, and what they may have."""
+"""What conformance is judged by: simple blades with closed forms or printed numbers, and the properties a blade may have."""
 
 from dataclasses import dataclass, replace
 
@@ -35,7 +35,7 @@ WITH_TIP_MASS = replace(
 STUBBY = uniform_blade(
     "stubby beam", LENGTH, 0.0, EA=3e4, GJ=200.0, EI_y=EI, EI_z=EI, mass=MASS, I_y=MASS * EI / 3e4, I_z=MASS * EI / 3e4
 )
-"""Slenderness 50, its sections' inertia that of their stiffness: every effect of ``core.model`` shows at ``FAST``, by 0.7 % at least."""
+"""Slenderness 50, inertia of the sections to match: each effect of ``core.model`` shows at ``FAST``, by 0.7 % at least."""
 
 FAST = 10.0
 """rad/s."""
@@ -187,7 +187,7 @@ PROPERTIES = (
 
 
 def shaft() -> tuple[Blade, float]:
-    """The beam, soft in torsion, and its first torsional frequency at rest, rad/s; between the first in bending and the next."""
+    """The beam, soft in torsion, and its first torsional frequency at rest, rad/s: π/2 √(GJ / I) / L, its second mode."""
     stiffness, frequency = BEAM.stiffness.copy(), 10.0
     polar = BEAM.mass[0, TORSION, TORSION]
     stiffness[:, TORSION, TORSION] = polar * (frequency * LENGTH / (np.pi / 2)) ** 2

@@ -27,7 +27,7 @@ ROUNDING = 1e-6
 """Relative, where two answers of one code must be the same."""
 
 DROPPED, VISIBLE = 0.25, 5e-3
-"""How near an answer must be, as a share of what dropping a thing does; the least relative change by that for it to be asked."""
+"""How near an answer must be, as a share of what dropping a thing does; how much, relative, that must do to be asked for."""
 
 
 class BrokenError(AssertionError):
