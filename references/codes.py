@@ -22,6 +22,8 @@ OURS = {
     "exudyn-tree": "southwell.references.exudyn_tree:CODE",
     "scikit-fem": "southwell.references.scikit_fem_beam:CODE",
     "pinocchio": "southwell.references.pinocchio_chain:CODE",
+    "drake": "southwell.references.drake_chain:CODE",
+    "mujoco": "southwell.references.mujoco_chain:CODE",
     "pybmodes": "southwell.references.pybmodes_beam:CODE",
     "yoo-shin": "southwell.references.yoo_shin:CODE",
     "assumed-modes": "southwell.references.assumed_modes:CODE",
@@ -84,9 +86,9 @@ def code(name: str) -> Any:
     return found
 
 
-CAPS = {"pinocchio": 40, "pybmodes": 320}
-"""Finest refinement that a code can be asked for, where memory sets it: Pinocchio keeps dense cubes of all freedoms, and
-pyBModes dense squares."""
+CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320}
+"""Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
+freedoms, pyBModes dense squares; Drake and MuJoCo take time that grows as the cube."""
 
 
 def cap(code: Code) -> int:

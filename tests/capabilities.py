@@ -42,6 +42,8 @@ CODES = {
     "exudyn-tree": Can(),
     "scikit-fem": Can(hinged=True),
     "pinocchio": Can(twin=True, coupled=True),
+    "drake": Can(twin=True, coupled=True),
+    "mujoco": Can(twin=True, coupled=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
