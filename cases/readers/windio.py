@@ -44,6 +44,9 @@ ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
 STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
 """Entries that a file may leave out, and the strain that is then rigid, in our order."""
 
+FAR = 1.0
+"""No blade is twisted by more, in radians: files of windIO 1 that say so have it in degrees, as windIO 2."""
+
 SAME = 1e-9
 """Grid points nearer than this, of the length, are one."""
 
@@ -72,12 +75,15 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     told = _told(top)
     settled = settle(mount or Mount(), _hub(top, told))
     eta, stiffness, mass, loose = (_lists if told.version == 2 else _rows)(told.elastic)
-    axis = _axis(told)
-    blade = beamdyn.assemble(path.stem, axis, eta, stiffness, mass, settled)
+    name = top.find("name")
+    blade = beamdyn.assemble(name.word() if name else path.stem, _axis(told), eta, stiffness, mass, settled)
     blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(told.elastic))
-    notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations", "pitch taken as 0"]
-    if mount is not None and mount.pitch is not None:
-        del notes[1]
+    notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
+    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+    if open_:
+        notes.append(f"{', '.join(open_)} taken as 0")
+    if told.version == 1 and told.degrees == 1.0:
+        notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
     if loose:
         notes.append(f"{', '.join(key for key, i in STRAINS.items() if i in loose)} not given: rigid")
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
@@ -96,7 +102,8 @@ def _told(top: Field) -> Told:
             "elastic_properties_mb.six_x_six (windIO 1); have them computed from the layers first (as by WISDEM)"
         )
     axis, twist = (old.find(key) or blade.get("outer_shape_bem", key) for key in ("reference_axis", "twist"))
-    return Told(1, old, axis, twist, float(np.degrees(1.0)))
+    already = np.abs(twist.get("values").numbers()).max() > FAR
+    return Told(1, old, axis, twist, 1.0 if already else float(np.degrees(1.0)))
 
 
 def _hub(top: Field, told: Told) -> Mount:
@@ -104,10 +111,11 @@ def _hub(top: Field, told: Told) -> Mount:
     hub = top.find("components", "hub")
     if hub is None:
         return Mount()
+    hub = hub.find("outer_shape_bem") or hub
     diameter, cone = hub.find("diameter"), hub.find("cone_angle")
     orientation = top.find("assembly", "rotor_orientation") if top.find("assembly") else None
     upwind = orientation is None or orientation.word().lower() == "upwind"
-    radians = np.radians(cone.number() * told.degrees) if cone else None
+    radians = cone.number() * (1.0 if told.version == 1 else np.pi / 180) if cone else None
     return Mount(
         hub_radius=diameter.number() / 2 if diameter else None,
         precone=None if radians is None else float(-radians if upwind else radians),
