@@ -1,23 +1,29 @@
-"""The README's table, written from a run by a command: ``python -m southwell.reports.readme [results.jsonl]``.
+"""The README's tables, written from a run by a command: ``python -m southwell.reports.readme [results.jsonl]``.
 
-The few rows that the table needs are kept beside this module, so that anyone can see that the table says what they say.
+The few rows that the tables need, and what a measurement of cost beside the results found, are kept beside this module, so
+that anyone can see that the tables say what they say.
 """
 
+import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
 
+from ..cases import bench as measure
 from ..cases import results
 from ..cases.lumping import CASE, OMEGA
 from ..cases.results import Cell, Run
-from . import summary
+from . import bench, summary
 from .markdown import comparison, heat, units
 from .summary import SYMBOL, broad, columns
 
 ROWS = Path(__file__).with_name("readme.jsonl")
 README = Path(__file__).parents[1] / "README.md"
 
-BEGIN, END = "<!-- table: begin, written by `make readme` -->", "<!-- table: end -->"
+COST = Path(__file__).with_name("readme-bench.json")
+
+BEGIN, END = "<!-- {}: begin, written by `make readme` -->", "<!-- {}: end -->"
+"""Round what is written: ``table`` and ``cost``."""
 
 
 def condense(run: Run) -> Run:
@@ -51,26 +57,36 @@ From `{run.command}` with {made}.
 """
 
 
-def put(text: str, new: str) -> str:
-    """``text`` with ``new`` between the markers.
+def put(text: str, new: str, what: str = "table") -> str:
+    """``text`` with ``new`` between the markers of ``what``.
 
     Raises:
         ValueError: if the markers are not there.
     """
-    head, begin, rest = text.partition(BEGIN)
-    _, end, tail = rest.partition(END)
+    first, last = BEGIN.format(what), END.format(what)
+    head, begin, rest = text.partition(first)
+    _, end, tail = rest.partition(last)
     if not (begin and end):
-        raise ValueError(f"README: the markers {BEGIN} and {END} are missing: put them where the table shall stand")
-    return f"{head}{BEGIN}\n\n{new}\n{END}{tail}"
+        raise ValueError(f"README: the markers {first} and {last} are missing: put them where the table shall stand")
+    return f"{head}{first}\n\n{new}\n{last}{tail}"
+
+
+def written(text: str) -> str:
+    """The README with what the rows and the measurement kept here say."""
+    text = put(text, block(results.read(ROWS)))
+    return put(text, bench.render(measure.read(COST)), "cost")
 
 
 def main() -> None:
-    """Take the rows from a results file, if one is given, and write the README's table."""
+    """Take the rows from a results file, if one is given, and the measurement beside it, and write the README's tables."""
     if sys.argv[1:]:
+        path = Path(sys.argv[1])
         ROWS.unlink(missing_ok=True)
-        kept = condense(results.read(Path(sys.argv[1])))
+        kept = condense(results.read(path))
         results.append(ROWS, kept.cells, run=kept)
-    README.write_text(put(README.read_text(encoding="utf-8"), block(results.read(ROWS))), encoding="utf-8")
+        if (measured := path.with_name(bench.FILE)).exists():
+            shutil.copyfile(measured, COST)
+    README.write_text(written(README.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":
