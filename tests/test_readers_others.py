@@ -52,6 +52,18 @@ def test_a_section_moved_across_keeps_its_frequencies_at_rest() -> None:
     np.testing.assert_allclose(a, b, rtol=1e-9)
 
 
+def test_hawc2_radii_of_gyration_are_about_the_elastic_centre(tmp_path: Path) -> None:
+    """100 kg/m at 0.4 m, 0.1 m ahead of the elastic centre: 4 − 1 about itself, 16 more about the half-chord line."""
+    path = copied(tmp_path, ST, "1.000000e+02\t3.000000e-01", "1.000000e+02\t4.000000e-01", -1)
+    m = readers.read(path, OFF).mass[0]
+    assert m[5, 5] == pytest.approx(4.0 - 1.0 + 16.0)
+    assert m[0, 5] == pytest.approx(-40.0)
+    assert m[4, 4] == pytest.approx(0.25 + 100 * 0.1**2)  # both centres 0.1 m upwind
+    copied(tmp_path, ST, "1.000000e+02\t3.000000e-01", "1.000000e+02\t6.000000e-01", -1)
+    with pytest.raises(CaseError, match=r"line 10: ri_x, ri_y: 0.2: less than the mass centre's distance"):
+        readers.read(path, OFF)
+
+
 def test_hawc2_curve_and_twist_of_the_htc() -> None:
     found = readers.reading(HTC, Mount(hub_radius=2.0))
     assert {p.name for p in found.source.files} == {ST.name, HTC.name}
@@ -96,11 +108,11 @@ def test_iea_15_in_hawc2_and_in_beamdyn_is_one_blade() -> None:
         sides = [
             np.linalg.norm(getattr(k, f"{one}_centre") - getattr(k, f"{two}_centre"), axis=1)[inner] for k in (a, b)
         ]
-        np.testing.assert_allclose(*sides, atol=0.01)  # of up to 1 m
+        np.testing.assert_allclose(sides[0], sides[1], atol=0.01)  # of up to 1 m
     legs = [(k.tension_centre - k.mass_centre, k.shear_centre - k.mass_centre) for k in (a, b)]
     areas = [(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])[inner] for one, two in legs]
     assert np.abs(areas[0]).max() > 0.01
-    np.testing.assert_allclose(*areas, atol=5e-3)
+    np.testing.assert_allclose(areas[0], areas[1], atol=5e-3)
     rows = [line.split() for line in plain_file.read_text().splitlines() if len(line.split()) == 19]
     printed = np.array([row[6:8] for row in rows if row[0][0].isdigit()][:26], float)
     np.testing.assert_allclose(a.shear_centre, printed, atol=2e-3)

@@ -53,7 +53,7 @@ def _piece(spline: CubicSpline, a: float, b: float) -> float:
 
 def _arc(axis: Axis, z: Array) -> Array:
     k = np.clip(np.searchsorted(axis.z, z, side="right") - 1, 0, len(axis.z) - 2)
-    return np.array([axis.arc[i] + _piece(axis.spline, axis.z[i], b) for i, b in zip(k, z, strict=True)])
+    return np.array([axis.arc[i] + _piece(axis.spline, float(axis.z[i]), float(b)) for i, b in zip(k, z, strict=True)])
 
 
 def _tangents(axis: Axis, z: Array) -> Array:

@@ -5,8 +5,9 @@ turned by c2_def's twist, and ``pitch`` turns from those to the principal bendin
 half-chord line becomes the reference axis. 19 columns: stretch and bending (E A, E I_x, E I_y) act at the elastic centre in
 the principal axes, torsion and shear (G I_p, k G A) at the shear centre; 30 columns: the matrix is about the elastic centre
 in the principal axes, order (shear x, shear y, axial, bending x, bending y, torsion). Radii of gyration are about the
-elastic centre, in the principal axes. c2_def is interpolated by Akima splines in z. Source: T. J. Larsen, A. M. Hansen,
-*How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
+elastic centre, in the principal axes, as the manual says; there are files (IEA-15's) whose numbers are about the mass
+centre. c2_def is interpolated by Akima splines in z. Source: T. J. Larsen, A. M. Hansen, *How 2 HAWC2, the user's manual*,
+Risø-R-1597, ch. 6.
 """
 
 import re
@@ -159,6 +160,11 @@ def _mass(p: Table) -> Array:
     rotary[:, 5, 5] -= m * y**2
     rotary[:, 4, 5] += m * y * z
     rotary[:, 5, 4] += m * y * z
+    least = np.linalg.eigvalsh(rotary[:, 4:, 4:])[:, 0]
+    remedy = (
+        "less than the mass centre's distance from the elastic centre, about which it is: is it about another point?"
+    )
+    p.need(least >= -1e-9 * np.abs(rotary[:, 4:, 4:]).max(), "ri_x, ri_y", p["ri_y"], remedy)
     rotary[:, 3, 3] = rotary[:, 4, 4] + rotary[:, 5, 5]
     rotary[:, range(3), range(3)] = m[:, None]
     return about(rotary, p["x_cg"], p["y_cg"])

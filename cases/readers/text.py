@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import CaseError, nearest
 
@@ -118,13 +118,13 @@ class Table:
     def __getitem__(self, name: str) -> Array:
         return self.columns[name]
 
-    def need(self, condition: Array, name: str, value: Array, remedy: str) -> None:
+    def need(self, condition: ArrayLike, name: str, value: Array, remedy: str) -> None:
         """Refuse the first row at which ``condition`` is false.
 
         Raises:
             CaseError: with its line and value.
         """
-        if not condition.all():
+        if not np.all(condition):
             k = int(np.argmin(condition))
             raise CaseError(f"{self.text.at(self.lines[k])}: {name}: {value[k]:g}: {remedy}")
 
