@@ -63,7 +63,7 @@ Altered = tuple[str, str, Modes | None]
 def solve(case: Case, variant: Variant) -> list[Share]:
     """The shares in one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
     blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
-    printed = [d.speed * table.unit for table in about(blade, compare.tables) for d in table.series.data]
+    printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
     told = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
     omega, count = max(told or variant.speeds.tolist()), 2 * compare.modes + 2
     right = _solved(blade, omega, FINE, count)
@@ -96,9 +96,11 @@ def _solved(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
 ) -> Modes | None:
+    """None where there is no answer: what is left out may have held the blade."""
     try:
-        return modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
-    except (SteadyStateError, UnstableError, ArithmeticError):
+        with np.errstate(invalid="ignore"):
+            return modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+    except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
 
 
