@@ -75,6 +75,16 @@ def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) ->
         readers.read(tmp_path / BLADE.name)
 
 
+def test_what_else_lies_beside_it_does_not_matter(tmp_path: Path) -> None:
+    """Output of a run, an empty file, and another machine's main file that is cut short."""
+    for path in (BLADE, MAIN):
+        (tmp_path / path.name).write_text(path.read_text())
+    (tmp_path / "a.dat").write_bytes(b"\0\1")
+    (tmp_path / "b.dat").write_bytes(b"")
+    (tmp_path / "c.dat").write_text('52 TipRad\n2 HubRad\n"other.dat" BldFile1\n')
+    assert readers.read(tmp_path / BLADE.name).hub_radius == 2.0
+
+
 def test_written_and_read_again_it_is_the_same(tmp_path: Path) -> None:
     found = elastodyn.read(BLADE, MOUNT).blade
     path = tmp_path / BLADE.name

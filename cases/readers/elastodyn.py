@@ -31,6 +31,8 @@ COLUMNS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
 MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
+LARGEST = 1_000_000
+"""Bytes of a main file, at most: larger files beside a blade are not looked into."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ def read(path: Path, mount: Mount | None = None, *, multiply: bool = True) -> Re
     if is_main(text):
         main, text = path, load(hub(text).blade_file)
     else:
-        main = mount.main or (None if mount.length else beside(path, is_main, lambda t: hub(t).blade_file))
+        main = mount.main or (None if mount.length else beside(path, is_main, blade_file))
     told = hub(load(main)) if main else None
     return _blade(text, mount, told, main, multiply)
 
@@ -83,10 +85,14 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
     """
     found = []
     for other in sorted(path.parent.glob("*")):
-        if other.suffix.lower() not in {".dat", ".inp", ".txt"} or not other.is_file() or other == path:
+        fits = other.suffix.lower() in {".dat", ".inp", ".txt"} and other.is_file() and other.stat().st_size < LARGEST
+        if not fits or other == path:
             continue
-        text = load(other) if other.stat().st_size else None
-        if text and kind(text) and named(text).resolve() == path.resolve():
+        try:
+            text = load(other)
+        except CaseError:  # empty, or no text: output of a run, not a main file
+            continue
+        if kind(text) and named(text).resolve() == path.resolve():
             found.append(other)
     if len(found) > 1:
         names = ", ".join(f.name for f in found)
@@ -113,7 +119,16 @@ def hub(text: Text) -> Hub:
         pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")) if "blpitch1" in named else None,
     )
     mass = value(text, named, "TipMass1", "TipMass") if {"tipmass1", "tipmass"} & set(named) else 0.0
-    return Hub(mount, mass, text.path.parent / word(text, named, "BldFile1", "BldFile").replace("\\", "/"))
+    return Hub(mount, mass, blade_file(text))
+
+
+def blade_file(text: Text) -> Path:
+    """The first blade's file that a main file names.
+
+    Raises:
+        CaseError: if it names none.
+    """
+    return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
 
 
 def settle(mount: Mount, told: Mount | None) -> Mount:
