@@ -8,11 +8,14 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
+from pathlib import Path
 from platform import python_version
 from typing import Any
 
 from ..references.codes import code
 from . import controls, mechanism_columns, shares
+from .added import Added, check
+from .added import columns as added_columns
 from .columns import Column, Rows, columns
 from .controls import Wrong
 from .mechanism_case import MechanismCase, Turning
@@ -66,6 +69,7 @@ def run(
     executor: Executor,
     on_progress: Callable[[Progress], None] = lambda _: None,
     timeout: float = TIMEOUT,
+    added: Sequence[Added] = (),
 ) -> Run:
     """Every blade of ``cases`` through every one of ``codes``, judged.
 
@@ -75,13 +79,16 @@ def run(
         executor: where tasks run: threads, processes, another machine's.
         on_progress: told when the run starts and whenever a task ends; an exception from it stops the run.
         timeout: seconds for one worker.
+        added: results without a code, each a column more.
 
     Raises:
-        CaseError: if core itself cannot solve a case.
+        CaseError: if core itself cannot solve a case, or results are added that are not of these cases.
         UnknownCodeError: if a code is not known.
     """
     known = {name: code(name) for name in codes}
-    plans = [task for case in cases for task in _tasks(case, known, timeout)]
+    blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
+    check(added, blades, [c.name for c in known.values()])
+    plans = [task for case in cases for task in _tasks(case, known, timeout, added)]
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
@@ -113,14 +120,14 @@ def run(
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions({c.name: c.version() for c in known.values()}),
+        versions=versions({c.name: c.version() for c in known.values()}, added),
         settings=tuple(setting for case in cases for setting in settings(case)),
         controls=tuple(noticed),
         shares=tuple(parts),
     )
 
 
-def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float) -> list[_Task]:
+def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float, added: Sequence[Added]) -> list[_Task]:
     """One for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         (turning,) = case.variants
@@ -128,7 +135,7 @@ def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float) ->
         return [_Task(turning, made, partial(mechanism_columns.references, turning))]
     out = []
     for v in case.variants:
-        made = tuple(columns(case, v, codes, timeout))
+        made = (*columns(case, v, codes, timeout), *added_columns(v, added, case.text.compare.target))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
         mistakes = partial(controls.solve, v, case.text.compare)
@@ -150,10 +157,11 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
     return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
 
 
-def versions(codes: dict[str, str | None]) -> dict[str, str]:
-    """What the numbers were made with: Python, the packages core needs, and each code."""
+def versions(codes: dict[str, str | None], added: Sequence[Added] = ()) -> dict[str, str]:
+    """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
-    return {"python": python_version(), **ours, **{name: v or "not installed" for name, v in codes.items()}}
+    files = {one.name: f"results in {Path(one.path).name}" for one in added}
+    return {"python": python_version(), **ours, **{name: v or "not installed" for name, v in codes.items()}, **files}
 
 
 def _running(pending: dict[Future[Any], _Task]) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """The command line: bad input is one line on standard error and status 2, never a traceback."""
 
 import os
+import re
 import shlex
 import sys
 from collections.abc import Sequence
@@ -18,7 +19,8 @@ from rich import box
 from rich.table import Table
 from threadpoolctl import threadpool_limits
 
-from ..cases import library, lumping, matrix, mechanism_case, mechanisms, results
+from ..cases import added, library, lumping, matrix, mechanism_case, mechanisms, results
+from ..cases.added import Added
 from ..cases.errors import CaseError, nearest
 from ..cases.mechanism_case import MechanismCase
 from ..cases.pool import Pool
@@ -68,6 +70,7 @@ def verify(
     codes: str | None = None,
     out: Path = Path("southwell-report"),
     workers: Whole | None = None,
+    add: tuple[str, ...] = (),
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
@@ -84,19 +87,25 @@ def verify(
         Folder for the report; results of an earlier run in it are replaced.
     workers
         Processes to use; one a processor by default.
+    add
+        `NAME=FILE.csv`, as often as wanted: results of any other program or of a test rig, as one more column. The file's
+        columns: `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or (*library.names(), *library.mechanisms()))]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     known = [registry.code(name) for name in names]
+    files = [_added(text) for text in add]
+    added.check(files, [v for c in chosen if isinstance(c, Case) for v in c.variants], [c.name for c in known])
+    options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     about = Run(
         cells=(),
-        versions=matrix.versions({c.name: c.version() for c in known}),
-        command=shlex.join(["southwell", "verify", *case, *(["--codes", codes] if codes else [])]),
+        versions=matrix.versions({c.name: c.version() for c in known}, files),
+        command=shlex.join(["southwell", "verify", *case, *options]),
         settings=tuple(s for c in chosen for s in settings(c)),
     )
     path = _fresh(out)
     results.append(path, run=about)
-    run, complete = _solve(chosen, names, about, path, workers or os.cpu_count() or 1)
+    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1)
     if run.cells:
         _show(run, out)
     if not complete:
@@ -108,8 +117,20 @@ def verify(
     return summary.status(run)
 
 
+def _added(text: str) -> Added:
+    name, equals, path = text.partition("=")
+    if not (equals and path and re.fullmatch(r"\w[\w .+-]*", name)):
+        raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
+    return added.read(name, Path(path))
+
+
 def _solve(
-    chosen: Sequence[Case | MechanismCase], names: Sequence[str], about: Run, path: Path, workers: int
+    chosen: Sequence[Case | MechanismCase],
+    names: Sequence[str],
+    files: Sequence[Added],
+    about: Run,
+    path: Path,
+    workers: int,
 ) -> tuple[Run, bool]:
     """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
     pool, watch = Pool(workers), terminal.Watch()
@@ -127,7 +148,7 @@ def _solve(
                 for v in c.variants
                 if v.name == lumping.CASE
             ]
-            done = matrix.run(chosen, names, pool, keep)
+            done = matrix.run(chosen, names, pool, keep, added=files)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
     except KeyboardInterrupt:
         return results.read(path), False

@@ -322,7 +322,7 @@ def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
 def test_interrupted_before_anything_is_finished_there_is_no_report(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupt(*_: object) -> None:
+    def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(matrix, "run", interrupt)
