@@ -23,6 +23,7 @@ class Can:
         coupled: sections whose strains or motions couple.
         hinged: a root that is not clamped.
         tip: a mass at the tip.
+        thin: sections without moments of inertia.
     """
 
     taper: bool = True
@@ -35,16 +36,18 @@ class Can:
     coupled: bool = False
     hinged: bool = False
     tip: bool = True
+    thin: bool = True
 
 
 CODES = {
-    "exudyn-ancf": Can(unlike=False, twist=False, lacks=("rotary inertia",)),
+    "exudyn-ancf": Can(unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
     "exudyn-tree": Can(),
     "scikit-fem": Can(hinged=True),
     "pinocchio": Can(twin=True, coupled=True),
     "drake": Can(twin=True, coupled=True),
     "mujoco": Can(twin=True, coupled=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
+    "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
@@ -60,6 +63,7 @@ class Asks:
         coupled: sections whose mass centres lie off the axis.
         hinged: a hinge or spring at the root.
         tip: a mass at the tip.
+        thin: sections without moments of inertia.
         axial: axial modes are compared.
         gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
             none, moments of inertia matter at rest.
@@ -71,6 +75,7 @@ class Asks:
     coupled: bool = False
     hinged: bool = False
     tip: bool = False
+    thin: bool = False
     axial: bool = False
     gentle: float = math.inf
 
@@ -80,11 +85,11 @@ BLADES = {
     "park-blade/windpact": Asks(taper=True, twist=True, unlike=True),
     "park-blade/surrogate": Asks(taper=True, twist=True, unlike=True),
     "park-blade/surrogate-untwisted": Asks(taper=True, unlike=True),
-    "yoo-shin-chordwise/delta-0": Asks(axial=True, gentle=0.0),
-    "yoo-shin-chordwise/delta-0.1": Asks(axial=True, gentle=0.0),
-    "yoo-shin-chordwise/delta-1": Asks(axial=True, gentle=0.0),
-    "yoo-shin-chordwise/delta-5": Asks(axial=True, gentle=0.0),
-    "wright-flapwise": Asks(),
+    "yoo-shin-chordwise/delta-0": Asks(thin=True, axial=True, gentle=0.0),
+    "yoo-shin-chordwise/delta-0.1": Asks(thin=True, axial=True, gentle=0.0),
+    "yoo-shin-chordwise/delta-1": Asks(thin=True, axial=True, gentle=0.0),
+    "yoo-shin-chordwise/delta-5": Asks(thin=True, axial=True, gentle=0.0),
+    "wright-flapwise": Asks(thin=True),
     "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
     "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
     "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True),
@@ -114,7 +119,7 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip")
+NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin")
 
 
 def solves(can: Can, asks: Asks) -> bool:
