@@ -20,9 +20,14 @@ TURN = 0.5
 """rad, of the principal axes within the coupled section."""
 
 
+EA = 1.2e7
+"""Stretching stiffness: slenderness 1000, so that neither stretch nor Coriolis does 0.01 % to what is asked of the beam."""
+
+
 def _beam(name: str, EI_y: float, EI_z: float) -> Blade:
-    """Slender enough (α = 1000) for stretch, Coriolis and rotary inertia to do less than 0.01 % to what is asked."""
-    return uniform_blade(name, LENGTH, 0.0, EA=1.2e7, GJ=20.0, EI_y=EI_y, EI_z=EI_z, mass=MASS, I_y=1e-5, I_z=1e-5)
+    """Rotary inertia as of a solid: m EI / EA."""
+    I_y, I_z = MASS * EI_y / EA, MASS * EI_z / EA
+    return uniform_blade(name, LENGTH, 0.0, EA=EA, GJ=20.0, EI_y=EI_y, EI_z=EI_z, mass=MASS, I_y=I_y, I_z=I_z)
 
 
 BEAM = _beam("beam", EI, EI)

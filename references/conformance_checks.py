@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Ask = Callable[[Code], None]
 
 NEAR = 1e-3
-"""Relative agreement asked for, extrapolated from the two finest levels; or the code's own bracket if that is wider."""
+"""Relative agreement asked for, extrapolated from the two coarsest levels; or the code's own bracket if that is wider."""
 
 ROUNDING = 1e-6
 """Relative, where two answers of one code must be the same."""
@@ -57,7 +57,7 @@ def _ask(code: Code, blade: Blade, omega: float, level: int, count: int = 4) -> 
     return code.solve(blade, omega, code.levels[level], count)
 
 
-def _limit(code: Code, blade: Blade, omega: float, levels: tuple[int, int] = (-2, -1)) -> tuple[Array, Modes, float]:
+def _limit(code: Code, blade: Blade, omega: float, levels: tuple[int, int] = (0, 1)) -> tuple[Array, Modes, float]:
     """Frequencies (m,) extrapolated by the declared order from two levels, the finer's modes, their own bracket."""
     coarse, fine = (_ask(code, blade, omega, level) for level in levels)
     m = min(len(coarse.frequencies), len(fine.frequencies))
@@ -152,7 +152,7 @@ def repeats(code: Code) -> None:
 
 def shapes(code: Code) -> None:
     """The first shape, nearly that at rest."""
-    shape = _ask(code, BEAM, known.SPEED, -1).shapes[0]
+    shape = _ask(code, BEAM, known.SPEED, 1).shapes[0]
     _keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"the root moves: {shape[0].tolist()}")
     moved = np.abs(shape[:, 1:3]).max(axis=1)
     wrong = np.abs(moved / moved[-1] - known.cantilever_shape()).max()
@@ -282,7 +282,7 @@ def _far(found: Array, other: Array) -> float:
 
 def model(code: Code) -> None:
     """Each effect by turns, at a speed where leaving it out is seen."""
-    found, _, bracket = _limit(code, known.STUBBY, known.FAST)
+    found, _, bracket = _limit(code, known.STUBBY, known.FAST, (-2, -1))
     here = _stubby(code.model)
     near = _far(found, here)
     for name in (f.name for f in fields(Model)):
@@ -300,8 +300,8 @@ def model(code: Code) -> None:
 
 
 def keeps(one: Property, code: Code) -> None:
-    """A property is not dropped without a word; told from the two coarsest levels."""
-    found, _, bracket = _limit(code, one.having, known.SPEED, (0, 1))
+    """A property is not dropped without a word; told from two coarse levels."""
+    found, _, bracket = _limit(code, one.having, known.SPEED)
     having, lacking = _with_and_without(one.name, code.model)
     change = _far(having, lacking)
     if change < VISIBLE:
