@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,22 @@ MODEL = Model(coriolis=False)
 TIMEOUT = 600.0
 
 
+@dataclass(frozen=True)
+class Orthotropic:
+    """Stiff alike along x, y and z, without Poisson's effect, but sheared along y and along z by moduli of their own.
+
+    Attributes:
+        young: Pa.
+        shear_y, shear_z: Pa, of the planes x–y and x–z; the section's own plane has the larger of them.
+        density: kg/m³.
+    """
+
+    young: float
+    shear_y: float
+    shear_z: float
+    density: float
+
+
 def version() -> str | None:
     """Version of ``ccx`` on the PATH; None if there is none."""
     if shutil.which("ccx") is None:
@@ -50,7 +67,7 @@ def version() -> str | None:
     return found[1] if found else "unknown"
 
 
-def modes(bricks: Bricks, material: Material, omega: float, count: int, clamp: Clamp) -> Modes:
+def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count: int, clamp: Clamp) -> Modes:
     """The lowest modes of a solid blade that turns steadily at ``omega`` (rad/s), as ``solid.modes`` gives them.
 
     Raises:
@@ -130,7 +147,7 @@ def numbered(bricks: Bricks) -> tuple[Index, Array]:
     return places, lattice[odd <= 1]
 
 
-def deck(places: Index, nodes: Array, material: Material) -> list[str]:
+def deck(places: Index, nodes: Array, material: Material | Orthotropic) -> list[str]:
     """Lines of mesh and material. Fields have 20 characters and are cut there, exponent and all: 12 digits fit."""
     lines = ["*NODE,NSET=ALL", *(f"{k + 1},{x:.12g},{y:.12g},{z:.12g}" for k, (x, y, z) in enumerate(nodes))]
     lines += ["*ELEMENT,TYPE=C3D20R,ELSET=ALL"]
@@ -140,8 +157,22 @@ def deck(places: Index, nodes: Array, material: Material) -> list[str]:
     for k, corner in enumerate(first):
         own = places[tuple((corner + TWENTY).T)] + 1
         lines += [f"{k + 1}," + ",".join(map(str, own[:10])) + ",", ",".join(map(str, own[10:]))]
-    lines += ["*MATERIAL,NAME=SOLID", "*ELASTIC", f"{material.young:.12g},{material.poisson:.12g}"]
-    return [*lines, "*DENSITY", f"{material.density:.12g}", "*SOLID SECTION,ELSET=ALL,MATERIAL=SOLID"]
+    return [
+        *lines,
+        "*MATERIAL,NAME=SOLID",
+        *_elastic(material),
+        "*DENSITY",
+        f"{material.density:.12g}",
+        "*SOLID SECTION,ELSET=ALL,MATERIAL=SOLID",
+    ]
+
+
+def _elastic(material: Material | Orthotropic) -> list[str]:
+    if isinstance(material, Material):
+        return ["*ELASTIC", f"{material.young:.12g},{material.poisson:.12g}"]
+    shear = (material.shear_y, material.shear_z)
+    first = [*[material.young] * 3, 0.0, 0.0, 0.0, *shear]
+    return ["*ELASTIC,TYPE=ENGINEERING CONSTANTS", ",".join(f"{v:.12g}" for v in first), f"{max(shear):.12g}"]
 
 
 @contextmanager
@@ -181,6 +212,7 @@ def _printed(text: str, omega: float) -> tuple[Array, Array]:
     Raises:
         CodeError: a negative eigenvalue: the steady state is not stable.
     """
+    text = re.sub(r"(?<=\d)([+-]\d{3})(?=\s)", r"E\1", text)  # Fortran drops the E before an exponent of three digits
     head, *prints = text.split(" displacements (vx,vy,vz)")
     rows = [line.split() for line in head.partition("P A R T I C I P A T I O N")[0].splitlines()]
     table = np.array([row for row in rows if len(row) == 5 and row[0].isdigit()], float)

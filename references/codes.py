@@ -25,6 +25,7 @@ OURS = {
     "drake": "southwell.references.drake_chain:CODE",
     "mujoco": "southwell.references.mujoco_chain:CODE",
     "pybmodes": "southwell.references.pybmodes_beam:CODE",
+    "calculix": "southwell.references.calculix_blade:CODE",
     "yoo-shin": "southwell.references.yoo_shin:CODE",
     "assumed-modes": "southwell.references.assumed_modes:CODE",
     "southwell-equation": "southwell.references.southwell_equation:CODE",

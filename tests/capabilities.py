@@ -100,6 +100,7 @@ BLADES = {
     "rotating-cable": Asks(unlike=True, hinged=True),
     "tip-mass": Asks(tip=True),
     "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
+    "hodges-rutkowski": Asks(taper=True),
     "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
 }
 
@@ -115,6 +116,7 @@ TABLES = {
     "bmodes3/cert-1": "windpact-1.5/bmodes",
     "southwell1921/cable": "rotating-cable",
     "bir2010/analytical": "tip-mass",
+    "hodges_rutkowski1981/taper": "hodges-rutkowski",
 }
 """Printed series, and the blade they are about."""
 
