@@ -69,7 +69,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     found.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
     found.positive("flp_iner", "edge_iner", zero=True)
     eta = fractions(found, "sec_loc")
-    by = {column: value(main, named, factor) if factor in named else 1.0 for factor, column in FACTORS.items()}
+    by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
     p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
 
     tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
@@ -104,7 +104,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
 
 def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
     out = ["shear is rigid"]
-    scaled = [f for f in FACTORS if f in named and value(main, named, f) != 1]
+    scaled = [f for f in FACTORS if value(main, named, f) != 1]
     if scaled:
         out.append(f"multiplied: {', '.join(f'{f} = {value(main, named, f):g}' for f in scaled)}")
     if p["sc_offst"].any():
@@ -124,7 +124,7 @@ def _root(main: Text, named: Named) -> list[float]:
 def _tip(main: Text, named: Named) -> Array:
     """The tip's rigid body (6, 6) about the axis in our axes; BModes' moments are about the tip section's axes."""
     names = ("tip_mass", "cm_loc", "cm_axial", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
-    m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) if n in named else 0.0 for n in names)
+    m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
     cross = m * np.array([[0.0, -z, y], [z, 0.0, 0.0], [-y, 0.0, 0.0]])
     tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
     return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)

@@ -116,9 +116,9 @@ def hub(text: Text) -> Hub:
         length=tip - root,
         hub_radius=root,
         precone=np.radians(value(text, named, "PreCone1", "PreCone")),
-        pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")) if "blpitch1" in named else None,
+        pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")),
     )
-    mass = value(text, named, "TipMass1", "TipMass") if {"tipmass1", "tipmass"} & set(named) else 0.0
+    mass = value(text, named, "TipMass1", "TipMass")
     return Hub(mount, mass, blade_file(text))
 
 

@@ -215,6 +215,12 @@ def _half_chords(htc: Text, body: list[tuple[int, list[str]]], r: Array) -> tupl
             if len(values) != 4 or any(v is None or not np.isfinite(v) for v in values):
                 raise CaseError(f"{htc.at(k)}: sec: not x, y, z and twist: {' '.join(words)}: correct it")
             rows.append(values)
+    counts = [(k, words) for k, words in body if words[0].lower() == "nsec"]
+    for k, words in counts:
+        if number(words[-1]) != len(rows):
+            raise CaseError(
+                f"{htc.at(k)}: nsec: {words[-1]}: c2_def has {len(rows)} sections: one lost? correct either"
+            )
     c2 = np.array(rows, float)
     if len(c2) < 2 or (np.diff(c2[:, 2]) <= 0).any() or np.abs(c2[0, :3]).max() > 1e-6 * c2[-1, 2]:
         raise CaseError(f"{htc.path}: c2_def: its {len(c2)} sections must begin at 0, 0, 0 with z rising: correct them")
