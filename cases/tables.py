@@ -72,7 +72,7 @@ def _rate(blade: Blade) -> float:
 
 
 def _alike(blade: Blade, series: Series) -> bool:
-    if not uniform(replace(blade, tip_mass=np.zeros((6, 6)))):
+    if series.tapered or not uniform(replace(blade, tip_mass=np.zeros((6, 6)))):
         return False
     section = sample(blade, 0.0)
     point = series.tip_mass_ratio * section.mass[0] * blade.length * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])

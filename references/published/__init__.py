@@ -69,10 +69,19 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
     grounds: Annotated[str, Meta(description="of such a target")] = ""
     slenderness: Annotated[float, Meta(gt=0, description="α = √(A L² / I); none: inextensible")] | None = None
     tip_mass_ratio: Annotated[float, Meta(ge=0, description="μ, tip mass over the beam's mass")] = 0.0
+    height_taper: Annotated[
+        float, Meta(ge=0, lt=1, description="of a linear taper: 1 less the ratio of tip to root")
+    ] = 0.0
+    breadth_taper: Annotated[float, Meta(ge=0, lt=1, description="the same, of the breadth")] = 0.0
 
     def __post_init__(self) -> None:
         if (self.target is None) != (not self.grounds):
             raise ValueError(f"series {self.name}: target and grounds go together: give both or neither")
+
+    @property
+    def tapered(self) -> bool:
+        """Whether the beam is not uniform."""
+        return bool(self.height_taper or self.breadth_taper)
 
     @property
     def model(self) -> Model:
