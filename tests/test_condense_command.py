@@ -1,0 +1,186 @@
+"""``southwell condense``: a user's own matrices give what the package's give; wrong input is one line; the example's tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as ss
+
+from southwell.cases import condensed, condensing, solid_blades
+from southwell.cases.errors import CaseError
+from southwell.cases.solid_blades import ROOT, SPAN, SPEED, STEEL, at
+from southwell.core.compressed import chain_from_segments, chain_modes
+from southwell.references import solid
+
+pytestmark = pytest.mark.skipif(solid.version() is None, reason=f"not installed: {solid.HINT}")
+
+Array = np.ndarray
+
+LAYERS, ACROSS, SEGMENTS = 20, (2, 1), 5
+
+
+def bricks():
+    return solid_blades.twisted(LAYERS, ACROSS)
+
+
+def exported(folder: Path, start: int = 0, stop: int = LAYERS, stem: str = "blade", unit: float = 1.0) -> None:
+    """Matrices in Matrix Market node by node, and the nodes; ``unit`` is that of length, m (and t for kg at 1e-3)."""
+    s = solid.solid(bricks().part(start, stop), STEEL)
+    n = len(s.nodes)
+    by_node = np.arange(3 * n).reshape(3, n).T.ravel()
+    M = ss.csr_array(ss.kron(ss.eye_array(3), solid.mass(s), format="csr"))
+    for name, matrix in (("k", solid.tangent(s)), ("m", M)):
+        own = unit * ss.csr_array(matrix)[by_node][:, by_node]
+        scipy.io.mmwrite(folder / f"{stem}-{name}.mtx", ss.coo_array(own), precision=17)
+    rows = [f"{k},{x!r},{y!r},{z!r}" for k, (x, y, z) in enumerate((s.nodes / unit).tolist(), 7)]
+    (folder / f"{stem}-nodes.csv").write_text("id,x,y,z\n" + "\n".join(rows) + "\n")
+
+
+def toml(folder: Path, text: str) -> Path:
+    path = folder / "blade.toml"
+    path.write_text(text)
+    return path
+
+
+STATIONS = [round(ROOT + SPAN * k / SEGMENTS, 6) for k in range(SEGMENTS + 1)]
+WHOLE = f"""
+name = "twisted"
+stiffness = "blade-k.mtx"
+mass = "blade-m.mtx"
+nodes = "blade-nodes.csv"
+freedoms = [1, 2, 3]
+sections = {STATIONS}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("exported")
+    exported(out)
+    return out
+
+
+def in_house() -> list:
+    model = solid.finite_elements(bricks(), STEEL)
+    return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
+
+
+def same(found: list, expected: list, within: float = 1e-8, fields: str = "rest stiffness inertia ride") -> None:
+    for a, b in zip(found, expected, strict=True):
+        for field in fields.split():
+            x, y = getattr(a, field), getattr(b, field)
+            np.testing.assert_allclose(x, y, rtol=within, atol=within * np.abs(y).max(), err_msg=field)
+
+
+def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
+    """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
+    _, found = condensing.condense(toml(folder, WHOLE))
+    same(found.segments, in_house(), 1e-7, "rest stiffness")
+    same(found.segments, in_house(), 1e-3, "inertia")
+    expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
+    np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
+
+
+def turned_folder(folder: Path) -> None:
+    """The same in mm and t, with the span along z and the rotor's axis along x, and freedoms in a table of their own."""
+    exported(folder, unit=1e-3)
+    rows = [line.split(",") for line in (folder / "blade-nodes.csv").read_text().splitlines()[1:]]
+    (folder / "blade-nodes.csv").write_text("id,x,y,z\n" + "".join(f"{k},{z},{x},{y}\n" for k, x, y, z in rows))
+    (folder / "freedoms.csv").write_text("node,freedom\n" + "".join(f"{k},{f}\n" for k, *_ in rows for f in (2, 3, 1)))
+
+
+def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None:
+    """x, y, z of the blade are y, z, x here; the hub's radius is given instead of being where the model lies."""
+    turned_folder(tmp_path)
+    text = WHOLE.replace("[1, 2, 3]", '"freedoms.csv"').replace(str(STATIONS), str([1e3 * x for x in STATIONS]))
+    text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
+    _, found = condensing.condense(toml(tmp_path, text))
+    _, expected = condensing.condense(toml(folder, WHOLE))
+    same(found.segments, expected.segments, 1e-7)
+    np.testing.assert_allclose(found.root, expected.root, atol=1e-12)
+
+
+def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
+    text = f'name = "apart"\nfreedoms = [1, 2, 3]\nsections = {STATIONS}\nroot = "average"\n'
+    for k in range(SEGMENTS):
+        exported(tmp_path, k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS, f"part{k}")
+        text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
+    _, found = condensing.condense(toml(tmp_path, text))
+    same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
+
+
+def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
+    """12×12 of Przemieniecki's beam by nodes of six freedoms, as a code gives a reduced segment; the body given beside it."""
+    length, EI, EA, GJ = 0.5, 2e4, 3e7, 1e4
+    K = np.zeros((12, 12))
+    for y, spin, sign in ((1, 5, 1.0), (2, 4, -1.0)):
+        i = np.array([y, spin, y + 6, spin + 6])
+        b = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) * EI / length**3
+        unit = np.array([1, sign * length, 1, sign * length])
+        K[np.ix_(i, i)] = b * np.outer(unit, unit)
+    for i, k in ((0, EA), (3, GJ)):
+        K[np.ix_([i, i + 6], [i, i + 6])] = k / length * np.array([[1, -1], [-1, 1]])
+    scipy.io.mmwrite(tmp_path / "beam.mtx", ss.coo_array(K), precision=17)
+    (tmp_path / "beam.csv").write_text(f"id,x,y,z\n1,0.2,0,0\n2,{0.2 + length},0,0\n")
+    text = f"""
+    name = "superelement"
+    sections = [0.2, {0.2 + length}]
+    tie = "rigid"
+    [[segments]]
+    stiffness = "beam.mtx"
+    nodes = "beam.csv"
+    freedoms = [1, 2, 3, 4, 5, 6]
+    body = {{mass = 2.0, centre = [0.45, 0.0, 0.01], moments = [0.02, 0.05, 0.05]}}
+    """
+    _, found = condensing.condense(toml(tmp_path, text))
+    (segment,) = found.segments
+    f = np.linalg.inv(segment.stiffness)
+    np.testing.assert_allclose(np.diagonal(f)[[0, 3, 4, 5]], length / np.array([EA, GJ, EI, EI]), rtol=1e-9)
+    mass, centre, moments = condensed.body(segment)
+    assert mass == pytest.approx(2.0)
+    np.testing.assert_allclose(centre, [0.25, 0, 0.01], atol=1e-14)
+    np.testing.assert_allclose(moments, np.diag([0.02, 0.05, 0.05]), atol=1e-14)
+
+
+def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
+    _, found = condensing.condense(toml(folder, WHOLE))
+    condensed.write(tmp_path / "segments.json", found)
+    kept = condensed.read(tmp_path / "segments.json")
+    same(kept.segments, found.segments, 0.0)
+    np.testing.assert_array_equal(kept.root, found.root)
+    (tmp_path / "segments.json").write_text((tmp_path / "segments.json").read_text().replace('"rest"', '"reset"', 1))
+    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .reset.*condense again"):
+        condensed.read(tmp_path / "segments.json")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("stiffness =", "stifness =", "stifness: unknown key: did you mean stiffness"),
+        ('"blade-k.mtx"', '"blade.mtx"', "blade.mtx: no such file"),
+        ('stiffness = "blade-k.mtx"', "", "stiffness: missing: name the file of a stiffness"),
+        ('mass = "blade-m.mtx"', "", "mass: missing: name the file of a mass matrix"),
+        ('nodes = "blade-nodes.csv"', "", "nodes: missing: name a CSV of id, x, y, z"),
+        ("freedoms = [1, 2, 3]", "", "freedoms: missing: blade-k.mtx does not name its freedoms"),
+        ("[1, 2, 3]", "[1, 2]", r"615 nodes with 2 each are 1230, blade-k.mtx has 1845 rows"),
+        ("[1, 2, 3]", "[2, 1, 3]", "resists the rotation about . of the whole as a rigid body .*order, units"),
+        ("[1, 2, 3]", "[1, 2, 7]", r"freedoms\[2\]: 7: expected int <= 6"),
+        ("[0.3, 0.5,", "[0.3, 0.507,", r"section '0.507 m': no nodes .* nearest are"),
+        ("[0.3, 0.5,", "[0.5,", r"sections\[0\]: \d+ freedoms .* lie up to 0.2 m beyond it"),
+        ("1.1, 1.3]", "1.1]", r"sections\[4\]: 360 freedoms .* lie up to 0.2 m beyond it"),
+        ("[0.3, 0.5, 0.7", "[0.3, 0.7, 0.5", r"sections\[2\]: 0.5 m is not beyond 0.7 m"),
+        ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie stops the warping"),
+        ("sections =", 'rotor = "x"\nsections =', "rotor: along the span"),
+        ("sections =", "span = [0, 0, 0]\nsections =", r"span: \[0.0, 0.0, 0.0\]: no direction"),
+        ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': invalid enum value"),
+    ],
+)
+def test_wrong_files_are_one_line(folder: Path, old: str, new: str, message: str) -> None:
+    path = folder / "wrong.toml"
+    assert old in WHOLE
+    path.write_text(WHOLE.replace(old, new))
+    with pytest.raises(CaseError, match=message) as caught:
+        condensing.condense(path)
+    assert str(caught.value).startswith(str(folder))
+    assert "\n" not in str(caught.value)
