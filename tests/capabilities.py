@@ -40,7 +40,7 @@ class Can:
 
 
 CODES = {
-    "exudyn-ancf": Can(unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
+    "exudyn-ancf": Can(taper=False, unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
     "exudyn-tree": Can(),
     "scikit-fem": Can(hinged=True),
     "pinocchio": Can(twin=True, coupled=True),
