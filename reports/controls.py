@@ -61,18 +61,23 @@ def overview(run: Run) -> list[dict[str, str]]:
     rows = []
     for outcome in outcomes(run.controls):
         worst = largest(outcome)
-        change = abs(worst.change or 0.0) if worst else 0.0
-        where = f"{percent(worst.change or 0.0)}: {_where(run, worst)}" if worst and change >= FLOOR else "none"
         rows.append(
             {
                 "core made wrong": outcome.mistake.name,
                 "how": outcome.mistake.what,
                 "outcome": said(outcome),
-                "largest change": where,
+                "largest change": _largest(run, worst),
                 "caught by": ", ".join(catchers(outcome)),
             }
         )
     return rows
+
+
+def _largest(run: Run, row: Control | None) -> str:
+    if row is None:
+        return "no steady state is left"
+    change = row.change or 0.0
+    return f"{percent(change)}: {_where(run, row)}" if abs(change) >= FLOOR else "none"
 
 
 def by_case(run: Run) -> list[dict[str, str]]:

@@ -199,6 +199,16 @@ def test_without_rows_there_is_nothing_to_say() -> None:
     assert (told.headline(bare), told.overview(bare), told.sentence(bare)) == ("", [], "")
 
 
+def test_a_change_is_told_apart_from_none_and_from_no_answer() -> None:
+    def said(**changes: object) -> str:
+        found = told.overview(replace(run(), controls=(row(**changes),)))
+        return next(r["largest change"] for r in found if r["core made wrong"] == "no hub radius")
+
+    assert said() == "+10.00 %: park-cantilever, chordwise 1, 10 rad/s"
+    assert said(wrong=10.0) == "none"
+    assert said(wrong=None, right=None, mode="") == "no steady state is left"
+
+
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results.append(path, run().cells, run().levels, run())
