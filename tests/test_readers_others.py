@@ -253,7 +253,7 @@ BAD = {
         "./hawc2_st.dat",
         "./other.dat",
         Mount(),
-        r"hawc2.htc: timoschenko_input: ./other.dat: not found",
+        r"hawc2.htc: line 19: filename: ./other.dat: not found",
     ),
     "htc short": (HTC, "19.988", "16.0", Mount(), r"c2_def is 16\.\d+ m long, the stations end at 20 m"),
     "htc body": (HTC, "blade1 ;", "wing1 ;", Mount(), r"no main_body whose name begins with blade"),

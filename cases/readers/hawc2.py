@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
 
 from ...core.blade import Blade, BladeError
 from ..errors import CaseError
+from . import hawc2_htc
 from .elastodyn import settle
 from .matrices import HAWC2, about, bending, fault, in_axes, shearing, turned
 from .source import Mount, Reading, Source
-from .text import Table, Text, leading, load, number, table
+from .text import Table, Text, leading, load, table
 
 Array = NDArray[np.float64]
 
@@ -35,9 +35,6 @@ AXES = (
     "HAWC2: x to the leading edge, y downwind, z along the blade; here x = its z, y = its x, z = its y, twist alike; "
     "matrices brought from elastic, shear and mass centres to the half-chord line"
 )
-LENGTHS = 5e-3
-"""How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
-
 _SET, _SUBSET = re.compile(r"\s*#\s*(\d+)"), re.compile(r"\s*\$\s*(\d+)\s+(\d+)")
 
 
@@ -48,7 +45,7 @@ def is_st(text: Text) -> bool:
 
 def is_htc(text: Text) -> bool:
     """Whether these are lines of an htc file."""
-    return any(re.match(r"\s*begin\s+new_htc_structure", line, re.IGNORECASE) for line in text.lines)
+    return hawc2_htc.is_one(text)
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
@@ -68,10 +65,10 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     elif mount.main is not None:
         htc = load(mount.main)
     if htc is not None:
-        body = _body(htc)
-        name, given = _properties(htc, body)
+        body = hawc2_htc.blade_body(htc)
+        file, given = hawc2_htc.properties(htc, body)
         wanted = wanted or given
-        text = text or load(_near(htc.path, name))
+        text = text or load(file)
     assert text is not None
     found = _subset(text, wanted)
     r = found["r"]
@@ -83,15 +80,16 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     if htc is not None and body is not None:
-        stations, curve, twist = _half_chords(htc, body, r)
+        stations, curve, twist = hawc2_htc.half_chords(body, r)
         notes.append(
             "sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way"
         )
     else:
         notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")
     settled = settle(mount, None)
-    if mount.hub_radius is None:
-        notes.append("hub_radius taken as 0: it is another body's length in HAWC2")
+    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is None]
+    if open_:
+        notes.append(f"{', '.join(open_)} taken as 0: in HAWC2 they are other bodies'")
     try:
         blade = Blade(
             name=path.stem,
@@ -168,69 +166,3 @@ def _mass(p: Table) -> Array:
     rotary[:, 3, 3] = rotary[:, 4, 4] + rotary[:, 5, 5]
     rotary[:, range(3), range(3)] = m[:, None]
     return about(rotary, p["x_cg"], p["y_cg"])
-
-
-def _near(htc: Path, name: str) -> Path:
-    """A file that an htc names: its path is from the model's folder, which is the htc's or the one above."""
-    given = Path(name.replace("\\", "/"))
-    for path in (htc.parent / given, htc.parent.parent / given, htc.parent / given.name):
-        if path.is_file():
-            return path
-    raise CaseError(f"{htc}: timoschenko_input: {name}: not found from the htc's folder or the one above: put it there")
-
-
-def _body(htc: Text) -> list[tuple[int, list[str]]]:
-    """The commands (line, words) of the first main_body whose name begins with "blade"; case and comments dropped."""
-    commands = [(k, line.partition(";")[0].split()) for k, line in enumerate(htc.lines)]
-    body: list[tuple[int, list[str]]] = []
-    inside = False
-    for k, words in commands:
-        low = [w.lower() for w in words]
-        if low[:2] == ["begin", "main_body"]:
-            body, inside = [], True
-        elif low[:2] == ["end", "main_body"] and inside:
-            inside = False
-            names = [w[1].lower() for _, w in body if w[0].lower() == "name" and len(w) > 1]
-            if names and names[0].startswith("blade") and any(w[0].lower() == "sec" for _, w in body):
-                return body
-        elif inside and words:
-            body.append((k, words))
-    raise CaseError(f"{htc.path}: no main_body whose name begins with blade and that has c2_def: give the blade's htc")
-
-
-def _properties(htc: Text, body: list[tuple[int, list[str]]]) -> tuple[str, tuple[int, int] | None]:
-    named = {words[0].lower(): words[1:] for _, words in body}
-    if not named.get("filename"):
-        raise CaseError(f"{htc.path}: timoschenko_input: no filename in the blade's main_body: add it")
-    chosen = [number(w) for w in named.get("set", [])]
-    return named["filename"][0], (int(chosen[0] or 1), int(chosen[1] or 1)) if len(chosen) == 2 else None
-
-
-def _half_chords(htc: Text, body: list[tuple[int, list[str]]], r: Array) -> tuple[Array, Array, Array]:
-    """Arc length, curve in our axes and twist at the stations."""
-    rows = []
-    for k, words in body:
-        if words[0].lower() == "sec":
-            values = [number(w) for w in words[2:6]]
-            if len(values) != 4 or any(v is None or not np.isfinite(v) for v in values):
-                raise CaseError(f"{htc.at(k)}: sec: not x, y, z and twist: {' '.join(words)}: correct it")
-            rows.append(values)
-    counts = [(k, words) for k, words in body if words[0].lower() == "nsec"]
-    for k, words in counts:
-        if number(words[-1]) != len(rows):
-            raise CaseError(
-                f"{htc.at(k)}: nsec: {words[-1]}: c2_def has {len(rows)} sections: one lost? correct either"
-            )
-    c2 = np.array(rows, float)
-    if len(c2) < 2 or (np.diff(c2[:, 2]) <= 0).any() or np.abs(c2[0, :3]).max() > 1e-6 * c2[-1, 2]:
-        raise CaseError(f"{htc.path}: c2_def: its {len(c2)} sections must begin at 0, 0, 0 with z rising: correct them")
-    spline = Akima1DInterpolator(c2[:, 2], c2)
-    z = np.unique(np.concatenate([np.linspace(0, c2[-1, 2], 2001), c2[:, 2]]))
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spline(z)[:, :3], axis=0), axis=1))])
-    if abs(r[-1] - arc[-1]) > LENGTHS * arc[-1]:
-        raise CaseError(
-            f"{htc.path}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: are they of the same blade?"
-        )
-    s = r * (arc[-1] / r[-1])
-    at = spline(np.interp(s, arc, z))
-    return s, at[:, [2, 0, 1]], np.radians(at[:, 3])

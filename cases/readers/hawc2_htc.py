@@ -1,0 +1,170 @@
+"""HAWC2's htc file: the blade's main_body, what it names, and its half-chord line (c2_def).
+
+A command ends at ``;``, case does not matter, ``continue_in_file`` goes on in another file. Paths are from the model's
+folder, which is the htc's or the one above. c2_def is x, y, z and twist in degrees at sections, from a root at z = 0 where
+the half-chord line may lie beside the blade's axis; between them Akima splines in z.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import Akima1DInterpolator
+
+from ..errors import CaseError
+from .text import Text, load, number
+
+Array = NDArray[np.float64]
+
+FINE = 2001
+"""Points between which the half-chord line is taken for straight, to measure it."""
+
+LENGTHS = 5e-3
+"""How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
+
+_DEEP = 10
+
+_BODIES = re.compile(r"\s*begin\s+(new_htc_structure|main_body)\b", re.IGNORECASE)
+
+
+class Command(NamedTuple):
+    """The words of a command, the first in lower case, and the line it is on."""
+
+    text: Text
+    line: int
+    words: tuple[str, ...]
+
+    @property
+    def at(self) -> str:
+        """Where it is, for a message."""
+        return self.text.at(self.line)
+
+
+Body = list[Command]
+
+
+class HalfChords(NamedTuple):
+    """The half-chord line at stations: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes."""
+
+    s: Array
+    curve: Array
+    twist: Array
+
+
+def is_one(text: Text) -> bool:
+    """Whether these are lines of an htc file that has bodies."""
+    return any(_BODIES.match(line) for line in text.lines)
+
+
+def blade_body(htc: Text) -> Body:
+    """The commands of the first main_body whose name begins with "blade" and that has sections.
+
+    Raises:
+        CaseError: if there is none, or a file to go on in is not there.
+    """
+    body: Body = []
+    inside = False
+    for command in _commands(htc, htc.path, 0):
+        low = [w.lower() for w in command.words]
+        if low[:2] == ["begin", "main_body"]:
+            body, inside = [], True
+        elif low[:2] == ["end", "main_body"] and inside:
+            inside = False
+            names = [c.words[1].lower() for c in body if c.words[0] == "name" and len(c.words) > 1]
+            if names and names[0].startswith("blade") and any(c.words[0] == "sec" for c in body):
+                return body
+        elif inside:
+            body.append(command)
+    raise CaseError(f"{htc.path}: no main_body whose name begins with blade and that has c2_def: give the blade's htc")
+
+
+def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
+    """The structural file of a body, and its set and subset.
+
+    Raises:
+        CaseError: if it names none, or one that is not there.
+    """
+    named = {c.words[0]: c for c in body}
+    if "filename" not in named or len(named["filename"].words) < 2:
+        raise CaseError(f"{htc.path}: timoschenko_input: no filename in the blade's main_body: add it")
+    file, chosen = named["filename"], named.get("set")
+    numbers = [number(w) for w in chosen.words[1:]] if chosen else []
+    if chosen and (len(numbers) != 2 or not all(n and n == int(n) for n in numbers)):
+        raise CaseError(
+            f"{chosen.at}: set: {' '.join(chosen.words[1:])}: not set and subset, as in `set 1 1`: correct it"
+        )
+    subset = (int(numbers[0] or 1), int(numbers[1] or 1)) if chosen else None
+    return _near(htc.path, file), subset
+
+
+def half_chords(body: Body, r: Array) -> HalfChords:
+    """The half-chord line at stations ``r`` (n,) m of a structural file.
+
+    Raises:
+        CaseError: naming the line of the section at fault.
+    """
+    sections = [c for c in body if c.words[0] == "sec"]
+    c2 = np.array([_section(c) for c in sections])
+    for count in (c for c in body if c.words[0] == "nsec"):
+        if number(count.words[-1]) != len(c2):
+            raise CaseError(
+                f"{count.at}: nsec: {count.words[-1]}: c2_def has {len(c2)} sections: one lost? correct either"
+            )
+    if len(c2) < 2:
+        raise CaseError(f"{sections[0].at}: 1 section: c2_def needs at least a root and a tip")
+    if c2[0, 2] != 0:
+        raise CaseError(f"{sections[0].at}: sec: z = {c2[0, 2]:g} m: the first section is the root; begin at z = 0")
+    falls = np.flatnonzero(np.diff(c2[:, 2]) <= 0) + 1
+    if len(falls):
+        k = int(falls[0])
+        raise CaseError(
+            f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the one before: a duplicate or out of order? sort them"
+        )
+    spline = Akima1DInterpolator(c2[:, 2], c2)
+    z = np.unique(np.concatenate([np.linspace(0, c2[-1, 2], FINE), c2[:, 2]]))
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spline(z)[:, :3], axis=0), axis=1))])
+    if abs(r[-1] - arc[-1]) > LENGTHS * arc[-1]:
+        raise CaseError(
+            f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: are they of the same blade?"
+        )
+    s = r * (arc[-1] / r[-1])
+    at = spline(np.interp(s, arc, z))
+    return HalfChords(s, at[:, [2, 0, 1]], np.radians(at[:, 3]))
+
+
+def _section(command: Command) -> list[float]:
+    values = [number(w) for w in command.words[2:6]]
+    if len(values) != 4 or any(v is None or not np.isfinite(v) for v in values):
+        raise CaseError(f"{command.at}: sec: not x, y, z and twist: {' '.join(command.words)}: correct it")
+    return [float(v) for v in values if v is not None]
+
+
+def _commands(text: Text, main: Path, depth: int) -> Iterator[Command]:
+    for k, line in enumerate(text.lines):
+        words = line.partition(";")[0].split()
+        if not words:
+            continue
+        command = Command(text, k, (words[0].lower(), *words[1:]))
+        if command.words[0] == "exit":
+            return
+        if command.words[0] != "continue_in_file":
+            yield command
+        elif depth == _DEEP:
+            raise CaseError(f"{command.at}: continue_in_file: the {depth}th within each other: does one name itself?")
+        else:
+            yield from _commands(load(_near(main, command)), main, depth + 1)
+
+
+def _near(main: Path, command: Command) -> Path:
+    """The file that a command of an htc names."""
+    what, *names = command.words
+    if not names:
+        raise CaseError(f"{command.at}: {what}: no name: add it")
+    given = Path(names[0].replace("\\", "/"))
+    for folder, name in ((main.parent, given), (main.parent.parent, given), (main.parent, Path(given.name))):
+        if (folder / name).is_file():
+            return folder / name
+    raise CaseError(f"{command.at}: {what}: {names[0]}: not found from the htc's folder or the one above: put it there")
