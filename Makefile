@@ -1,4 +1,4 @@
-# make verify | make test | make lint | make bench | make readme | make clean
+# make verify | make test | make lint | make bench | make condense | make readme | make clean
 # All that is needed is Python 3.11 or later; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -12,7 +12,7 @@ HERE := .venv/here
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: verify test lint bench readme clean
+.PHONY: verify test lint bench condense readme clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
@@ -28,6 +28,9 @@ lint: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/southwell bench --out reports/out
+
+condense: $(INSTALLED)
+	$(BIN)/southwell condense --example --out reports/out
 
 # from the results of the last make verify and make bench
 readme: $(INSTALLED)

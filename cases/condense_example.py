@@ -4,12 +4,13 @@ A tapered, twisted blade of steel against its own modes as a whole solid, by sci
 cantilever as a solid against Timoshenko's exact frequencies; and what rigid ties do to torsion.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.compressed import chain_from_segments, chain_modes
 from ..core.model import FULL, Model
@@ -90,6 +91,8 @@ class Drawn:
 
     bricks: Bricks
     segments: list[Segment]
+    cuts: NDArray[np.intp]
+    root: NDArray[np.float64]
 
 
 def example(
@@ -134,7 +137,28 @@ def example(
         lengths=lengths,
         versions=versions,
     )
-    return told, Drawn(bricks, pieces["in place"])
+    return told, Drawn(bricks, pieces["in place"], solids.cuts(bricks, segments), solids.at(solids.ROOT))
+
+
+def within(found: Example) -> bool:
+    """Whether every difference is within its target: of the blade from the whole solid, of the cantilever from the beam."""
+    return max(largest(s) for s in found.speeds) <= TARGET and cantilever(found, "average") <= EXACT_TARGET
+
+
+def largest(s: Speed) -> float:
+    """Largest relative difference of the condensed blade from the whole solid by either code."""
+    off = differences(s.condensed, s.whole)
+    return float(np.abs(np.append(off, differences(s.without, s.calculix) if s.calculix else [])).max())
+
+
+def cantilever(found: Example, kind: str) -> float:
+    """Largest relative difference of the cantilever with such ties from the exact beam."""
+    return float(np.abs(differences(found.cantilever[kind], np.repeat(found.exact, 2))).max())
+
+
+def differences(values: Sequence[float], of: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """Relative."""
+    return np.asarray(values) / np.asarray(of) - 1.0
 
 
 def write(path: Path, found: Example) -> None:

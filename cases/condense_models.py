@@ -26,10 +26,17 @@ METRES = {"m kg s": 1.0, "mm t s": 1e-3}
 
 @dataclass(frozen=True)
 class Whole:
-    """A model and its mass matrix (n, n), in the order of the model's freedoms; None where there is none."""
+    """A model as exported.
+
+    Attributes:
+        model: to condense.
+        mass: (n, n) in the order of its freedoms; None where there is none.
+        resisted: the largest part of the forces in it that a rigid motion of the whole leaves unbalanced.
+    """
 
     model: FiniteElements
     mass: ss.csr_array | None
+    resisted: float
 
 
 def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whole:
@@ -61,11 +68,11 @@ def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whol
     except (MatrixFileError, CondensationError) as error:
         raise CaseError(f"{path}: {field}{error}") from error
     model = _si(model, METRES[units])
-    _unsupported(path, field, model)
+    resisted = _unsupported(path, field, model)
     if mass is None:
-        return Whole(model, None)
+        return Whole(model, None, resisted)
     unit = _unit(model.directions, METRES[units])
-    return Whole(model, ss.csr_array(unit @ _in_order(mass, stiffness) @ unit))
+    return Whole(model, ss.csr_array(unit @ _in_order(mass, stiffness) @ unit), resisted)
 
 
 def _load(folder: Path, told: str | Matrix, what: str) -> Exported:
@@ -138,8 +145,8 @@ def _si(model: FiniteElements, metres: float) -> FiniteElements:
     )
 
 
-def _unsupported(path: Path, field: str, model: FiniteElements) -> None:
-    """Refuse a stiffness that resists a rigid motion of the whole: nodes elsewhere, other units, or supports left in.
+def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
+    """How far a rigid motion of the whole is resisted, which it must not be.
 
     Raises:
         CaseError: naming the motion.
@@ -153,3 +160,4 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> None:
             f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({left[k]:.1e} of "
             "the forces in it): supports left in it, or nodes not where the matrix has them (order, units)? export it free"
         )
+    return float(left.max())

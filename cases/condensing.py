@@ -1,6 +1,7 @@
 """A blade's exported matrices, as a TOML file names them, condensed to rigid bodies and complex stiffness elements."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -24,7 +25,24 @@ Array = NDArray[np.float64]
 NEAR = ties.ON_SECTION
 
 
-def condense(path: Path) -> tuple[CondenseFile, Condensed]:
+@dataclass(frozen=True)
+class Condensation:
+    """What came of a file.
+
+    Attributes:
+        told: what it says.
+        blade: the compressed model.
+        freedoms: of the finite element models.
+        resisted: the largest part of the forces in a model that one of its rigid motions leaves unbalanced.
+    """
+
+    told: CondenseFile
+    blade: Condensed
+    freedoms: int
+    resisted: float
+
+
+def condense(path: Path) -> Condensation:
     """What a file says, and the compressed model that comes of it.
 
     Raises:
@@ -42,28 +60,30 @@ def condense(path: Path) -> tuple[CondenseFile, Condensed]:
         raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one a segment")
     frames = _frames(path, told)
     try:
-        pieces = _apart(path, told, frames) if told.segments else _in_place(path, told, frames)
+        models, pieces = _apart(path, told, frames) if told.segments else _in_place(path, told, frames)
     except CondensationError as error:
         raise CaseError(f"{path}: {error}") from error
-    return told, Condensed(told.name, _root(path, told, frames[0]), pieces)
+    blade = Condensed(told.name, _root(path, told, frames[0]), pieces)
+    return Condensation(told, blade, sum(len(m.model.directions) for m in models), max(m.resisted for m in models))
 
 
-def _in_place(path: Path, told: CondenseFile, frames: Sequence[Array]) -> list[Segment]:
+def _in_place(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
     whole = read(path, "", told, told, told.units)
     if whole.mass is None:
         raise CaseError(f"{path}: mass: missing: name the file of a mass matrix: without it nothing vibrates")
     tied = [_tie(told, whole, frames, k) for k in range(len(frames))]
-    return condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
+    return [whole], condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
 
 
-def _apart(path: Path, told: CondenseFile, frames: Sequence[Array]) -> list[Segment]:
-    out = []
+def _apart(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
+    models, out = [], []
     for k, piece in enumerate(told.segments):
         field = f"segments[{k}]."
         whole = read(path, field, piece, told, told.units)
         a, b = (_tie(told, whole, frames, i) for i in (k, k + 1))
+        models.append(whole)
         out.append(_one(path, field, told, piece, whole, a, b))
-    return out
+    return models, out
 
 
 def _one(path: Path, field: str, told: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:

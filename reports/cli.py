@@ -336,6 +336,7 @@ def codes() -> int:
 
 app.command(f"{__package__}.campbell_command:command", name="campbell")
 app.command(f"{__package__}.bench:command", name="bench")
+app.command(f"{__package__}.condense:command", name="condense")
 app.command(f"{__package__}.conform:command", name="conform")
 app.command(f"{__package__}.show:command", name="show")
 

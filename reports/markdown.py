@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, controls, lumped, shares, summary, witnesses
+from . import bench, condense_page, controls, lumped, shares, summary, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -68,7 +68,7 @@ def write(run: Run, folder: Path) -> Path:
     if figure := lumped.lumping(run):
         save(figure, figures / "lumped-mass.svg")
     path = folder / "report.md"
-    path.write_text(render(run, drawn, bench.beside(folder)), encoding="utf-8")
+    path.write_text(render(run, drawn, bench.beside(folder), condense_page.beside(folder)), encoding="utf-8")
     return path
 
 
@@ -77,8 +77,15 @@ def units(run: Run, case: str) -> Units:
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
-def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
-    """The report's text; ``figures`` are paths of each case's figures, relative to it, ``cost`` the tables of ``bench``."""
+def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "") -> str:
+    """The report's text.
+
+    Args:
+        run: its results.
+        figures: paths of each case's figures, relative to the report.
+        cost: the tables of ``bench``.
+        condensed: the page of ``condense``.
+    """
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
@@ -101,6 +108,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "") -> str:
         else "",
         command=run.command,
         cost=cost,
+        condensed=condensed,
     )
 
 

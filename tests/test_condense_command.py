@@ -75,7 +75,7 @@ def same(found: list, expected: list, within: float = 1e-8, fields: str = "rest 
 
 def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
     """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
-    _, found = condensing.condense(toml(folder, WHOLE))
+    found = condensing.condense(toml(folder, WHOLE)).blade
     same(found.segments, in_house(), 1e-7, "rest stiffness")
     same(found.segments, in_house(), 1e-3, "inertia")
     expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
@@ -95,8 +95,8 @@ def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None
     turned_folder(tmp_path)
     text = WHOLE.replace("[1, 2, 3]", '"freedoms.csv"').replace(str(STATIONS), str([1e3 * x for x in STATIONS]))
     text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
-    _, found = condensing.condense(toml(tmp_path, text))
-    _, expected = condensing.condense(toml(folder, WHOLE))
+    found = condensing.condense(toml(tmp_path, text)).blade
+    expected = condensing.condense(toml(folder, WHOLE)).blade
     same(found.segments, expected.segments, 1e-7)
     np.testing.assert_allclose(found.root, expected.root, atol=1e-12)
 
@@ -106,7 +106,7 @@ def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
     for k in range(SEGMENTS):
         exported(tmp_path, k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS, f"part{k}")
         text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
-    _, found = condensing.condense(toml(tmp_path, text))
+    found = condensing.condense(toml(tmp_path, text)).blade
     same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
 
 
@@ -133,7 +133,7 @@ def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
     freedoms = [1, 2, 3, 4, 5, 6]
     body = {{mass = 2.0, centre = [0.45, 0.0, 0.01], moments = [0.02, 0.05, 0.05]}}
     """
-    _, found = condensing.condense(toml(tmp_path, text))
+    found = condensing.condense(toml(tmp_path, text)).blade
     (segment,) = found.segments
     f = np.linalg.inv(segment.stiffness)
     np.testing.assert_allclose(np.diagonal(f)[[0, 3, 4, 5]], length / np.array([EA, GJ, EI, EI]), rtol=1e-9)
@@ -144,7 +144,7 @@ def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
 
 
 def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
-    _, found = condensing.condense(toml(folder, WHOLE))
+    found = condensing.condense(toml(folder, WHOLE)).blade
     condensed.write(tmp_path / "segments.json", found)
     kept = condensed.read(tmp_path / "segments.json")
     same(kept.segments, found.segments, 0.0)
