@@ -45,10 +45,11 @@ class Witness:
 
 
 def witnesses(cells: Iterable[Cell]) -> list[Witness]:
-    """All that gave numbers for one blade, in the order of the run; core's own discretisation is none."""
+    """All that took part in one blade, in the order of the run; core's own discretisation is none."""
     groups: dict[tuple[str, Kind], list[Cell]] = {}
     for cell in cells:
-        if cell.difference is not None and (who := _who(cell)):
+        asked = cell.difference is not None or cell.verdict in ("fail", "inconclusive")
+        if asked and (who := _who(cell)):
             groups.setdefault(who, []).append(cell)
     return [_witness(*who, group) for who, group in groups.items()]
 
@@ -69,14 +70,16 @@ def _witness(name: str, kind: Kind, cells: list[Cell]) -> Witness:
         kind=kind,
         standing=_gravest(_standing(c, c.target) for c in cells),
         fine=_gravest(_standing(c, FINE) for c in cells) if kind in ("code", "closed form") else None,
-        answers=len(cells),
+        answers=sum(c.difference is not None for c in cells),
         largest=max(abs(c.difference or 0.0) for c in cells),
     )
 
 
 def _standing(cell: Cell, target: float) -> Standing:
-    """Like with like: a code that lacks effects is held to core without them."""
-    verdict, _ = judge(cell.difference or 0.0, cell.uncertainty, target)
+    """Like with like: a code that lacks effects is held to core without them. No answer where one was due is no agreement."""
+    if cell.difference is None:
+        return "disagrees" if cell.verdict == "fail" else "open"
+    verdict, _ = judge(cell.difference, cell.uncertainty, target)
     if verdict == "pass":
         return "agrees"
     if cell.verdict == "known difference":

@@ -58,6 +58,14 @@ def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: s
     assert (one.standing, one.fine) == (standing, fine)
 
 
+@pytest.mark.parametrize(("verdict", "standing"), [("fail", "disagrees"), ("inconclusive", "open")])
+def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str) -> None:
+    """A mode without a partner, a crash, a time limit."""
+    (one,) = witnesses([cell("alpha"), samples.empty(verdict, "no partner", code="alpha", shares="nothing")])
+    assert (one.standing, one.fine, one.answers) == (standing, standing, 1)
+    assert independent([one]) == []
+
+
 def test_who_gave_no_number_is_no_witness() -> None:
     assert witnesses([samples.empty("not run", "not installed", code="delta", shares="nothing")]) == []
 
