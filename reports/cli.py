@@ -283,6 +283,13 @@ def report(folder: Path, /) -> int:
     folder
         What `southwell verify --out` was given.
     """
+    run = _results(folder)
+    _show(run, folder)
+    return PASSED
+
+
+def _results(folder: Path) -> Run:
+    """The results in a report's folder."""
     path = folder / RESULTS
     try:
         run = results.read(path)
@@ -292,8 +299,7 @@ def report(folder: Path, /) -> int:
         raise UsageError(str(error)) from error
     if not run.cells:
         raise UsageError(f"{path}: no results in it: the run was cut short before its first; run `southwell verify`")
-    _show(run, folder)
-    return PASSED
+    return run
 
 
 @app.command
@@ -315,8 +321,20 @@ def cases() -> int:
 
 
 @app.command
-def codes() -> int:
-    """List the codes: found or not, version, what each shares with core, how to install it."""
+def codes(*, pages: Path | None = None) -> int:
+    """List the codes: found or not, version, what each shares with core, how to install it.
+
+    Parameters
+    ----------
+    pages
+        Folder of a report (`southwell verify --out`): write a page for each code into it instead, with its worst
+        difference on every blade and its known defects, shown by running them.
+    """
+    if pages:
+        from . import code_pages
+
+        print(code_pages.write(_results(pages), pages))
+        return PASSED
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("code", "title", "version", "shares with core", "leaves out"):
         table.add_column(head, overflow="fold")
@@ -339,6 +357,7 @@ app.command(f"{__package__}.bench:command", name="bench")
 app.command(f"{__package__}.condense:command", name="condense")
 app.command(f"{__package__}.conform:command", name="conform")
 app.command(f"{__package__}.show:command", name="show")
+app.command(f"{__package__}.convert:command", name="convert")
 
 
 def _chosen(name: str) -> Case | MechanismCase:

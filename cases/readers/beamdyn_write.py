@@ -29,19 +29,25 @@ def write(blade: Blade, path: Path) -> Mount:
         "a root that is not clamped": not np.isinf(blade.root).all(),
         "a tip mass (ElastoDyn's main file has it)": bool(blade.tip_mass.any()),
         "a curve that turns back": bool((np.diff(blade.curve[:, 0]) <= 0).any()),
+        "a curve that begins beside the root": bool(blade.curve[0].any()),
     }
     for what, here in lacks.items():
         if here:
-            raise CaseError(f"{path}: BeamDyn cannot hold {what}: write TOML, or give finite values first")
+            raise CaseError(f"{path}: BeamDyn cannot hold {what}: write TOML, which holds any blade")
     z, y, x = blade.curve[:, 0], -blade.curve[:, 1], blade.curve[:, 2]
     flat = np.zeros_like(z)
     axis = measured(CubicSpline(z, np.stack([x, y, flat], axis=1), bc_type="natural"), z)
     degrees = np.degrees(roll(axis, z) - blade.twist)
-    sections = path.with_name(f"{path.stem}_blade{path.suffix or '.dat'}")
+    sections = blade_file(path)
     points = np.stack([x, y, z, degrees], axis=1)
     path.write_text(_main_text(blade.name, points, sections.name), encoding="utf-8")
     sections.write_text(_blade_text(blade), encoding="utf-8")
     return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
+
+
+def blade_file(path: Path) -> Path:
+    """The blade file beside a main file at ``path``."""
+    return path.with_name(f"{path.stem}_blade{path.suffix or '.dat'}")
 
 
 _MAIN = """\
