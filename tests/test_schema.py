@@ -160,7 +160,7 @@ def test_bad_input_ends_in_one_line(write, old: str, new: str, told: list[str]) 
 
 
 BAD_TABLES = [
-    (None, ["table.csv: blade.file: no such file", "beside the case file"]),
+    (None, ["table.csv: no such file", "beside the case file"]),
     ("", ["column 'fraction [-]' is missing"]),
     (TABLE.replace("0,90", "0.5,90").replace("\n1,0", "\n0.2,0"), ["fraction [-]: last is 0.2"]),
     (TABLE.replace("0,90", "0.5,90"), ["stations: first is 5 m"]),
