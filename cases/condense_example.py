@@ -31,6 +31,9 @@ KINDS = ("rigid", "average", None)
 TARGET, EXACT_TARGET = 5e-3, 1e-3
 """Largest difference of the condensed blade from the whole solid, and of the cantilever from the exact beam; relative."""
 
+LENGTHS = (1, 2)
+"""Of the flat bar, in chords."""
+
 PLANE = 3
 """Frequencies of the cantilever in each plane."""
 
@@ -121,11 +124,10 @@ def example(
     say("the cantilever")
     exact = timoshenko.cantilever(PLANE, solids.SQUARE, solids.SIDE, solids.LENGTH)
     bar = {kind: [solids.cantilever_segment(kind, segments)] * segments for kind in ("rigid", "average")}
-    lengths = (1, 2)
     torsion = {}
     for kind in KINDS:
         say(f"torsion of a flat bar, {kind or 'in place'}")
-        torsion[kind or "in place"] = tuple(solids.torsion(n * solids.CHORD, kind) for n in lengths)
+        torsion[kind or "in place"] = tuple(solids.torsion(n * solids.CHORD, kind) for n in LENGTHS)
     told = Example(
         freedoms=len(model.directions),
         hexahedra=int(np.prod(bricks.counts)),
@@ -134,7 +136,7 @@ def example(
         exact=_plain(exact),
         cantilever={kind: _plain(_chain(s, solids.HUB, 0.0, 2 * PLANE).frequencies) for kind, s in bar.items()},
         torsion=torsion,
-        lengths=lengths,
+        lengths=LENGTHS,
         versions=versions,
     )
     return told, Drawn(bricks, pieces["in place"], solids.cuts(bricks, segments), solids.at(solids.ROOT))

@@ -220,7 +220,7 @@ def _torsion(found: Example) -> str:
     solid, ours = last.whole[b] - first.whole[a], last.condensed[b] - first.condensed[a]
     return (
         "A complex stiffness element is linear in its own axes: steady tension stiffens its bending, but not its torsion, as\n"
-        f"it does in a solid. Turning raises the solid's first torsion by {solid:.1f} rad/s, the compressed model's by {ours:.1f}."
+        f"it does in a solid. Turning raises the solid's first torsion by {solid:.1f} rad/s, the elements' by {ours:.1f}."
     )
 
 

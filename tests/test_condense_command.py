@@ -7,11 +7,14 @@ import pytest
 import scipy.io
 import scipy.sparse as ss
 
-from southwell.cases import condensed, condensing, solid_blades
+from southwell.cases import condense_example, condensed, condensing, solid_blades
 from southwell.cases.errors import CaseError
+from southwell.cases.results import Run
 from southwell.cases.solid_blades import ROOT, SPAN, SPEED, STEEL, at
 from southwell.core.compressed import chain_from_segments, chain_modes
-from southwell.references import solid
+from southwell.references import calculix, solid
+from southwell.references.solid_mesh import clamped
+from southwell.reports import cli, condense_page, markdown
 
 pytestmark = pytest.mark.skipif(solid.version() is None, reason=f"not installed: {solid.HINT}")
 
@@ -184,3 +187,138 @@ def test_wrong_files_are_one_line(folder: Path, old: str, new: str, message: str
         condensing.condense(path)
     assert str(caught.value).startswith(str(folder))
     assert "\n" not in str(caught.value)
+
+
+# Another code's files
+
+
+@pytest.mark.skipif(calculix.version() is None, reason=f"not installed: {calculix.HINT}")
+def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
+    """Its .sti, .mas and .dof as they are, condensed in place, against its own modes of the whole, without Coriolis forces.
+
+    Corners of its 8-node faces have negative lumped mass, which the default refuses.
+    """
+    mesh = solid_blades.twisted(LAYERS, (2, 2))
+    places, nodes = calculix.numbered(mesh)
+    steps = ["*STEP", "*FREQUENCY,SOLVER=MATRIXSTORAGE", "1", "*END STEP"]
+    with calculix.run([*calculix.deck(places, nodes, STEEL), *steps]) as folder:
+        for kind in ("sti", "mas", "dof"):
+            (tmp_path / f"blade.{kind}").write_bytes((folder / f"blade.{kind}").read_bytes())
+    rows = [f"{k},{x!r},{y!r},{z!r}" for k, (x, y, z) in enumerate(nodes.tolist(), 1)]
+    (tmp_path / "nodes.csv").write_text("id,x,y,z\n" + "\n".join(rows))
+    text = 'name = "ccx"\nstiffness = "blade.sti"\nmass = "blade.mas"\nnodes = "nodes.csv"\n'
+    text += f"sections = {[round(ROOT + SPAN * k / 10, 6) for k in range(11)]}\n"
+    with pytest.raises(CaseError, match="weights are the lumped masses, which reach down to -"):
+        condensing.condense(toml(tmp_path, text))
+    whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped(ROOT)).frequencies
+    for weights in ("even", "mass matrix"):
+        found = condensing.condense(toml(tmp_path, f'{text}weights = "{weights}"\n')).blade
+        np.testing.assert_allclose(condensed.modes(found, 0.0, 5).frequencies[:4], whole[:4], rtol=5e-3)
+
+
+# The command
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["condense", *arguments])
+    out, err = capsys.readouterr()
+    return int(ended.value.code or 0), out, err
+
+
+def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Tables in the page; the same modes again, in other units, from the segments kept."""
+    path = toml(folder, WHOLE)
+    status, out, _ = run(capsys, str(path), "--omega", "0:100:100", "--modes", "3", "-o", str(tmp_path))
+    assert status == 0
+    page = (tmp_path / "condensation.md").read_text()
+    assert page.strip() in out
+    whole = condensed.modes(condensing.condense(path).blade, 100.0, 3).frequencies
+    rows = [[c.strip() for c in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("|")]
+    assert [float(row[3]) for row in rows if row[0] == "100"] == pytest.approx(whole, rel=1e-6)
+    assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)
+    status, out, _ = run(capsys, str(tmp_path / "segments.json"), "--rpm", "954.9296585", "-o", str(tmp_path / "again"))
+    assert status == 0
+    again = [float(line.split("|")[4]) for line in out.splitlines() if line.startswith("| 954.93")]
+    assert again[:3] == pytest.approx(whole / (2 * np.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "file: missing: give a TOML file"),
+        (("nowhere.toml",), "nowhere.toml: no such file"),
+        (("nowhere.json",), "nowhere.json: no such file"),
+        (("--example", "--rpm", "3"), "--example: with --rpm 3: it has its own"),
+        (("--example", "x.toml"), "--example: with x.toml: it has its own"),
+        (("x.toml", "--rpm", "fast"), "--rpm: 'fast' is neither a speed"),
+    ],
+)
+def test_wrong_arguments(arguments: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"southwell: {message}")
+    assert err.count("\n") == 1
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The example with few elements, and without CalculiX."""
+    whole = condense_example.example
+    coarse = {"layers": 20, "across": (2, 2), "segments": 10}
+    monkeypatch.setattr(condense_example, "example", lambda say: whole(say, **coarse))
+    monkeypatch.setattr(condense_example, "LENGTHS", (1,))
+    monkeypatch.setattr(solid_blades, "LAYER", 0.02)
+    monkeypatch.setattr(condense_example.calculix, "version", lambda: None)
+
+
+def test_the_example(small: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every file; what is not run says how to install it; a coarse model misses its target and says so by the status."""
+    status, out, _ = run(capsys, "example", "-o", str(tmp_path))
+    found = condense_example.read(tmp_path / "condensation.json")
+    assert status == (0 if condense_example.within(found) else 1)
+    page = (tmp_path / "condensation.md").read_text()
+    assert page.strip() in out
+    assert f"○ not run: ccx is not on the PATH: {calculix.HINT}" in page
+    assert (tmp_path / "figures" / "condensation.png").read_bytes().startswith(b"\x89PNG")
+    assert "10 rigid bodies" in page
+    assert (tmp_path / "figures" / "condensation.svg").is_file()
+    assert len(condensed.read(tmp_path / "segments.json").segments) == 10
+    rest = found.speeds[0]
+    np.testing.assert_allclose(rest.condensed[:2], rest.whole[:2], rtol=5e-3)
+    assert found.torsion["rigid"][0] > 1.5 * found.torsion["average"][0]
+
+
+def made(whole: tuple[float, ...], condensed_: tuple[float, ...]) -> condense_example.Example:
+    names = ("flap 1", "torsion 1")
+    speeds = tuple(
+        condense_example.Speed(w, names, whole, condensed_, {"rigid": whole, "average": whole}, (), condensed_)
+        for w in (0.0, 10.0)
+    )
+    bar = {"rigid": (10.1, 10.1), "average": (10.0, 10.0)}
+    torsion = {"rigid": (1.6,), "average": (0.8,), "in place": (1.0,)}
+    return condense_example.Example(99, 8, 2, speeds, (10.0,), bar, torsion, (1,), {"CalculiX": "not run: absent"})
+
+
+def test_the_page_says_what_the_numbers_say() -> None:
+    good, bad = made((10.0, 20.0), (10.04, 20.0)), made((10.0, 20.0), (10.06, 20.0))
+    assert condense_example.within(good)
+    assert not condense_example.within(bad)
+    page = condense_page.example(good, "figure.svg", "command")
+    assert (
+        "- ✔ The 2 elements keep the five lowest frequencies of a tapered, twisted solid blade within\n  **0.4 %**"
+        in page
+    )
+    assert "torsion with rigid ties is 2.0 times as stiff" in page
+    assert "| ✔ +0.400 %" in page
+    wrong = condense_page.example(bad, "figure.svg", "command")
+    assert "| ✘ +0.600 %" in wrong
+    assert "- ✘ The 2 elements" in wrong
+
+
+def test_the_report_takes_the_page_up(tmp_path: Path) -> None:
+    assert condense_page.beside(tmp_path) == ""
+    (tmp_path / "condensation.md").write_text("# Title\n\n## Part\n\ntext # no heading\n")
+    text = condense_page.beside(tmp_path)
+    assert text == "## Title\n\n### Part\n\ntext # no heading\n"
+    assert text in markdown.render(Run(()), {}, "", text)
