@@ -151,7 +151,7 @@ MISTAKES: dict[str, tuple[Core, set[str]]] = {
     "shear dropped": (Core(given=rigid_in_shear), {"shear", "keeps shear flexibility"}),
     "rotary inertia dropped": (
         Core(given=masses(lambda m: m * np.diag([1, 1, 1, 0, 0, 0]))),
-        {"keeps rotary inertia", "torsion", "model"},
+        {"keeps rotary inertia", "model"},
     ),
     "no Coriolis, unsaid": (Core(kept=Model(coriolis=False)), {"model"}),
     "no prestretch, unsaid": (Core(kept=Model(prestretch=False)), {"model"}),
