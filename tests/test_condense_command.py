@@ -13,7 +13,7 @@ from southwell.cases.results import Run
 from southwell.cases.solid_blades import ROOT, SPAN, SPEED, STEEL, at
 from southwell.core.compressed import chain_from_segments, chain_modes
 from southwell.references import calculix, solid
-from southwell.references.solid_mesh import clamped
+from southwell.references.solid_mesh import Bricks, blade, clamped
 from southwell.reports import cli, condense_page, markdown
 
 pytestmark = pytest.mark.skipif(solid.version() is None, reason=f"not installed: {solid.HINT}")
@@ -23,13 +23,13 @@ Array = np.ndarray
 LAYERS, ACROSS, SEGMENTS = 20, (2, 1), 5
 
 
-def bricks():
+def bricks() -> Bricks:
     return solid_blades.twisted(LAYERS, ACROSS)
 
 
-def exported(folder: Path, start: int = 0, stop: int = LAYERS, stem: str = "blade", unit: float = 1.0) -> None:
+def exported(folder: Path, bricks: Bricks, stem: str = "blade", unit: float = 1.0) -> None:
     """Matrices in Matrix Market node by node, and the nodes; ``unit`` is that of length, m (and t for kg at 1e-3)."""
-    s = solid.solid(bricks().part(start, stop), STEEL)
+    s = solid.solid(bricks, STEEL)
     n = len(s.nodes)
     by_node = np.arange(3 * n).reshape(3, n).T.ravel()
     M = ss.csr_array(ss.kron(ss.eye_array(3), solid.mass(s), format="csr"))
@@ -60,7 +60,7 @@ sections = {STATIONS}
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("exported")
-    exported(out)
+    exported(out, bricks())
     return out
 
 
@@ -85,9 +85,19 @@ def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> Non
     np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
 
 
+def test_a_sections_mass_is_shared_by_what_lies_on_either_side(tmp_path: Path) -> None:
+    """A prism cut between layers of 0.1 and 0.3 m: each segment has its own length's mass, and its centre in its middle."""
+    ends = [0.0, 0.1, 0.4]
+    exported(tmp_path, bricks=blade(np.array(ends), 0.2, 0.1, across=(1, 1)))
+    found = condensing.condense(toml(tmp_path, WHOLE.replace(str(STATIONS), str(ends)))).blade
+    masses, centres, _ = zip(*(condensed.body(s) for s in found.segments), strict=True)
+    np.testing.assert_allclose(masses, STEEL.density * 0.02 * np.diff(ends), rtol=1e-10)
+    np.testing.assert_allclose([c[0] for c in centres], np.diff(ends) / 2, rtol=1e-10)
+
+
 def turned_folder(folder: Path) -> None:
     """The same in mm and t, with the span along z and the rotor's axis along x, and freedoms in a table of their own."""
-    exported(folder, unit=1e-3)
+    exported(folder, bricks(), unit=1e-3)
     rows = [line.split(",") for line in (folder / "blade-nodes.csv").read_text().splitlines()[1:]]
     (folder / "blade-nodes.csv").write_text("id,x,y,z\n" + "".join(f"{k},{z},{x},{y}\n" for k, x, y, z in rows))
     (folder / "freedoms.csv").write_text("node,freedom\n" + "".join(f"{k},{f}\n" for k, *_ in rows for f in (2, 3, 1)))
@@ -107,7 +117,7 @@ def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None
 def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
     text = f'name = "apart"\nfreedoms = [1, 2, 3]\nsections = {STATIONS}\nroot = "average"\n'
     for k in range(SEGMENTS):
-        exported(tmp_path, k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS, f"part{k}")
+        exported(tmp_path, bricks().part(k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS), f"part{k}")
         text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
     found = condensing.condense(toml(tmp_path, text)).blade
     same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
