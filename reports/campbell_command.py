@@ -15,7 +15,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from ..cases.campbell import Campbell, Wanted, campbell, solver
 from ..cases.errors import CaseError
 from ..cases.pool import Pool
-from ..cases.readers import Mount
 from ..cases.tracking import Solver
 from ..core.blade import Blade
 from ..core.modes import Modes
@@ -23,6 +22,7 @@ from . import campbell_options as options
 from . import campbell_page, campbell_subjects, terminal
 from . import campbell_tables as tables
 from .cli import Whole
+from .mounting import Mounting
 from .units import Units
 
 
@@ -41,13 +41,8 @@ def command(
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
-    main: Path | None = None,
-    length: float | None = None,
-    hub_radius: float | None = None,
-    precone: float | None = None,
-    pitch: float | None = None,
-    subset: str | None = None,
     workers: Whole = 1,
+    mounting: Mounting | None = None,
 ) -> int:
     """A blade's Campbell diagram: modes by name along rotor speed, where they meet n per revolution or each other.
 
@@ -82,31 +77,11 @@ def command(
     load
         A steady load that bends the blade before it vibrates: a CSV table of `fraction [-]`, `fx [N/m]`, `fy [N/m]`,
         `fz [N/m]`, in axes that turn with the hub (x outwards, y in the direction of motion, z along the rotor's axis).
-    main
-        The main file that says how the blade sits on the hub, of a blade's file that does not.
-    length
-        From root to tip, m, if no file says it or it is to be another.
-    hub_radius
-        From the rotor's axis to the root, m, likewise.
-    precone
-        Degrees, downwind, likewise.
-    pitch
-        Degrees, leading edge downwind, likewise.
-    subset
-        Set and subset of a HAWC2 structural file that has several, as `5:1`.
     workers
         Processes that share the speeds; starting one costs about as much as twenty speeds.
     """
     given = options.speeds(rpm, omega)
-    mount = Mount(
-        main=main,
-        length=length,
-        hub_radius=hub_radius,
-        precone=options.angle("--precone", precone),
-        pitch=options.angle("--pitch", pitch),
-        subset=options.subset(subset) if subset is not None else None,
-    )
-    subjects = campbell_subjects.subjects(blade, mount)
+    subjects = campbell_subjects.subjects(blade, (mounting or Mounting()).mount())
     for subject in subjects:
         if not (given or subject.speeds):
             raise CaseError(f"--rpm: missing: {blade} says no speeds: give them, as in 0:15:0.5")

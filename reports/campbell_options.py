@@ -1,12 +1,13 @@
 """What is typed after ``southwell campbell``, made into numbers; each raises a CaseError that names the option."""
 
-from math import inf, isfinite, radians
+from math import inf
 from pathlib import Path
 
 from ..cases import prestress
 from ..cases.errors import CaseError
 from ..cases.schema import speed_range
 from ..core.blade import Blade
+from .mounting import angle
 from .units import RAD_S, RPM, Units
 
 
@@ -21,13 +22,6 @@ def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units
         return tuple((speed_range(text) / units.speeds).tolist()), units
     except ValueError as error:
         raise CaseError(f"{option}: {error}") from error
-
-
-def angle(option: str, degrees: float | None) -> float | None:
-    """Radians; None if not given."""
-    if degrees is not None and not isfinite(degrees):
-        raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 90")
-    return None if degrees is None else radians(degrees)
 
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
@@ -67,15 +61,6 @@ def operating(text: str, units: Units) -> tuple[float, float]:
     if not (0 <= low <= high < inf and high > 0):
         raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
     return low / units.speeds, high / units.speeds
-
-
-def subset(text: str) -> tuple[int, int]:
-    """``5:1``."""
-    try:
-        first, second = (int(p) for p in text.split(":"))
-    except ValueError:
-        raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
-    return first, second
 
 
 def margin(text: str) -> float:

@@ -29,6 +29,8 @@ class Mounting:
         Degrees, leading edge downwind, likewise.
     subset
         Set and subset of a HAWC2 structural file that has several, as `5:1`.
+    multipliers
+        Of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
     """
 
     main: Path | None = None
@@ -37,6 +39,7 @@ class Mounting:
     precone: float | None = None
     pitch: float | None = None
     subset: str | None = None
+    multipliers: str | None = None
 
     def mount(self) -> Mount:
         """The same for a reader, in radians.
@@ -51,13 +54,19 @@ class Mounting:
             main=self.main,
             length=self.length,
             hub_radius=self.hub_radius,
-            precone=_angle("--precone", self.precone),
-            pitch=_angle("--pitch", self.pitch),
+            precone=angle("--precone", self.precone),
+            pitch=angle("--pitch", self.pitch),
             subset=None if self.subset is None else _subset(self.subset),
+            multipliers=None if self.multipliers is None else _multipliers(self.multipliers),
         )
 
 
-def _angle(option: str, degrees: float | None) -> float | None:
+def angle(option: str, degrees: float | None) -> float | None:
+    """Radians; None if not given.
+
+    Raises:
+        CaseError: if it is not finite.
+    """
     if degrees is not None and not isfinite(degrees):
         raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
     return None if degrees is None else radians(degrees)
@@ -69,3 +78,13 @@ def _subset(text: str) -> tuple[int, int]:
     except ValueError:
         raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
     return first, second
+
+
+def _multipliers(text: str) -> tuple[float, float, float]:
+    try:
+        mass, flap, edge = (float(p) for p in text.split(","))
+    except ValueError:
+        raise CaseError(f"--multipliers: {text!r} is not mass,flap,edge, as in 1.04536,1,1") from None
+    if not all(isfinite(v) and v > 0 for v in (mass, flap, edge)):
+        raise CaseError(f"--multipliers: {text!r}: they multiply: give positive numbers, as in 1.04536,1,1")
+    return mass, flap, edge

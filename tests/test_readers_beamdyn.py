@@ -110,7 +110,9 @@ def test_rigid_strains_are_not_written(tmp_path: Path) -> None:
 def test_nrel_5mw_is_the_blade_of_its_elastodyn_file() -> None:
     """Two files of one blade by other hands: the same mass, flap and edge stiffness and twist, to the printed digit."""
     ours = beamdyn.read(real("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat")).blade
-    other = elastodyn.read(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"), Mount(length=61.5), multiply=False).blade
+    other = elastodyn.read(
+        real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"), Mount(length=61.5, multipliers=(1.0, 1.0, 1.0))
+    ).blade
     assert straight(ours)
     assert ours.length == 61.5
     at = [int(np.abs(ours.stations - s).argmin()) for s in other.stations]

@@ -1,6 +1,7 @@
 """ElastoDyn blades: an invented file worked out by hand, the NREL 5-MW blade against its report, files that are wrong."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,10 +47,19 @@ def test_every_number_of_the_file_is_where_it_belongs() -> None:
     np.testing.assert_allclose(np.degrees(found.twist), [-12.5, -11, -6.5, -2.25, 0])  # leading edge upwind: −z
 
 
-def test_multipliers_can_be_left_out() -> None:
-    found = elastodyn.read(BLADE, MOUNT, multiply=False)
+def test_other_multipliers_can_be_given() -> None:
+    found = readers.reading(BLADE, replace(MOUNT, multipliers=(1.0, 3.0, 1.5)))
+    own = readers.reading(BLADE, MOUNT)
     np.testing.assert_allclose(found.blade.mass[0, 0, 0], 700)
-    assert "AdjBlMs = 1.25, AdjFlSt = 1.5, AdjEdSt = 0.75: not applied" in found.source.notes
+    np.testing.assert_allclose(found.blade.mass, own.blade.mass / 1.25)
+    held = found.blade.stiffness[:, 4:, 4:] / np.where(np.eye(2), own.blade.stiffness[:, 4:, 4:], 1)
+    np.testing.assert_allclose(held, np.diag([2.0, 2.0])[None].repeat(len(held), axis=0))
+    assert "AdjBlMs = 1.25, AdjFlSt = 1.5, AdjEdSt = 0.75: replaced by 1, 3, 1.5" in found.source.notes
+
+
+def test_multipliers_of_another_format_are_refused() -> None:
+    with pytest.raises(CaseError, match=r"hawc2.htc: multipliers: HAWC2 has none, they are ElastoDyn's"):
+        readers.read(DATA / "hawc2.htc", Mount(multipliers=(1.0, 1.0, 1.0)))
 
 
 @pytest.mark.parametrize("path", [BLADE, MAIN])

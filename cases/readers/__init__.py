@@ -36,7 +36,10 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     Raises:
         CaseError: one line with file and line, value, likely cause and remedy.
     """
-    return recognise(path)(path, mount)
+    found = recognise(path)(path, mount)
+    if mount is not None and mount.multipliers is not None and found.source.format != "ElastoDyn":
+        raise CaseError(f"{path}: multipliers: {found.source.format} has none, they are ElastoDyn's: leave them out")
+    return found
 
 
 def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:

@@ -8,7 +8,7 @@ multiply the table (on FlStTunr see ``_notes``). Source: J. Jonkman, M. Buhl, *F
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -55,14 +55,13 @@ def is_main(text: Text) -> bool:
     return "tiprad" in named and "hubrad" in named
 
 
-def read(path: Path, mount: Mount | None = None, *, multiply: bool = True) -> Reading:
+def read(path: Path, mount: Mount | None = None) -> Reading:
     """The blade in an ElastoDyn blade file, or the first blade of a main file.
 
     Args:
         path: of either. A blade file's length is in the main file: ``mount.main``, or the one main file beside the
             blade file that names it; or ``mount.length``.
         mount: what stands in no file, or is to be different.
-        multiply: whether the file's AdjBlMs, AdjFlSt, AdjEdSt multiply the table.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -74,7 +73,7 @@ def read(path: Path, mount: Mount | None = None, *, multiply: bool = True) -> Re
     else:
         main = mount.main or (None if mount.length else beside(path, is_main, blade_file))
     told = hub(load(main)) if main else None
-    return _blade(text, mount, told, main, multiply)
+    return _blade(text, mount, told, main)
 
 
 def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
@@ -133,15 +132,11 @@ def blade_file(text: Text) -> Path:
 
 def settle(mount: Mount, told: Mount | None) -> Mount:
     """``mount`` with what it leaves open from ``told``."""
-    other = told or Mount()
-    pick = {
-        name: getattr(mount, name) if getattr(mount, name) is not None else getattr(other, name)
-        for name in ("main", "length", "hub_radius", "precone", "pitch", "subset")
-    }
-    return Mount(**pick)
+    given = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
+    return replace(told or Mount(), **given)
 
 
-def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None, multiply: bool) -> Reading:
+def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Reading:
     named = keys(text)
     count = whole(text, named, "NBlInpSt")
     factors = {name: value(text, named, name) for name in MULTIPLIERS}
@@ -167,7 +162,7 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None, multip
             f"{text.path}: length: stations are fractions of it, and the main file that says it is not here: "
             "give --main FILE, or --length and --hub-radius"
         )
-    by_mass, by_flap, by_edge = (factors[name] if multiply else 1.0 for name in MULTIPLIERS)
+    by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
     flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
     tip = np.diag([told.tip_mass] * 3 + [0.0] * 3) if told else np.zeros((6, 6))
     try:
@@ -191,7 +186,7 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None, multip
         raise CaseError(f"{text.path}: {error}") from error
     files = (text.path,) if main is None else (text.path, main)
     axes = f"{OPENFAST_AXES}; all centres on the pitch axis"
-    return Reading(blade, Source(NAME, files, axes, _notes(text, named, factors, multiply, main, settled, columns)))
+    return Reading(blade, Source(NAME, files, axes, _notes(text, named, factors, main, settled, columns)))
 
 
 def _columns(names: list[str]) -> tuple[str, ...]:
@@ -203,13 +198,13 @@ def _notes(
     text: Text,
     named: dict[str, tuple[int, str]],
     factors: dict[str, float],
-    multiply: bool,
     main: Path | None,
     settled: Mount,
     columns: tuple[str, ...],
 ) -> tuple[str, ...]:
     said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
-    out = [f"{said}: {'multiply the table' if multiply else 'not applied'}"]
+    given = settled.multipliers
+    out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
     if any(name in named and value(text, named, name) != 1 for name in ("flsttunr1", "flsttunr2")):
         out.append("FlStTunr multiply ElastoDyn's modal stiffness, which sections do not have: not applied")
     rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]

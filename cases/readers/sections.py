@@ -17,6 +17,7 @@ from ..errors import CaseError
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
+Positive = Annotated[float, Meta(gt=0)]
 Upper = Annotated[list[float], Meta(min_length=21, max_length=21)]
 
 STRAINS = ("axial", "shear_y", "shear_z", "torsion", "bend_y", "bend_z")
@@ -135,6 +136,10 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     length: Annotated[float, Meta(gt=0, description="m, where no file says it")] | None = None
     hub_radius: Annotated[float, Meta(ge=0, description="m, where no file says it")] | None = None
     subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
+    multipliers: Annotated[
+        tuple[Positive, Positive, Positive] | None,
+        Meta(description="of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt"),
+    ] = None
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, its file found from ``folder``.
@@ -146,7 +151,13 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         from .source import Mount
 
         main = folder / self.main if self.main is not None else None
-        mount = Mount(main=main, length=self.length, hub_radius=self.hub_radius, subset=self.subset)
+        mount = Mount(
+            main=main,
+            length=self.length,
+            hub_radius=self.hub_radius,
+            subset=self.subset,
+            multipliers=self.multipliers,
+        )
         return self.mounted(replace(reading(folder / self.file, mount).blade, name=name))
 
 

@@ -42,6 +42,7 @@ class Mount:
         precone: rad, towards +z (downwind).
         pitch: rad, in the sense of our twist (y towards z: the leading edge downwind).
         subset: set and subset of a HAWC2 structural file that has several.
+        multipliers: of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt.
     """
 
     main: Path | None = None
@@ -50,6 +51,7 @@ class Mount:
     precone: float | None = None
     pitch: float | None = None
     subset: tuple[int, int] | None = None
+    multipliers: tuple[float, float, float] | None = None
 
 
 OPENFAST_AXES = (
