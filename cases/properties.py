@@ -49,6 +49,12 @@ class Mass:
         """(3,) kg m, first moments about the point."""
         return self.mass * self.centre
 
+    @property
+    def own(self) -> Array:
+        """(3, 3) kg m², second moments about the centre of mass."""
+        cross = sp.skew(self.centre)
+        return self.moments + self.mass * cross @ cross
+
 
 @dataclass(frozen=True)
 class Sections:
@@ -82,6 +88,11 @@ def about_hub(blade: Blade) -> Mass:
 def about_root(blade: Blade) -> Mass:
     """About the root in the blade's axes (x along the blade, coned and pitched with it), tip mass included."""
     return _properties(moved(_inertia(blade), sp.inverse(root(blade))))
+
+
+def tip(blade: Blade) -> Mass | None:
+    """The body at the tip, about the tip in the tip section's axes; None if there is none."""
+    return _properties(blade.tip_mass) if blade.tip_mass[0, 0] > 0 else None
 
 
 def _inertia(blade: Blade) -> Array:

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..cases.errors import CaseError
-from ..cases.properties import Sections, about_hub, about_root, sections
+from ..cases.properties import Mass, Sections, about_hub, about_root, sections, tip
 from ..core.blade import Blade, straight
 from . import campbell_subjects, terminal
 from .mounting import Mounting
@@ -27,6 +27,9 @@ COLUMNS = (
     *("s [m]", "mass [kg/m]", "EI flap [N m²]", "EI edge [N m²]", "GJ [N m²]", "EA [N]", "twist [deg]"),
     *("mass y [m]", "mass z [m]", "tension y [m]", "tension z [m]", "shear y [m]", "shear z [m]"),
 )
+MORE = ("principal axes [deg]", "mass axes [deg]", "axis x [m]", "axis y [m]", "axis z [m]")
+"""Further columns of the CSV: axes from the section's own y and z, empty where there are none; the reference axis."""
+
 CONVENTIONS = (
     "x along the blade, z the rotor's axis, y the direction of motion (to the leading edge); sections turn with twist and "
     "pitch from y towards z (leading edge downwind)"
@@ -74,9 +77,10 @@ def facts(blade: Blade) -> dict[str, str]:
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
     loose = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
     bends = f"prebend {_farthest(blade.curve[:, 2]):.5g} m, sweep {_farthest(blade.curve[:, 1]):.5g} m (largest)"
-    tip = blade.tip_mass[0, 0]
+    end = tip(blade)
     return {
-        "mass": f"{hub.mass:.6g} kg" + (f", of which {tip:.6g} kg at the tip" if tip else ""),
+        "mass": f"{hub.mass:.6g} kg" + (f", of which {end.mass:.6g} kg at the tip" if end else ""),
+        "tip mass": _body(end) if end else "",
         "centre of mass": f"x {x:.6g}, y {y:.4g}, z {z:.4g} m in the hub's axes",
         "first moment": (
             f"{np.hypot(*hub.first[:2]):.7g} kg m about the rotor's axis, {root.first[0]:.7g} kg m about the root"
@@ -95,7 +99,13 @@ def facts(blade: Blade) -> dict[str, str]:
 
 
 def _farthest(values: Array) -> float:
-    return float(values[np.abs(values).argmax()])
+    return float(values[np.abs(values).argmax()]) + 0.0
+
+
+def _body(found: Mass) -> str:
+    (x, y, z), own = found.centre + 0.0, found.own
+    moments = ", ".join(f"{k:.5g}" for k in np.where(np.abs(own) < 1e-9 * np.abs(own).max(), 0.0, own).diagonal())
+    return f"centre x {x:.5g}, y {y:.5g}, z {z:.5g} m from the tip; moments of inertia about it {moments} kg m²; section axes"
 
 
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
@@ -144,7 +154,10 @@ def write(blade: Blade, folder: Path) -> list[Path]:
 
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "stations.csv"
-    values = rows(blade, sections(blade))
-    lines = [",".join(COLUMNS), *(",".join(repr(float(x)) for x in row) for row in values)]
+    found = sections(blade)
+    angles = np.degrees([found.principal, found.mass_axes]).T
+    values = np.column_stack([rows(blade, found), angles, blade.curve])
+    written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
+    lines = [",".join(COLUMNS + MORE), *written]
     table.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return [*span.write(blade, folder), table]

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from southwell.cases import library
-from southwell.cases.properties import about_hub, about_root, sections
+from southwell.cases.properties import about_hub, about_root, sections, tip
 from southwell.core.blade import Blade, mass_at, section_mass, section_stiffness
 
 from .test_reference_axis import about
@@ -158,6 +158,19 @@ def test_a_mass_at_the_tip_is_where_twist_and_pitch_turn_it() -> None:
     np.testing.assert_allclose(hub.centre, [6.0, 0.5 * np.cos(np.pi / 3), 0.5 * np.sin(np.pi / 3)], rtol=1e-7)
     np.testing.assert_allclose(own.centre, [6.0, 0.5 * np.cos(np.pi / 6), 0.5 * np.sin(np.pi / 6)], rtol=1e-7)
     np.testing.assert_allclose(hub.moments[2, 2], 2 * (36.0 + 0.5**2 * 0.25), rtol=1e-6)
+
+
+def test_the_body_at_the_tip_is_told_about_its_own_centre() -> None:
+    """A rod of 3 kg and 2 m across, whose centre lies at (0.1, 0.4, −0.2) from the tip: m l²/12 about itself."""
+    at, own = np.array([0.1, 0.4, -0.2]), np.diag([1.0, 0.0, 1.0])
+    cross = np.array([[0, 0.2, 0.4], [-0.2, 0, -0.1], [-0.4, 0.1, 0]])
+    body = np.block([[3 * np.eye(3), -3 * cross], [3 * cross, own - 3 * cross @ cross]])
+    found = tip(tapered(tip_mass=body))
+    assert found is not None
+    assert found.mass == 3.0
+    np.testing.assert_allclose(found.centre, at, atol=1e-15)
+    np.testing.assert_allclose(found.own, own, atol=1e-14)
+    assert tip(tapered()) is None
 
 
 def test_nrel_5mw_as_published() -> None:

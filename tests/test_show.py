@@ -53,6 +53,13 @@ def test_a_uniform_beam_with_a_tip_mass(capsys: pytest.CaptureFixture[str], tmp_
     assert f"{second:.7g} kg m² about the rotor's axis" in out
     assert f"x {first / 9.2:.6g}, y 0, z 0 m" in out
     assert "flap free, lag spring 100000; the rest held" in out
+    path.write_text(
+        BEAM.replace("mass = 2.0", "mass = 2.0, offset = [0.1, -0.2, 0.0], inertia = [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]")
+    )
+    assert (
+        "centre x 0.1, y -0.2, z 0 m from the tip; moments of inertia about it 1, 2, 3 kg m²"
+        in run(capsys, str(path))[1]
+    )
 
 
 def test_nrel_5mw_says_how_it_was_read(capsys: pytest.CaptureFixture[str]) -> None:
@@ -82,6 +89,9 @@ def test_figure_and_table_of_all_stations(capsys: pytest.CaptureFixture[str], tm
     np.testing.assert_allclose([float(r["mass y [m]"]) for r in rows], [-0.3, -0.2, -0.1])
     np.testing.assert_allclose([float(r["EI edge [N m²]"]) for r in rows], [1.2e9, 4.5e8, 1.5e7])
     assert [r["shear z [m]"] for r in rows] == ["0.0"] * 3
+    assert [float(r["axis x [m]"]) for r in rows] == [0.0, 10.0, 20.0]
+    # str_tw 5°, tw_iner 8°, both with the leading edge upwind: towards −z from the section's own axes
+    np.testing.assert_allclose([float(r["mass axes [deg]"]) for r in rows], [0.0, -3.0, 0.0], atol=1e-9)
 
 
 def test_blades_of_a_case_each_have_a_folder(
