@@ -94,7 +94,7 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     }
     assert all(name in shown for name in names)
     page = (out / "campbell.md").read_text()
-    for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell "):
+    for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell"):
         assert needed in page
     assert (out / "campbell.png").read_bytes().startswith(b"\x89PNG")
 

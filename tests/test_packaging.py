@@ -19,8 +19,8 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
-ELSEWHERE = {"tests"}
-"""Folders with an ``__init__.py`` that are not installed."""
+ELSEWHERE = {"tests", "examples"}
+"""Folders with modules that are not installed."""
 
 
 def tracked() -> list[Path]:
