@@ -90,7 +90,9 @@ def lanczos(
         projected[near, new] = basis[near] @ force
         w -= basis[near].T @ projected[near, new]
         before, last, size = size, new, new.stop
-    positive = mu > 1e-12 * mu.max()
+    positive = mu > 1e-12 * mu.max(initial=0.0)
+    if not positive.any() or not np.isfinite(mu).all():
+        raise ArithmeticError("Lanczos found no mode: the stiffness is all but singular")
     if error[positive].max() > 1e-6:
         raise ArithmeticError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
     x = basis[:size, :n].T @ z[:, positive].conj()  # i A⁻¹S has 1/ω at λ = −iω
@@ -98,7 +100,7 @@ def lanczos(
     kappa, m = (np.real((x.conj() * y).sum(0)) for y in (kx, mx))
     half = -0.5 * np.imag((x.conj() * cx).sum(0))
     frequencies = kappa / (np.sqrt(half**2 + m * kappa) - half)
-    if (np.abs(frequencies * mu[positive] - 1.0) > 1e-2).any():
+    if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
         raise ArithmeticError(
             "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
         )

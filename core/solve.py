@@ -99,7 +99,7 @@ def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravi
         p = state.linear
         try:
             found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
-        except UnstableError as error:
+        except (UnstableError, ArithmeticError) as error:  # not positive definite, or too nearly not
             loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
             raise UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
         shapes = mode_shapes(body, state.shape, found.vectors)

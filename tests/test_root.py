@@ -78,6 +78,13 @@ def test_a_free_hinge_at_rest_is_said_to_be_loose() -> None:
         modes(on(PARK, FLAP), 0.0, 10, 3)
 
 
+@pytest.mark.parametrize("elements", [40, 60, 100])
+def test_a_lag_hinge_on_the_axis_is_said_to_be_loose(elements) -> None:
+    """Nothing holds it, at any speed: what rounding leaves of its stiffness is no frequency."""
+    with pytest.raises(UnstableError, match="free hinge"):
+        modes(replace(on(PARK, LAG), hub_radius=0.0), 10.0, elements, 6)
+
+
 @pytest.mark.parametrize(("root", "match"), [([-1.0] * 6, "negative spring"), ([np.nan] * 6, "root: not a finite")])
 def test_an_impossible_root_is_refused(root, match) -> None:
     with pytest.raises(BladeError, match=match):
