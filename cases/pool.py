@@ -10,6 +10,7 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import suppress
 from multiprocessing import active_children, get_context, parent_process
 from threading import Thread, main_thread
+from time import sleep
 from types import FrameType
 from typing import Any, ParamSpec, TypeVar
 
@@ -53,7 +54,10 @@ def _follow_parent() -> None:
     if (parent := parent_process()) and (here := main_thread().ident):
         parent.join()
         _orphaned = True
-        signal.pthread_kill(here, signal.SIGTERM)
+        for _ in range(3):  # one may come just where the executor's loop catches everything
+            signal.pthread_kill(here, signal.SIGTERM)
+            sleep(2)
+        os._exit(1)
 
 
 def _leave(number: int, frame: FrameType | None) -> None:

@@ -26,6 +26,7 @@ OURS = {
     "mujoco": "southwell.references.mujoco_chain:CODE",
     "pybmodes": "southwell.references.pybmodes_beam:CODE",
     "calculix": "southwell.references.calculix_blade:CODE",
+    "sharpy": "southwell.references.sharpy_beam:CODE",
     "yoo-shin": "southwell.references.yoo_shin:CODE",
     "assumed-modes": "southwell.references.assumed_modes:CODE",
     "southwell-equation": "southwell.references.southwell_equation:CODE",
@@ -87,9 +88,10 @@ def code(name: str) -> Any:
     return found
 
 
-CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320}
+CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96}
 """Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
-freedoms, pyBModes dense squares; Drake and MuJoCo take time that grows as the cube."""
+freedoms, pyBModes dense squares; Drake, MuJoCo and SHARPy take time that
+grows as the cube."""
 
 
 def cap(code: Code) -> int:

@@ -29,7 +29,9 @@ from ..cases.schema import Case, speed_range
 from ..cases.settings import settings
 from ..cases.sweep import Named, sweep
 from ..references import codes as registry
+from ..references import elsewhere
 from ..references.codes import UnknownCodeError
+from ..references.elsewhere import ENVIRONMENTS
 from . import mechanisms as answer
 from . import summary, terminal
 from .mounting import Mounting
@@ -320,7 +322,11 @@ def cases() -> int:
     return PASSED
 
 
-@app.command
+listing = App(name="codes", result_action="return_value")
+app.command(listing)
+
+
+@listing.default
 def codes(*, pages: Path | None = None) -> int:
     """List the codes: found or not, version, what each shares with core, how to install it.
 
@@ -349,6 +355,26 @@ def codes(*, pages: Path | None = None) -> int:
             ", ".join(known.model.lacks()) or "nothing",
         )
     terminal.output().print(table)
+    return PASSED
+
+
+@listing.command
+def install(code: str, /) -> int:
+    """Make a pinned environment in the cache for a code whose dependencies conflict with ours; status 1 if it cannot be made.
+
+    Parameters
+    ----------
+    code
+        Its name; `southwell codes` says which need this.
+    """
+    if code not in ENVIRONMENTS:
+        raise UsageError(f"code: {code!r}: no environment of its own: {nearest(code, list(ENVIRONMENTS))}")
+    try:
+        folder = elsewhere.install(ENVIRONMENTS[code])
+    except elsewhere.EnvironmentMissingError as error:
+        print(f"southwell: {error}", file=sys.stderr)
+        return 1
+    print(f"{code} {ENVIRONMENTS[code].version()} in {folder}")
     return PASSED
 
 

@@ -48,6 +48,7 @@ CODES = {
     "mujoco": Can(twin=True, coupled=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
+    "sharpy": Can(coupled=True),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),

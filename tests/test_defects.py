@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from southwell.references import calculix, codes, defects
+from southwell.references import calculix, codes, defects, elsewhere
 from southwell.references.defects import DEFECTS, Defect
 
 INSTALLED = {
@@ -14,6 +14,7 @@ INSTALLED = {
     "exudyn": find_spec("exudyn") is not None,
     "pybmodes": find_spec("pybmodes") is not None,
     "calculix": calculix.version() is not None,
+    "sharpy": elsewhere.SHARPY.version() is not None,
     "scikit": find_spec("skfem") is not None,
 }
 

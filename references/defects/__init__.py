@@ -8,6 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..elsewhere import ENVIRONMENTS
+
 
 @dataclass(frozen=True)
 class Defect:
@@ -18,12 +20,19 @@ class Defect:
         script: name of the reproducer in this folder, without ``.py``.
         what: one sentence.
         avoided: how the adapter here does without.
+        environment: of ``references.elsewhere``, where the code has its own.
     """
 
     codes: tuple[str, ...]
     script: str
     what: str
     avoided: str
+    environment: str = ""
+
+    @property
+    def python(self) -> str:
+        """The interpreter that has the code."""
+        return str(ENVIRONMENTS[self.environment].python) if self.environment else sys.executable
 
     @property
     def path(self) -> Path:
@@ -69,6 +78,14 @@ DEFECTS = (
         "An `ElementLineHermite` used on a second mesh keeps the first one's functions, silently.",
         "A new element for every mesh.",
     ),
+    Defect(
+        ("sharpy",),
+        "sharpy_triads",
+        "Sections of curved elements are turned wrongly: tangents come in the order of the nodes along the element and are "
+        "taken in that of the connectivities.",
+        "The sections' rotation vectors are set after the beam is made.",
+        environment="sharpy",
+    ),
 )
 
 
@@ -80,8 +97,10 @@ def shown(defect: Defect, timeout: float = 120.0) -> str:
     """
     try:
         done = subprocess.run(
-            [sys.executable, str(defect.path)], capture_output=True, text=True, timeout=timeout, check=False
+            [defect.python, str(defect.path)], capture_output=True, text=True, timeout=timeout, check=False
         )
+    except FileNotFoundError:
+        raise RuntimeError(f"{defect.script}: not installed: southwell codes install {defect.environment}") from None
     except subprocess.TimeoutExpired:
         raise RuntimeError(f"{defect.script}: no answer within {timeout:g} s") from None
     if done.returncode:

@@ -1,0 +1,149 @@
+"""SHARPy's beam about its steady state of rotation, asked for by one JSON object on standard input; the answer is another.
+
+This file alone runs in SHARPy's environment: it imports nothing but SHARPy and NumPy. Asked: ``nodes`` (n, 3) along the beam,
+in axes that turn at ``omega`` (rad/s) about z through their origin; ``turn`` (e, 3, 3) the sections' rotation vectors at the
+nodes of each three-node element, in SHARPy's order of them (ends, then middle); ``stiffness`` and ``mass`` (e, 6, 6); ``tip``
+(6, 6). Answered: ``M``, ``C``, ``K`` (d, d) about the steady state and its coordinates ``q`` (d,), little-endian doubles in
+base64: place and rotation vector of every node but the first, which is held; or ``error``.
+"""
+
+import base64
+import json
+import os
+import sys
+
+import numpy as np
+
+STEPS, SMALL = 60, 1e-10
+
+
+def main():
+    """Answer one request."""
+    request = json.load(sys.stdin)
+    reply = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what SHARPy prints is not the answer
+    try:
+        answer = solve(request)
+    except Exception as error:  # whatever SHARPy raises is its answer
+        answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+    reply.write(json.dumps(answer) + "\n")
+    reply.flush()
+
+
+def solve(request):
+    """Steady state by Newton's method, the load raised in steps where that fails, and the matrices there."""
+    import sharpy.structure.utils.xbeamlib as xbeam
+
+    beam = built(request)
+    state = beam.timestep_info[0]
+    d = beam.num_dof.value
+    state.q = np.zeros(d + 10, order="F")
+    state.dqdt[:] = 0.0
+    state.dqddt[:] = 0.0
+    xbeam.cbeam3_solv_disp2state(beam, state)
+    settled, done, step = state.q[:d].copy(), 0.0, 1.0
+    length = np.ptp(np.array(request["nodes"]), axis=0).max()
+    size = np.tile(np.repeat([length, 1.0], 3), d // 6)
+    while done < 1.0:
+        load = min(1.0, done + step)
+        found = newton(xbeam, beam, state, request["omega"] * load**0.5, settled, size)
+        if found is not None:
+            settled, done = found, load
+        elif step > 2.0**-6:
+            step /= 2
+        else:
+            return {"error": f"no steady state past {done:.0%} of the centrifugal load"}
+    M, C, K, _ = assembled(xbeam, beam, state, request["omega"], settled)
+    return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", settled))}
+
+
+def newton(xbeam, beam, state, omega, start, size):
+    """Coordinates where no force is left, or None."""
+    q, before = start.copy(), np.inf
+    for _ in range(STEPS):
+        _, _, K, Q = assembled(xbeam, beam, state, omega, q)
+        change = -np.linalg.solve(K, Q)
+        q = q + change
+        largest = np.abs(change / size).max()
+        if not largest < 1.0:
+            return None
+        if largest < SMALL or 0.1 * before < largest < 1e-7:  # converged, or down to rounding
+            return q
+        before = largest
+    return None
+
+
+def assembled(xbeam, beam, state, omega, q):
+    """M, C, K and the forces left at ``q``."""
+    settings = {
+        "dt": 1.0,
+        "print_info": False,
+        "max_iterations": 50,
+        "num_load_steps": 1,
+        "delta_curved": 1e-9,
+        "min_delta": 1e-9,
+        "abs_threshold": 1e-12,
+        "newmark_damp": 0.0,
+        "gravity_on": False,
+        "gravity": 0.0,
+        "gravity_dir": [0.0, 0.0, 1.0],
+    }
+    state.q[: len(q)] = q
+    state.for_vel[:] = [0.0, 0.0, 0.0, 0.0, 0.0, omega]
+    xbeam.cbeam3_solv_state2disp(beam, state)
+    return xbeam.cbeam3_asbly_dynamic(beam, state, settings)
+
+
+def built(request):
+    """SHARPy's beam, its first node held.
+
+    Sections are turned as asked and not as SHARPy 2.4 turns them: it has tangents in the order of the nodes along an element
+    (``algebra.tangent_vector``) and takes them in its own, so that middle and end of a curved element are exchanged.
+    """
+    from sharpy.structure.models.beam import Beam
+
+    nodes, turn = np.array(request["nodes"]), np.array(request["turn"])
+    n, e = len(nodes), len(turn)
+    held = np.zeros(n, dtype=int)
+    held[0], held[-1] = 1, -1
+    data = {
+        "num_node_elem": 3,
+        "num_node": n,
+        "num_elem": e,
+        "boundary_conditions": held,
+        "coordinates": nodes,
+        "connectivities": np.array([[2 * k, 2 * k + 2, 2 * k + 1] for k in range(e)]),
+        "elem_stiffness": np.arange(e),
+        "stiffness_db": np.array(request["stiffness"]),
+        "elem_mass": np.arange(e),
+        "mass_db": np.array(request["mass"]),
+        "frame_of_reference_delta": across(turn),
+        "structural_twist": np.zeros((e, 3)),
+        "app_forces": np.zeros((n, 6)),
+        "beam_number": np.zeros(e, dtype=int),
+        "body_number": np.zeros(e, dtype=int),
+        "lumped_mass_mat": np.array([request["tip"]]),
+        "lumped_mass_mat_nodes": np.array([n - 1]),
+    }
+    beam = Beam()
+    beam.generate(data, {"orientation": np.array([1.0, 0.0, 0.0, 0.0]), "for_pos": np.zeros(3), "unsteady": False})
+    for info in (beam.ini_info, beam.timestep_info[0]):
+        info.psi[:] = turn
+    beam.fortran["psi_ini"][:] = turn
+    return beam
+
+
+def across(turn):
+    """The sections' y (e, 3, 3)."""
+    from sharpy.utils.algebra import crv2rotation
+
+    return np.array([[crv2rotation(psi)[:, 1] for psi in element] for element in turn])
+
+
+def packed(array):
+    """Doubles as text."""
+    return base64.b64encode(np.ascontiguousarray(array, dtype="<f8").tobytes()).decode()
+
+
+if __name__ == "__main__":
+    main()
