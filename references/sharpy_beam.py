@@ -6,11 +6,13 @@ rotation vectors quadratic in between, reduced integration, and one 6×6 of stif
 uniform blades, of second where properties vary. Each has the mean compliance and mass of its stretch of the blade.
 
 Core says where the sections are (``core.sections.frames``: that is what a blade's description means); beam, inertia, steady
-state and linearisation are SHARPy's. Rigid shears are given a large stiffness.
+state and linearisation are SHARPy's. Twist is in the elements' stiffness and mass and not in their axes, as SHARPy lets no axes
+jump between elements and a blade's may. Rigid shears are given a large stiffness.
 """
 
 import base64
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,6 +38,9 @@ less than 1e-6."""
 
 INTERVALS = 12
 """Between kinks, that the coarsest level can follow without more elements."""
+
+JUMP = 1e-4
+"""Of the length: stations closer than this are the two sides of a jump, and no element lies between."""
 
 MOST = 200
 """Elements: dense matrices of 12 rows each."""
@@ -76,12 +81,12 @@ class Sharpy:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        ends = _ends(blade, elements)
-        n = len(ends) - 1
+        spans = _spans(blade, elements)
+        n = len(spans)
         if n > MOST:
             raise CodeError(f"elements: {n}: dense matrices; at most {MOST}")
-        s = np.sort(np.append(ends, (ends[1:] + ends[:-1]) / 2))
-        answer = ask(SHARPY, request(blade, omega, ends, s), TIMEOUT)
+        s = nodes(spans)
+        answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
         q = _unpacked(answer["q"])
         M, C, K = (_unpacked(answer[name]).reshape(len(q), -1) for name in "MCK")
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
@@ -89,30 +94,40 @@ class Sharpy:
         return Modes(omega, frequencies, shapes, n, seconds=time.perf_counter() - begun)
 
 
-def _ends(blade: Blade, elements: int) -> Array:
-    """Ends of the elements: as many in every interval between kinks."""
+def _spans(blade: Blade, elements: int) -> Array:
+    """Ends of each element (e, 2): as many elements in every interval between kinks, none in a jump."""
     kinks = intervals(blade)
-    pieces = -(-elements // min(len(kinks) - 1, INTERVALS))
-    inside = kinks[:-1, None] + np.diff(kinks)[:, None] * np.arange(pieces) / pieces
-    return np.append(inside.ravel(), kinks[-1])
+    between = np.column_stack([kinks[:-1], kinks[1:]])
+    between = between[np.diff(kinks) > JUMP * blade.length]
+    pieces = -(-elements // min(len(between), INTERVALS))
+    cut = between[:, :1] + np.diff(between) * np.arange(pieces + 1) / pieces
+    return np.stack([cut[:, :-1], cut[:, 1:]], axis=-1).reshape(-1, 2)
 
 
-def request(blade: Blade, omega: float, ends: Array, s: Array) -> dict[str, Any]:
-    """What the script in SHARPy's environment is asked: nodes at arc lengths ``s``, elements between ``ends``."""
-    frame = sections.frames(blade, s)
-    turn = Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
-    at, weight = gauss(ends, 3)
-    share = (weight / np.repeat(np.diff(ends), 3))[:, None, None]
+def nodes(spans: Array) -> Array:
+    """Arc lengths of the nodes (2e+1,): ends and middles of elements."""
+    return np.append(np.column_stack([spans[:, 0], spans.mean(1)]).ravel(), spans[-1, 1])
+
+
+def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
+    """What the script in SHARPy's environment is asked; ``spans`` (e, 2) are the arc lengths of the elements' ends."""
+    untwisted = replace(blade, twist=np.zeros_like(blade.twist))
+    frame = sections.frames(untwisted, nodes(spans))
+    place, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
+    length = np.diff(spans).ravel()
+    at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
+    share = (weight / np.repeat(length, 3))[:, None, None]
+    twist = np.kron(np.eye(2), (sections.frames(untwisted, at).mT @ sections.frames(blade, at))[:, :3, :3])
     stiffness = stiffness_at(blade, at)
     bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
     stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
-    chord = np.linalg.norm(np.diff(frame[::2, :3, 3], axis=0), axis=1)
-    longer = (np.diff(ends) / chord)[:, None, None]  # SHARPy measures an element by its chord
-    compliance = longer * (share * np.linalg.inv(stiffness)).reshape(-1, 3, 6, 6).sum(1)
-    mass = longer * (share * mass_at(blade, at)).reshape(-1, 3, 6, 6).sum(1)
+    chord = np.linalg.norm(np.diff(place[::2], axis=0), axis=1)
+    longer = (length / chord)[:, None, None]  # SHARPy measures an element by its chord
+    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
+    mass = longer * (share * (twist @ mass_at(blade, at) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
     arrays = {
-        "nodes": frame[:, :3, 3],
-        "turn": np.stack([turn[:-2:2], turn[2::2], turn[1::2]], axis=1),
+        "nodes": place,
+        "turn": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
         "stiffness": np.linalg.inv(compliance),
         "mass": mass,
         "tip": blade.tip_mass,

@@ -10,8 +10,8 @@ Needs: ic-sharpy, numpy.
 from importlib.metadata import version
 
 import numpy as np
-from sharpy.structure.models.beamstructures import Element
-from sharpy.utils.algebra import crv2rotation
+from sharpy.structure.models.beamstructures import Element  # pyright: ignore[reportMissingImports]
+from sharpy.utils.algebra import crv2rotation  # pyright: ignore[reportMissingImports]
 
 
 def main():

@@ -32,7 +32,7 @@ def main():
 
 def solve(request):
     """Steady state by Newton's method, the load raised in steps where that fails, and the matrices there."""
-    import sharpy.structure.utils.xbeamlib as xbeam
+    import sharpy.structure.utils.xbeamlib as xbeam  # pyright: ignore[reportMissingImports]
 
     beam = built(request)
     state = beam.timestep_info[0]
@@ -100,7 +100,7 @@ def built(request):
     Sections are turned as asked and not as SHARPy 2.4 turns them: it has tangents in the order of the nodes along an element
     (``algebra.tangent_vector``) and takes them in its own, so that middle and end of a curved element are exchanged.
     """
-    from sharpy.structure.models.beam import Beam
+    from sharpy.structure.models.beam import Beam  # pyright: ignore[reportMissingImports]
 
     nodes, turn = np.array(request["nodes"]), np.array(request["turn"])
     n, e = len(nodes), len(turn)
@@ -135,7 +135,7 @@ def built(request):
 
 def across(turn):
     """The sections' y (e, 3, 3)."""
-    from sharpy.utils.algebra import crv2rotation
+    from sharpy.utils.algebra import crv2rotation  # pyright: ignore[reportMissingImports]
 
     return np.array([[crv2rotation(psi)[:, 1] for psi in element] for element in turn])
 
