@@ -26,6 +26,9 @@ Pairs = tuple[Array, NDArray[np.complex128]]
 DENSE = 150
 """Size above which a few modes of full matrices are had sooner by iteration than all of them directly."""
 
+RESTARTS = 20
+"""Of Arnoldi's method before a larger basis is tried; what settles at all does so within ten."""
+
 ASYMMETRY = 1e-6
 """Largest departure from symmetry taken for rounding (or finite differences), relative to a unit diagonal of K."""
 
@@ -145,7 +148,7 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
     # a double pair may keep the restarts from settling to the last digit; a larger basis then does without them
     for basis, tolerance in ((max(2 * k + 1, 40), 1e-14), (max(4 * k, 120), 1e-13), (max(8 * k, 240), 1e-12)):
         try:
-            limits: dict[str, Any] = {"ncv": min(2 * n, basis), "tol": tolerance}
+            limits: dict[str, Any] = {"ncv": min(2 * n, basis), "tol": tolerance, "maxiter": RESTARTS}
             found = spla.eigs(operator, k=k, which="LM", v0=start, **limits)
         except spla.ArpackError:
             continue
