@@ -388,6 +388,7 @@ app.command(f"{__package__}.convert:command", name="convert")
 
 def _chosen(name: str) -> Case | MechanismCase:
     """A case of blades or of a mechanism, by name or file."""
+app.command(f"{__package__}.history_command:app", name="history")
     if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
         return mechanism_case.case(library.mechanism(name))
     return select(name)
