@@ -8,6 +8,10 @@ class CaseError(ValueError):
     """Input that cannot be used. One line: the file, the field, the value, the likely cause, the remedy."""
 
 
+class FilesMissingError(CaseError):
+    """A case whose blade is in files that do not come with the package."""
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Advice on a word that is not known: the nearest that is, else all of them."""
     known = tuple(known)

@@ -3,7 +3,7 @@
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from .errors import CaseError, nearest
+from .errors import CaseError, FilesMissingError, nearest
 from .mechanisms import Described, is_one
 from .mechanisms import read as describe
 from .schema import Case, read
@@ -12,6 +12,17 @@ from .schema import Case, read
 def names() -> tuple[str, ...]:
     """Names of the cases that come with the package, sorted."""
     return tuple(sorted(Path(f.name).stem for f in files(f"{__package__}.data").iterdir() if f.name.endswith(".toml")))
+
+
+def absent() -> dict[str, str]:
+    """Cases that come with the package but not with their blade's files, where those are not found: name → what to do."""
+    out = {}
+    for name in names():
+        try:
+            load(name)
+        except FilesMissingError as error:
+            out[name] = str(error).removeprefix(f"{name}: ")
+    return out
 
 
 def mechanisms() -> tuple[str, ...]:

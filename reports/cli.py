@@ -93,7 +93,7 @@ def verify(
         `NAME=FILE.csv`, as often as wanted: results of any other program or of a test rig, as one more column. The file's
         columns: `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
     """
-    chosen = [_chosen(name) for name in dict.fromkeys(case or (*library.names(), *library.mechanisms()))]
+    chosen = [_chosen(name) for name in dict.fromkeys(case or _all())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     known = [registry.code(name) for name in names]
     files = [_added(text) for text in add]
@@ -310,7 +310,11 @@ def cases() -> int:
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("case", "what", "blades", "speeds"):
         table.add_column(head, overflow="fold")
+    absent = library.absent()
     for name in library.names():
+        if name in absent:
+            table.add_row(name, absent[name], "", "")
+            continue
         known = library.load(name)
         first, *_ = settings(known)
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
@@ -384,14 +388,22 @@ app.command(f"{__package__}.condense:command", name="condense")
 app.command(f"{__package__}.conform:command", name="conform")
 app.command(f"{__package__}.show:command", name="show")
 app.command(f"{__package__}.convert:command", name="convert")
+app.command(f"{__package__}.history_command:app", name="history")
 
 
 def _chosen(name: str) -> Case | MechanismCase:
     """A case of blades or of a mechanism, by name or file."""
-app.command(f"{__package__}.history_command:app", name="history")
     if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
         return mechanism_case.case(library.mechanism(name))
     return select(name)
+
+
+def _all() -> tuple[str, ...]:
+    """Every case and mechanism whose files are there; what is not is said."""
+    absent = library.absent()
+    for name, why in absent.items():
+        print(f"southwell: {name}: not run: {why}", file=sys.stderr)
+    return (*(name for name in library.names() if name not in absent), *library.mechanisms())
 
 
 def select(name: str) -> Case:

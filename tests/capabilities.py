@@ -24,6 +24,8 @@ class Can:
         hinged: a root that is not clamped.
         tip: a mass at the tip.
         thin: sections without moments of inertia.
+        sheared: sections that are flexible in shear.
+        curved: prebend or sweep.
     """
 
     taper: bool = True
@@ -37,18 +39,20 @@ class Can:
     hinged: bool = False
     tip: bool = True
     thin: bool = True
+    sheared: bool = False
+    curved: bool = False
 
 
 CODES = {
     "exudyn-ancf": Can(taper=False, unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
-    "exudyn-tree": Can(),
+    "exudyn-tree": Can(sheared=True),
     "scikit-fem": Can(hinged=True),
-    "pinocchio": Can(twin=True, coupled=True),
-    "drake": Can(twin=True, coupled=True),
-    "mujoco": Can(twin=True, coupled=True),
+    "pinocchio": Can(twin=True, coupled=True, sheared=True, curved=True),
+    "drake": Can(twin=True, coupled=True, sheared=True, curved=True),
+    "mujoco": Can(twin=True, coupled=True, sheared=True, curved=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
-    "sharpy": Can(coupled=True),
+    "sharpy": Can(coupled=True, sheared=True, curved=True),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
@@ -65,6 +69,8 @@ class Asks:
         hinged: a hinge or spring at the root.
         tip: a mass at the tip.
         thin: sections without moments of inertia.
+        sheared: sections that are flexible in shear.
+        curved: prebend or sweep.
         axial: axial modes are compared.
         gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
             none, moments of inertia matter at rest.
@@ -77,6 +83,8 @@ class Asks:
     hinged: bool = False
     tip: bool = False
     thin: bool = False
+    sheared: bool = False
+    curved: bool = False
     axial: bool = False
     gentle: float = math.inf
 
@@ -92,6 +100,8 @@ BLADES = {
     "yoo-shin-chordwise/delta-5": Asks(thin=True, axial=True, gentle=0.0),
     "wright-flapwise": Asks(thin=True),
     "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
+    "nrel-5mw-beamdyn": Asks(taper=True, twist=True, unlike=True, sheared=True),
+    "iea-15": Asks(taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True),
     "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
     "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True),
     "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True),
@@ -122,7 +132,7 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin")
+NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin", "sheared", "curved")
 
 
 def solves(can: Can, asks: Asks) -> bool:

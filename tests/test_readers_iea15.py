@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from southwell.cases import data as cases_data
 from southwell.cases import readers
 from southwell.cases.errors import CaseError
 from southwell.cases.properties import about_root
@@ -32,7 +33,8 @@ BENDING = 5
 def blades(tmp_path: Path) -> tuple[Blade, Blade]:
     """By HAWC2, by BeamDyn."""
     published = ("IEA_15MW_RWT_Blade_st_FPM.st", "IEA-15-240-RWT_BeamDyn_blade.dat")
-    for file in [real(f"iea15/{name}") for name in published] + list(DATA.glob("iea15*")):
+    ours = [*DATA.glob("iea15*"), Path(cases_data.__file__).with_name("iea15_beamdyn_main.dat")]
+    for file in [real(f"iea15/{name}") for name in published] + ours:
         shutil.copy(file, tmp_path)
     return readers.read(tmp_path / "iea15.htc", HUB), readers.read(tmp_path / "iea15_beamdyn_main.dat", HUB)
 

@@ -54,9 +54,10 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     """
     mount = mount or Mount()
     text = load(path)
-    main = text if is_main(text) else _main(path, mount)
-    if main is not None:
-        text = load(_named(main))
+    if is_main(text):
+        main, text = text, load(_named(text))
+    else:
+        main = _main(path, mount)
     told = elastodyn.hub(load(mount.main)) if mount.main and is_elastodyn(mount.main) else None
     settled = elastodyn.settle(mount, told.mount if told else None)
     if main is None and settled.length is None:

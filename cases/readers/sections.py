@@ -3,6 +3,7 @@
 Axes are ours throughout (``core.blade``): twist and pitch turn y towards z, the leading edge downwind.
 """
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -13,7 +14,7 @@ from msgspec.structs import replace as changed
 from numpy.typing import NDArray
 
 from ...core.blade import Blade, BladeError
-from ..errors import CaseError
+from ..errors import CaseError, FilesMissingError
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -131,8 +132,11 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
 class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     """A blade from a file of any format that is read (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, CSV)."""
 
-    file: Annotated[str, Meta(description="path from the case file's folder")]
-    main: Annotated[str | None, Meta(description="main file that says how it is mounted")] = None
+    file: Annotated[str, Meta(description="path from the case file's folder, or from `files`")]
+    files: Annotated[str | None, Meta(description="environment variable that names the folder `file` is in")] = None
+    main: Annotated[
+        str | None, Meta(description="main file that says how it is mounted, from the case file's folder")
+    ] = None
     length: Annotated[float, Meta(gt=0, description="m, where no file says it")] | None = None
     hub_radius: Annotated[float, Meta(ge=0, description="m, where no file says it")] | None = None
     subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
@@ -145,6 +149,7 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         """The blade, its file found from ``folder``.
 
         Raises:
+            FilesMissingError: the variable of ``files`` is not set, or its folder has no such file.
             CaseError: what the file's reader raises.
         """
         from . import reading  # which itself reads blades of these kinds
@@ -158,7 +163,18 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
             subset=self.subset,
             multipliers=self.multipliers,
         )
-        return self.mounted(replace(reading(folder / self.file, mount).blade, name=name))
+        return self.mounted(replace(reading(self._path(name, folder), mount).blade, name=name))
+
+    def _path(self, name: str, folder: Path) -> Path:
+        if self.files is None:
+            return folder / self.file
+        named = os.environ.get(self.files)
+        if named and (path := Path(named) / self.file).is_file():
+            return path
+        found = f"not in {self.files}={named}" if named else f"{self.files} is not set"
+        raise FilesMissingError(
+            f"{name}: file: {self.file}: {found}: set it to a folder with this file, which does not come with Southwell"
+        )
 
 
 def springs(root: str | Springs) -> Array:
