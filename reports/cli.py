@@ -32,6 +32,7 @@ from ..references import codes as registry
 from ..references import elsewhere
 from ..references.codes import UnknownCodeError
 from ..references.elsewhere import ENVIRONMENTS
+from . import junit as xml
 from . import mechanisms as answer
 from . import summary, terminal
 from .mounting import Mounting
@@ -73,6 +74,7 @@ def verify(
     out: Path = Path("southwell-report"),
     workers: Whole | None = None,
     add: tuple[str, ...] = (),
+    junit: Path | None = None,
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
@@ -92,6 +94,8 @@ def verify(
     add
         `NAME=FILE.csv`, as often as wanted: results of any other program or of a test rig, as one more column. The file's
         columns: `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
+    junit
+        File for the same as JUnit's XML: a test case a cell, for a CI that shows it.
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or _all())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
@@ -110,6 +114,8 @@ def verify(
     run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1)
     if run.cells:
         _show(run, out)
+        if junit:
+            _junit(run, junit)
     if not complete:
         kept = (
             f"the report has the {len(run.cells)} cells that were finished" if run.cells else "nothing was finished yet"
@@ -389,6 +395,7 @@ app.command(f"{__package__}.conform:command", name="conform")
 app.command(f"{__package__}.show:command", name="show")
 app.command(f"{__package__}.convert:command", name="convert")
 app.command(f"{__package__}.history_command:app", name="history")
+app.command(f"{__package__}.gate_command:command", name="gate")
 
 
 def _chosen(name: str) -> Case | MechanismCase:
@@ -430,6 +437,13 @@ def _fresh(out: Path) -> Path:
     except OSError as error:
         raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     return path
+
+
+def _junit(run: Run, path: Path) -> None:
+    try:
+        path.write_bytes(xml.render(run))
+    except OSError as error:
+        raise UsageError(f"--junit {path}: cannot be written ({error.strerror}): give another file") from error
 
 
 def _show(run: Run, folder: Path) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+import portalocker
 import pytest
 
 from southwell.cases import history, results
@@ -167,3 +168,17 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert status == 2
     assert err.count("\n") == 1
     assert re.search(told.replace("(", r"\("), err)
+
+
+def test_a_writer_waits_for_its_turn(tmp_path: Path) -> None:
+    source, file = tmp_path / "source.jsonl", tmp_path / "history.jsonl"
+    history.append(source, history.entry(RUN, "source", date=MADE))
+    with file.open("ab") as mine:
+        portalocker.lock(mine, portalocker.LockFlags.EXCLUSIVE)
+        job = subprocess.Popen([sys.executable, "-c", WRITER, source, file, "w", "1"])
+        with pytest.raises(subprocess.TimeoutExpired):
+            job.wait(4)  # what it needs to start is half of that
+        assert file.stat().st_size == 0
+        portalocker.unlock(mine)
+    assert job.wait(60) == 0
+    assert [e.commit for e in history.read(file).entries] == ["w-0"]
