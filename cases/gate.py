@@ -88,6 +88,7 @@ class Comparison:
         new: cells with an answer that had none.
         uncaught: mistakes that somebody caught in a case at a speed, and nobody does now.
         timings: by code; they decide nothing.
+        missed: mistakes that a case of this run must show, and nobody catches anywhere: the harness is blind to them.
     """
 
     before: Entry
@@ -99,6 +100,7 @@ class Comparison:
     new: tuple[Point, ...]
     uncaught: tuple[Caught, ...]
     timings: tuple[Timing, ...]
+    missed: tuple[str, ...] = ()
 
     @property
     def versions(self) -> dict[str, tuple[str, str]]:
@@ -109,13 +111,25 @@ class Comparison:
 
     def passed(self, strict: bool = False) -> bool:
         """Whether nothing got worse; ``strict``: nor moved."""
-        return not (self.worse or self.gone or self.uncaught or (strict and self.moved))
+        return not (self.worse or self.gone or self.uncaught or self.missed or (strict and self.moved))
 
 
-def compare(before: Entry, after: Entry, earlier: Sequence[Entry] = (), tolerance: float = MOVED) -> Comparison:
+def nothing(after: Entry) -> Entry:
+    """What a first run is compared with: no cells, so that every miss counts."""
+    return Entry("nothing", "", after.machine, after.versions, ())
+
+
+def compare(
+    before: Entry,
+    after: Entry,
+    earlier: Sequence[Entry] = (),
+    tolerance: float = MOVED,
+    missed: Sequence[str] = (),
+) -> Comparison:
     """What became of ``before`` in ``after``.
 
     Args:
+        missed: names of mistakes, see ``controls.outcomes``.
         earlier: runs from which the noise of times is taken, where they are of the same machine.
         tolerance: relative change above which a frequency has moved.
     """
@@ -135,6 +149,7 @@ def compare(before: Entry, after: Entry, earlier: Sequence[Entry] = (), toleranc
         new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
         uncaught=tuple(c for c in before.controls if c.caught and (c.control, c.case, c.omega) not in caught),
         timings=tuple(_timings(before, after, [e for e in earlier if e.machine == after.machine][-RUNS:])),
+        missed=tuple(missed),
     )
 
 

@@ -10,10 +10,12 @@ from cyclopts import Parameter
 from cyclopts.validators import Number
 
 from ..cases import history
+from ..cases.controls import outcomes
 from ..cases.errors import CaseError, nearest
-from ..cases.gate import MOVED, compare
+from ..cases.gate import MOVED, Comparison, compare, nothing
 from ..cases.history import Entry
-from . import gate_text, junit, terminal
+from ..cases.results import Run
+from . import gate_text, junit, markdown, terminal
 from .history_command import RESULTS, finished, load
 
 Flag = Annotated[bool, Parameter(negative=())]
@@ -23,7 +25,7 @@ def command(
     folder: Path,
     /,
     *,
-    against: Path,
+    against: Path | None = None,
     commit: str = "",
     strict: Flag = False,
     tolerance: Annotated[float, Parameter(validator=Number(gte=0))] = MOVED,
@@ -41,6 +43,7 @@ def command(
         Folder that `southwell verify --out` has written, or its results.jsonl.
     against
         A history (`southwell history add`), of which the last run counts; or another run's folder or results.jsonl.
+        Without it every miss counts.
     commit
         Of a history, the last run of this commit instead (its beginning is enough).
     strict
@@ -55,8 +58,12 @@ def command(
         Print GitHub's workflow commands, which mark the files of cases that got worse, beneath the current folder.
     """
     run = finished(folder)
-    before, earlier = _before(against, commit)
-    found = compare(before, history.entry(run, str(folder)), earlier, tolerance)
+    after = history.entry(run, str(folder))
+    if commit and not against:
+        raise CaseError(f"--commit {commit}: of which history? Give it by --against")
+    before, earlier = _before(against, commit) if against else (nothing(after), ())
+    missed = [o.mistake.name for o in outcomes(run.controls) if o.status == "missed"]
+    found = compare(before, after, earlier, tolerance, missed)
     terminal.output().print(gate_text.terminal(found, strict))
     if annotations:
         for line in gate_text.annotations(found, Path()):
@@ -64,7 +71,7 @@ def command(
     if junit_file:
         _write("--junit", junit_file, lambda: junit_file.write_bytes(junit.render(run, found, strict)))
     if summary:
-        _write("--summary", summary, lambda: _append(summary, gate_text.markdown(found, strict)))
+        _write("--summary", summary, lambda: _append(summary, _page(run, found, strict)))
     return 0 if found.passed(strict) else 1
 
 
@@ -93,6 +100,12 @@ def _is_run(path: Path) -> bool:
     except (OSError, msgspec.DecodeError):
         return path.name == RESULTS
     return isinstance(first, dict) and "kind" in first
+
+
+def _page(run: Run, found: Comparison, strict: bool) -> str:
+    """What the run found, and what the gate did."""
+    parts = ["### Southwell", *markdown.headline(run), gate_text.markdown(found, strict), markdown.heat(run)]
+    return "\n\n".join(parts) + "\n"
 
 
 def _append(path: Path, text: str) -> None:

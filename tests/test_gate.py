@@ -91,6 +91,12 @@ def test_a_control_that_nobody_catches_any_more_counts() -> None:
     assert compared(BEFORE, blind).passed()
 
 
+def test_a_blind_harness_counts_whatever_was_before() -> None:
+    found = compared(BEFORE, missed=["frozen frame"])
+    assert not found.passed()
+    assert "1 mistakes in core missed" in gate_text.verdict(found, strict=False)
+
+
 def slower(factor: float) -> Run:
     return replace(BEFORE, cells=tuple(replace(c, seconds=(c.seconds or 0.0) * factor) for c in BEFORE.cells))
 
@@ -199,6 +205,8 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
         ("{0}/before --against {0}/before/results.jsonl", 0, "nothing moved"),
         ("{0}/after --against {0}/before", 1, "✘ gate failed: 3 cells .*: 2 worse, 4 gone, 1 controls no longer"),
         ("{0}/after --against {0}/history.jsonl", 0, "against bad2"),
+        ("{0}/after", 1, "3 cells against nothing: 2 worse, 3 new"),
+        ("{0}/before", 0, "✔ gate passed: 6 cells against nothing: 6 new"),
         ("{0}/after --against {0}/history.jsonl --commit goo", 1, "against good1"),
         ("{0}/moved.jsonl --against {0}/before", 0, r"20 +20.1 +\+5.0e-03"),
         ("{0}/moved.jsonl --against {0}/before --strict", 1, "✘ gate failed: 6 cells .*: 1 moved"),
@@ -218,7 +226,9 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
     status, out, _ = southwell(line, capsys)
     assert status == 1
     assert "::error title=beam::some-code" in out
-    assert (tmp_path / "summary.md").read_text().startswith("before\n**✘ gate failed")
+    shown = (tmp_path / "summary.md").read_text()
+    assert shown.startswith("before\n### Southwell\n\n**3 cells**: 1 ✘ fail")
+    assert "**✘ gate failed" in shown
     assert len(ElementTree.parse(tmp_path / "j.xml").findall(".//testcase")) == 8
 
 
@@ -232,7 +242,7 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
         ("{0}/after --against {0}/before --commit x", "one run, not a history"),
         ("{0}/after --against {0}/before --junit {0}/none/j.xml", "--junit .*cannot be written"),
         ("{0}/after --against {0}/before --tolerance -1", "tolerance"),
-        ("{0}/after", "against"),
+        ("{0}/after --commit x", "of which history"),
     ],
 )
 def test_bad_input_is_one_line(folders, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
