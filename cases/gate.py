@@ -6,7 +6,7 @@ frequencies are listed, and count only if that is asked for: who improves a disc
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -117,6 +117,16 @@ class Comparison:
 def nothing(after: Entry) -> Entry:
     """What a first run is compared with: no cells, so that every miss counts."""
     return Entry("nothing", "", after.machine, after.versions, ())
+
+
+def within(entry: Entry, other: Entry) -> Entry:
+    """What ``entry`` has of the cases that ``other`` has."""
+    cases = {p.case for p in other.cells}
+    return replace(
+        entry,
+        cells=tuple(p for p in entry.cells if p.case in cases),
+        controls=tuple(c for c in entry.controls if c.case in cases),
+    )
 
 
 def compare(

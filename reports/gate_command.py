@@ -12,7 +12,7 @@ from cyclopts.validators import Number
 from ..cases import history
 from ..cases.controls import outcomes
 from ..cases.errors import CaseError, nearest
-from ..cases.gate import MOVED, Comparison, compare, nothing
+from ..cases.gate import MOVED, Comparison, compare, nothing, within
 from ..cases.history import Entry
 from ..cases.results import Run
 from . import gate_text, junit, markdown, terminal
@@ -28,6 +28,7 @@ def command(
     against: Path | None = None,
     commit: str = "",
     strict: Flag = False,
+    partial: Flag = False,
     tolerance: Annotated[float, Parameter(validator=Number(gte=0))] = MOVED,
     junit_file: Annotated[Path | None, Parameter(name="--junit")] = None,
     summary: Path | None = None,
@@ -48,6 +49,8 @@ def command(
         Of a history, the last run of this commit instead (its beginning is enough).
     strict
         Frequencies that moved give status 1 too.
+    partial
+        The run has only some of the cases; of the earlier one, only these count.
     tolerance
         Relative change of a frequency that is none.
     junit_file
@@ -62,6 +65,8 @@ def command(
     if commit and not against:
         raise CaseError(f"--commit {commit}: of which history? Give it by --against")
     before, earlier = _before(against, commit) if against else (nothing(after), ())
+    if partial:
+        before = within(before, after)
     missed = [o.mistake.name for o in outcomes(run.controls) if o.status == "missed"]
     found = compare(before, after, earlier, tolerance, missed)
     terminal.output().print(gate_text.terminal(found, strict))

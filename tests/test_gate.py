@@ -191,6 +191,9 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
         results.append(tmp_path / name / "results.jsonl", run.cells, run=run)
     moved = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
     results.append(tmp_path / "moved.jsonl", moved.cells, run=moved)
+    more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
+    results.append(tmp_path / "two.jsonl", more.cells, run=more)
+    results.append(tmp_path / "one.jsonl", BEAM, run=BEFORE)
     for commit in ("good1", "bad2"):
         run = BEFORE if commit == "good1" else BAD
         history.append(tmp_path / "history.jsonl", history.entry(run, commit))
@@ -207,6 +210,8 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
         ("{0}/after --against {0}/history.jsonl", 0, "against bad2"),
         ("{0}/after", 1, "3 cells against nothing: 2 worse, 3 new"),
         ("{0}/before", 0, "✔ gate passed: 6 cells against nothing: 6 new"),
+        ("{0}/one.jsonl --against {0}/two.jsonl", 1, "3 cells .*: 3 gone"),
+        ("{0}/one.jsonl --against {0}/two.jsonl --partial", 0, "nothing moved"),
         ("{0}/after --against {0}/history.jsonl --commit goo", 1, "against good1"),
         ("{0}/moved.jsonl --against {0}/before", 0, r"20 +20.1 +\+5.0e-03"),
         ("{0}/moved.jsonl --against {0}/before --strict", 1, "✘ gate failed: 6 cells .*: 1 moved"),
