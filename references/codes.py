@@ -27,6 +27,7 @@ OURS = {
     "pybmodes": "southwell.references.pybmodes_beam:CODE",
     "calculix": "southwell.references.calculix_blade:CODE",
     "sharpy": "southwell.references.sharpy_beam:CODE",
+    "frame3dd": "southwell.references.frame3dd_frame:CODE",
     "yoo-shin": "southwell.references.yoo_shin:CODE",
     "assumed-modes": "southwell.references.assumed_modes:CODE",
     "southwell-equation": "southwell.references.southwell_equation:CODE",
@@ -88,9 +89,9 @@ def code(name: str) -> Any:
     return found
 
 
-CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96}
+CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96, "frame3dd": 100}
 """Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
-freedoms, pyBModes dense squares; Drake, MuJoCo and SHARPy take time that
+freedoms, pyBModes dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
 grows as the cube."""
 
 

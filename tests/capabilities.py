@@ -26,6 +26,7 @@ class Can:
         thin: sections without moments of inertia.
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
+        stations: properties that change their slope at a dozen stations or more.
     """
 
     taper: bool = True
@@ -41,6 +42,7 @@ class Can:
     thin: bool = True
     sheared: bool = False
     curved: bool = False
+    stations: bool = True
 
 
 CODES = {
@@ -53,6 +55,7 @@ CODES = {
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
     "sharpy": Can(coupled=True, sheared=True, curved=True),
+    "frame3dd": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), stations=False),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "southwell-equation": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), estimate=True),
@@ -71,6 +74,7 @@ class Asks:
         thin: sections without moments of inertia.
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
+        stations: a dozen or more, where properties change their slope.
         axial: axial modes are compared.
         gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
             none, moments of inertia matter at rest.
@@ -85,26 +89,27 @@ class Asks:
     thin: bool = False
     sheared: bool = False
     curved: bool = False
+    stations: bool = False
     axial: bool = False
     gentle: float = math.inf
 
 
 BLADES = {
     "park-cantilever": Asks(gentle=25.0),
-    "park-blade/windpact": Asks(taper=True, twist=True, unlike=True),
-    "park-blade/surrogate": Asks(taper=True, twist=True, unlike=True),
-    "park-blade/surrogate-untwisted": Asks(taper=True, unlike=True),
+    "park-blade/windpact": Asks(taper=True, twist=True, unlike=True, stations=True),
+    "park-blade/surrogate": Asks(taper=True, twist=True, unlike=True, stations=True),
+    "park-blade/surrogate-untwisted": Asks(taper=True, unlike=True, stations=True),
     "yoo-shin-chordwise/delta-0": Asks(thin=True, axial=True, gentle=0.0),
     "yoo-shin-chordwise/delta-0.1": Asks(thin=True, axial=True, gentle=0.0),
     "yoo-shin-chordwise/delta-1": Asks(thin=True, axial=True, gentle=0.0),
     "yoo-shin-chordwise/delta-5": Asks(thin=True, axial=True, gentle=0.0),
     "wright-flapwise": Asks(thin=True),
-    "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
-    "nrel-5mw-beamdyn": Asks(taper=True, twist=True, unlike=True, sheared=True),
-    "iea-15": Asks(taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True),
-    "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0),
-    "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True),
-    "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True),
+    "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0, stations=True),
+    "nrel-5mw-beamdyn": Asks(taper=True, twist=True, unlike=True, sheared=True, stations=True),
+    "iea-15": Asks(taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True, stations=True),
+    "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0, stations=True),
+    "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True, stations=True),
+    "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True, stations=True),
     "articulated/flap": Asks(hinged=True),
     "articulated/both": Asks(hinged=True),
     "articulated/sprung": Asks(hinged=True),
@@ -132,7 +137,7 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin", "sheared", "curved")
+NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin", "sheared", "curved", "stations")
 
 
 def solves(can: Can, asks: Asks) -> bool:

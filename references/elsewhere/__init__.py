@@ -61,7 +61,9 @@ SHARPY = Environment(
     "sharpy", ("numpy==1.26.4", "scipy==1.13.1", "colorama==0.4.6"), ("ic-sharpy==2.4",), "sharpy_worker"
 )
 
-ENVIRONMENTS = {e.name: e for e in (SHARPY,)}
+FRAME3DD = Environment("frame3dd", ("numpy==1.26.4",), ("wisdem==4.2.9",), "frame3dd_worker")
+
+ENVIRONMENTS = {e.name: e for e in (SHARPY, FRAME3DD)}
 """By the code's name."""
 
 

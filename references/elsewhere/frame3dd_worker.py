@@ -1,0 +1,77 @@
+"""Frame3DD's frame along x, turning about z through the origin, asked for by one JSON object on standard input.
+
+This file alone runs in Frame3DD's environment: it imports nothing but the code and NumPy. Asked: ``x`` (n,) places of nodes, the
+first held; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements, about their own axes;
+``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at the nodes; ``count`` of modes. Answered: ``frequencies``
+(m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes; or ``error``.
+"""
+
+import importlib.util
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+HELD = 1e30
+"""What a reaction's stiffness is called where there is no motion at all."""
+
+STODOLA, CONSISTENT, TOLERANCE = 2, 0, 1e-9
+
+
+def main():
+    """Answer one request."""
+    request = json.load(sys.stdin)
+    reply = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what Frame3DD prints is not the answer
+    try:
+        answer = solve(request)
+    except Exception as error:  # whatever Frame3DD raises is its answer
+        answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+    reply.write(json.dumps(answer) + "\n")
+    reply.flush()
+
+
+def solve(request):
+    """Static solution, and modes with the geometric stiffness there."""
+    # the folder alone: WISDEM's other packages need what is not here
+    spec = importlib.util.find_spec("wisdem")
+    if spec is None or spec.origin is None:
+        raise ImportError("wisdem is not in this environment")
+    sys.path.insert(0, str(Path(spec.origin).parent))
+    from pyframe3dd import pyframe3dd as f3  # pyright: ignore[reportMissingImports]
+
+    x, force, spring = (np.array(request[name]) for name in ("x", "force", "spring"))
+    EA, EI_y, EI_z, GJ, mass, twist = (
+        np.array(request[name]) for name in ("EA", "EI_y", "EI_z", "GJ", "mass", "twist")
+    )
+    number, zero, one = np.arange(1, len(x) + 1), np.zeros(len(x)), np.ones(len(EA))
+    turning = force.any()
+    held, springs = zero.copy(), spring.copy()
+    held[0] = springs[0] = HELD
+    every = slice(None) if turning else slice(1)
+    reactions = [column[every] for column in (number, held, held, springs, held, held, held)]
+    # a section of one square metre
+    section = (one, one, one, GJ / EA, EI_y / EA, EI_z / EA, EA, EA, np.degrees(twist), mass)
+    elements = (number[:-1], number[:-1], number[1:], *section)
+    frame = f3.Frame(
+        f3.NodeData(number, x, zero, zero, zero),
+        f3.ReactionData(*reactions, rigid=HELD),
+        f3.ElementData(*elements),
+        f3.Options(False, True, -1.0),
+    )
+    load = f3.StaticLoadCase(0.0, 0.0, 0.0)
+    if turning:
+        load.changePointLoads(number[1:], force[1:], *[zero[1:]] * 5)
+    frame.addLoadCase(load)
+    if request["tip"]:
+        frame.changeExtraNodeMass(number[-1:], [request["tip"]], *[zero[:1]] * 9, False)
+    frame.enableDynamics(request["count"], STODOLA, CONSISTENT, TOLERANCE, 0.0)
+    modal = frame.run()[-1]
+    shapes = np.stack([modal.xdsp, modal.ydsp, modal.zdsp, modal.xrot], axis=1)
+    return {"frequencies": (2 * np.pi * np.array(modal.freq)).tolist(), "shapes": shapes.tolist()}
+
+
+if __name__ == "__main__":
+    main()
