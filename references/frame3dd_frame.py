@@ -5,8 +5,8 @@ of its own. Turning is told it as a static load, the centrifugal force of every 
 that force grows, as by a spring of stiffness −m Ω². Frame3DD's first step has no tension yet and would buckle under them; it is
 given +m Ω² across the plane instead and none within, so that all its ω² are higher by Ω², which is taken off.
 
-What it leaves out: the Coriolis force; the steady stretch, as masses stay where they were; the sections' inertia. Its mass matrix
-has sections of one material, whose inertia goes as EI / EA: EA is therefore given ten thousand times as large, which
+What it leaves out: the Coriolis force; the steady stretch, as masses stay where they were; the sections' inertia. Its mass
+matrix has sections of one material, whose inertia goes as EI / EA: EA is therefore given ten thousand times as large, which
 bending does not feel, and there are no axial or torsional modes. Elements have the mean compliance and mass of their stretch of
 the blade: of second order.
 """

@@ -1,7 +1,7 @@
 """Frame3DD's frame along x, turning about z through the origin, asked for by one JSON object on standard input.
 
-This file alone runs in Frame3DD's environment: it imports nothing but the code and NumPy. Asked: ``x`` (n,) places of nodes, the
-first held; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements, about their own axes;
+This file alone runs in Frame3DD's environment: it imports nothing but the code and NumPy. Asked: ``x`` (n,) places of nodes,
+the first held; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements, about their own axes;
 ``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at the nodes; ``count`` of modes. Answered: ``frequencies``
 (m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes; or ``error``.
 """
