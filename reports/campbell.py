@@ -10,12 +10,18 @@ from matplotlib.figure import Figure
 
 from ..cases.campbell import Campbell
 from ..core.participation import FAMILIES
-from .campbell_marks import DASHES, band, blend, legend, marks, near, rays
+from .campbell_marks import DASHES, band, band_label, blend, legend, marks, near, rays
 from .style import MUTED, WIDTH, beside, house, key, title
 from .units import Units
 
 PURE = 0.85
 """From this share on a stretch of line has its family's dashes, below it is solid and blended."""
+
+SQUEEZED = 0.5
+"""Of the height: what n per revolution reaches gets a scale of its own where it would have less than this."""
+
+LOWER, GAP = 0.6, 0.04
+"""Of the height, for that scale, and between the two."""
 
 LETTER = 0.066
 """Width of a letter of the labels at the lines' ends, inches."""
@@ -26,29 +32,30 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
 
     Lines are the modes; each stretch has the colour of what moves in it there, so that a veering shows as two lines that trade
     colours. The operating range is shaded. Where a mode is nearer to n per revolution than the margin within that range, it
-    is underlaid in red; the same deserves a look in the table of margins.
+    is underlaid in red; the same deserves a look in the table of margins. Where n per revolution reaches only the lowest of
+    many modes, those have a scale of their own, and the rest lies above it on a coarser one.
     """
     with house():
-        low = 0.95
-        height = 5.9
+        low, height = 0.95, 5.9
         figure = Figure((WIDTH, height))
         longest = max(len(_label(diagram, t, units)) for t in range(diagram.tracks.count))
         room = (0.15 + LETTER * max(longest, 18)) / WIDTH
-        axes = figure.add_axes((0.07, low / height, 0.93 - room, 1 - (low + 0.66) / height))
-        tracks, wanted = diagram.tracks, diagram.wanted
-        speeds = np.array(wanted.speeds) * units.speeds
-        top = 1.06 * float(np.nanmax(tracks.frequencies)) * units.frequencies
-        axes.set_xlim(speeds[0], speeds[-1])
-        axes.set_ylim(0.0, top)
-        band(axes, diagram, units)
-        rays(axes, diagram, units)
-        ends: list[tuple[float, str, str]] = []
-        for t in range(tracks.count):
-            ends += _mode(axes, diagram, t, units)
-        marks(axes, diagram, units)
-        beside(axes, ends)
-        axes.annotate(
-            f"{units.frequency} at {speeds[-1]:.4g} {units.speed}",
+        left, bottom, width, tall = 0.07, low / height, 0.93 - room, 1 - (low + 0.66) / height
+        ranges = _ranges(diagram, units)
+        if len(ranges) == 1:
+            panels = [figure.add_axes((left, bottom, width, tall))]
+        else:
+            panels = [
+                figure.add_axes((left, bottom, width, LOWER * tall)),
+                figure.add_axes((left, bottom + (LOWER + GAP) * tall, width, (1 - LOWER - GAP) * tall)),
+            ]
+        for axes, limits in zip(panels, ranges, strict=True):
+            _panel(axes, diagram, units, limits)
+        lowest, highest = panels[0], panels[-1]
+        rays(lowest, diagram, units)
+        band_label(highest, diagram, units)
+        highest.annotate(
+            f"{units.frequency} at {diagram.wanted.speeds[-1] * units.speeds:.4g} {units.speed}",
             (1.0, 1.0),
             (6, 6),
             "axes fraction",
@@ -56,12 +63,41 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
             size=7.5,
             color=MUTED,
         )
-        axes.set_xlabel(units.speed_label, labelpad=3)
-        axes.set_ylabel(units.frequency_label)
+        lowest.set_xlabel(units.speed_label, labelpad=3)
+        lowest.set_ylabel(units.frequency_label)
+        for axes in panels[1:]:
+            axes.spines["bottom"].set_visible(False)
+            axes.tick_params(bottom=False, labelbottom=False)
         title(figure, heading, _below(diagram, units))
         handles = legend(diagram)
         key(figure, handles, 0.07, across=-(-len(handles) // (1 + (len(handles) > 5))))
     return figure
+
+
+def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
+    """Of frequencies, from below: one, or two where the rays stay in the lower part of what there is."""
+    tracks, wanted = diagram.tracks, diagram.wanted
+    top = 1.06 * float(np.nanmax(tracks.frequencies))
+    ray = max(wanted.per_rev, default=0) * wanted.speeds[-1]
+    highest = np.nanmax(tracks.frequencies, axis=0)
+    reached = highest[np.nanmin(tracks.frequencies, axis=0) < 1.1 * ray]
+    split = 1.1 * max(ray, float(reached.max(initial=0.0)))
+    above = np.sort(np.nanmin(tracks.frequencies, axis=0))
+    if not len(reached) or split > SQUEEZED * top or not (above > split).any():
+        return [(0.0, top * units.frequencies)]
+    top = highest.max() + 0.18 * (highest.max() - split)  # room for what is written there
+    return [(0.0, split * units.frequencies), (split * units.frequencies, float(top) * units.frequencies)]
+
+
+def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, float]) -> None:
+    """The modes within limits of frequency, labelled at their right ends."""
+    speeds = np.array(diagram.wanted.speeds) * units.speeds
+    axes.set_xlim(speeds[0], speeds[-1])
+    axes.set_ylim(*limits)
+    band(axes, diagram, units)
+    ends = [end for t in range(diagram.tracks.count) for end in _mode(axes, diagram, t, units)]
+    marks(axes, diagram, units)
+    beside(axes, [end for end in ends if limits[0] < end[0] <= limits[1]])
 
 
 def _below(diagram: Campbell, units: Units) -> str:

@@ -33,6 +33,12 @@ def band(axes: Axes, diagram: Campbell, units: Units) -> None:
     if diagram.wanted.operating:
         low, high = (o * units.speeds for o in diagram.wanted.operating)
         axes.axvspan(low, high, color=BAND, lw=0, zorder=0)
+
+
+def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
+    """Say at the top what the shade is."""
+    if diagram.wanted.operating:
+        low, high = (o * units.speeds for o in diagram.wanted.operating)
         box = {"facecolor": BAND, "edgecolor": "none", "pad": 1.0}
         axes.annotate(
             "operating",
