@@ -396,6 +396,7 @@ app.command(f"{__package__}.show:command", name="show")
 app.command(f"{__package__}.convert:command", name="convert")
 app.command(f"{__package__}.history_command:app", name="history")
 app.command(f"{__package__}.gate_command:command", name="gate")
+app.command(f"{__package__}.dashboard_command:command", name="dashboard")
 
 
 def _chosen(name: str) -> Case | MechanismCase:

@@ -1,0 +1,74 @@
+"""Writes the site: a page for the matrix, for each case, for the codes, for the history; style and scripts beside them."""
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from ...cases.history import History
+from ...cases.results import Run
+from .. import summary
+from . import data
+from .past import of_history
+
+ASSETS = ("dashboard.css", "dashboard.js", "charts.js")
+
+
+def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
+    """Write the site of ``runs`` (name → run; the first is shown first) into ``folder``; the first page's path.
+
+    Raises:
+        OSError: if something cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in ASSETS:
+        text = files(__package__ or "").joinpath("templates", name).read_text(encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
+    starts = {name: "index.html" if k == 0 else f"run-{k + 1}/index.html" for k, name in enumerate(runs)}
+    for k, (name, run) in enumerate(runs.items()):
+        here = folder / f"run-{k + 1}" if k else folder
+        up = "../" if k else ""
+        _run(
+            run,
+            name,
+            here,
+            {"up": up, "runs": {n: up + path for n, path in starts.items()}, "past": history is not None},
+        )
+    if history is not None:
+        shared = {"up": "", "runs": starts, "past": True}
+        (folder / "history.html").write_text(_page("history", "History", of_history(history), shared), encoding="utf-8")
+    return folder / "index.html"
+
+
+def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {
+        "index.html": _page("matrix", name, data.first(run, name), shared),
+        "codes.html": _page("codes", f"Codes · {name}", {"codes": data.codes(run), "verdicts": _verdicts()}, shared),
+    }
+    for case in summary.cases(run):
+        pages[data.page(case)] = _page("case", f"{case} · {name}", data.of_case(run, case), shared)
+    for path, text in pages.items():
+        (folder / path).write_text(text, encoding="utf-8")
+
+
+def _verdicts() -> list[dict[str, str]]:
+    return [{"name": v, "sign": summary.SYMBOL[v]} for v in summary.GRAVEST_FIRST]
+
+
+def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:
+    """One page: its data lie in it as JSON, escaped so that no text of a case can end the element or begin another."""
+    environment = Environment(
+        loader=PackageLoader(__package__ or "", "templates"),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return environment.get_template("page.html.jinja").render(kind=kind, title=title, data=Markup(text), **shared)
