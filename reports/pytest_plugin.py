@@ -7,6 +7,7 @@ when a test has the mark.
 import fnmatch
 import shlex
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -75,7 +76,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
-    from ..cases import library
     from ..cases.errors import CaseError
     from ..cases.yours import Yours
     from .cli import select
@@ -86,15 +86,11 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
         yours.model  # noqa: B018  (the names of effects are looked at here, once)
     except TypeError as error:
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
-    absent = library.absent()
-    names = yours.cases or tuple(n for n in library.names() if n not in absent)
     wanted = config.getoption("--southwell-cases")
     try:
-        cases = [select(n) for n in names]
-        if wanted:
-            only = {v.name for n in wanted.split(",") for v in select(n).variants}
-        else:
-            only = {v.name for c in cases for v in c.variants}
+        some = [select(n) for n in wanted.split(",")] if wanted else None
+        cases = [select(n) for n in yours.cases] or some or _all()
+        only = {v.name for c in some or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error
     return [
@@ -105,6 +101,14 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
         for omega in variant.speeds.tolist()
         for k in range(1, case.text.compare.modes + 1)
     ]
+
+
+def _all() -> "list[Case]":
+    """Every case whose files are there."""
+    from ..cases import library
+
+    absent = library.absent()
+    return [library.load(n) for n in library.names() if n not in absent]
 
 
 @dataclass(frozen=True)
@@ -161,7 +165,11 @@ class CellUnderTest:
         right = "" if cell.reference is None else f", not {cell.reference:.7g}"
         source = f" ({cell.code.partition(', ')[2]})" if cell.role == "table" else ""
         compare, variant = self.chosen.case.text.compare, self.chosen.variant
-        like = alike(cell, self._once("mistakes", lambda: controls.solve(variant, compare)))
+        like = (
+            ""
+            if cell.difference is None
+            else alike(cell, self._once("mistakes", partial(controls.solve, variant, compare)))
+        )
         told = f"{where}: {self.chosen.yours.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
         return f"{told}; {like}" if like else told
 
