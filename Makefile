@@ -1,4 +1,4 @@
-# make verify | make test | make lint | make bench | make condense | make readme | make clean
+# make verify | make test | make lint | make bench | make condense | make readme | make docs | make clean
 # All that is needed is Python 3.11 or later; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -12,7 +12,7 @@ HERE := .venv/here
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: verify test lint bench condense readme clean
+.PHONY: verify test lint bench condense readme docs clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
@@ -35,6 +35,12 @@ condense: $(INSTALLED)
 # from the results of the last make verify and make bench
 readme: $(INSTALLED)
 	$(BIN)/python -m southwell.reports.readme reports/out/results.jsonl
+
+# into build/site, with the results of the last make verify if there are any; as a module: the script would take the
+# command southwell, which lies beside it, for the package
+docs: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
 $(INSTALLED): pyproject.toml
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))

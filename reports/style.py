@@ -7,6 +7,7 @@ rests on colour alone: codes differ in marker too, families in line style.
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -101,14 +102,21 @@ def title(figure: Figure, text: str, below: str = "") -> None:
     figure.text(0.012, 1 - 0.44 / height, below, size=8.5, color=MUTED)
 
 
+def svg(figure: Figure) -> str:
+    """The figure as an SVG that depends on the figure alone."""
+    out = StringIO()
+    with house():
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "southwell"})
+    return out.getvalue()
+
+
 def save(figure: Figure, path: Path) -> None:
-    """Write an SVG whose bytes depend on the figure alone.
+    """Write the figure's SVG.
 
     Raises:
         OSError: if the file cannot be written.
     """
-    with house():
-        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "southwell"})
+    path.write_text(svg(figure), encoding="utf-8", newline="\n")
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:

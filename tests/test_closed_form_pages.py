@@ -1,0 +1,86 @@
+"""Core against the closed forms that the documentation shows: what it shows is held, and a wrong core would be seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.lines import Line2D
+
+from southwell.references import closed_forms as forms
+from southwell.references.closed_forms import FORMS, ClosedForm, differences
+from southwell.reports import closed_forms
+from southwell.reports.style import INK
+
+Found = tuple[ClosedForm, np.ndarray, np.ndarray]
+
+
+@pytest.fixture(scope="module", params=FORMS, ids=lambda form: form.name)
+def found(request: pytest.FixtureRequest) -> Found:
+    form = replace(request.param, speeds=request.param.speeds[:: 5 if len(request.param.speeds) > 9 else 3])
+    return form, *closed_forms.solved(form)
+
+
+def test_core_keeps_to_the_closed_form(found: Found) -> None:
+    form, values, off = found
+    assert np.nanmax(off) < form.target
+    exact = np.array([form.exact(omega) for omega in form.speeds.tolist()])
+    known = np.isfinite(exact)
+    assert (np.isfinite(off) == known).all()
+    assert known.any(axis=0).all()
+    np.testing.assert_allclose(values[known], exact[known], atol=form.target * np.abs(exact[known]).max())
+
+
+def test_the_figure_has_the_points_and_the_line(found: Found) -> None:
+    form, values, off = found
+    above, below = closed_forms.figure(form, values, off).axes
+    markers = [line for line in above.lines if line.get_linestyle() == "None"]
+    assert len(markers) == len(form.branches)
+    for k, line in enumerate(markers):
+        there = np.isfinite(values[:, k])
+        np.testing.assert_allclose(_xy(line)[0], form.speeds[there])
+        np.testing.assert_allclose(_xy(line)[1], np.abs(values[there, k]), rtol=1e-6)
+    assert [t.get_text() for t in above.texts][-len(form.branches) :] == list(form.branches)
+    (target,) = [line for line in below.lines if line.get_color() == INK]
+    assert _xy(target)[1].tolist() == [form.target] * 2
+
+
+def _xy(line: Line2D) -> tuple[np.ndarray, np.ndarray]:
+    return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+
+
+def test_the_turntable_grows_between_its_critical_speeds_only() -> None:
+    table = FORMS[0]
+    assert table.critical == pytest.approx((5.0, 7.0))
+    for omega, stable in ((4.99, True), (5.01, False), (6.99, False), (7.01, True)):
+        slower, faster = table.exact(omega)
+        assert (slower.real == 0) == stable
+        assert faster.real == 0
+        assert max(v.real for v in table.solve(omega)) < 1e-9 or not stable
+
+
+def test_a_solver_without_the_coriolis_force_would_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The table's exact roots without 4 Ω² ω²: √(k/m − Ω²) each, far from what core gives."""
+    table = FORMS[0]
+    without = replace(table, exact=lambda omega: 1j * np.sqrt(np.array([25.0, 49.0]) - omega**2))
+    assert differences(table, 3.0)[1].max() < 1e-12
+    assert differences(without, 3.0)[1].max() > 0.1
+
+
+def test_the_rings_difference_is_discretisation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of fourth order: twice the elements, a difference 16 times as small (at least ten)."""
+    ring, off = FORMS[-1], []
+    for arcs in (10, 20):
+        monkeypatch.setattr(forms, "_ARCS", arcs)
+        off.append(differences(ring, 1.0)[1].max())
+    assert off[0] / off[1] > 10
+
+
+def test_the_page_has_every_figure_and_the_same_bytes_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    few = tuple(replace(form, speeds=form.speeds[::12]) for form in FORMS[:3])
+    monkeypatch.setattr(closed_forms, "FORMS", few)
+    made = closed_forms.pages()
+    assert made == closed_forms.pages()
+    text = made["closed-forms.md"]
+    assert set(made) == {"closed-forms.md", *(f"closed-forms/{form.name}.svg" for form in few)}
+    assert all(f"]({name})" in text for name in made if name.endswith(".svg"))
+    assert all(form.formula in text for form in few)
