@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from html import unescape
 from pathlib import Path
 from typing import Any
+from unicodedata import lookup, name
 
 from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
@@ -13,6 +14,8 @@ from mkdocs.structure.files import File, Files
 from southwell.reports import site
 
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.S)
+NUMBER = re.compile(r"\\tag\{(.*?)\}")
+BOLD = re.compile(r'<m[in] mathvariant="bold(?:-italic)?">(.*?)</m[in]>')
 
 RUN = Path(__file__).parents[1] / "reports" / "out"
 """Where `make verify` leaves its results; the site shows them if they are there."""
@@ -41,14 +44,14 @@ def _all(part: Sequence[Any]) -> list[Any]:
         out.append(_extended(entry))
         if isinstance(entry, str) and entry in made and entry.endswith("/index.md"):
             folder = entry.removesuffix("index.md")
-            out += [name for name in made if name.startswith(folder) and name.endswith(".md") and name != entry]
+            out += [path for path in made if path.startswith(folder) and path.endswith(".md") and path != entry]
     return out
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """The pages made, beside those written."""
-    for name, content in made.items():
-        files.append(File.generated(config, name, content=content))
+    for path, content in made.items():
+        files.append(File.generated(config, path, content=content))
     return files
 
 
@@ -58,5 +61,16 @@ def on_page_content(html: str, **_: Any) -> str:
 
 
 def _mathml(match: re.Match[str]) -> str:
+    """A formula; its number, if it has one, beside it. Bold letters are those of Unicode: browsers know no others."""
     tag, text = match.groups()
-    return convert(unescape(text).strip(), display="block" if tag == "div" else "inline")
+    text = unescape(text).strip()
+    number = NUMBER.search(text)
+    formula = convert(NUMBER.sub("", text), display="block" if tag == "div" else "inline")
+    formula = BOLD.sub(lambda m: f'<mi mathvariant="normal">{_bold(unescape(m[1]))}</mi>', formula)
+    return f'<div class="equation">{formula}<span>({number[1]})</span></div>' if number else formula
+
+
+def _bold(letter: str) -> str:
+    """M → 𝐌, φ → 𝛗, by their names."""
+    words = [word for word in name(letter).split() if word not in ("LATIN", "GREEK", "LETTER")]
+    return lookup(f"MATHEMATICAL BOLD {' '.join(words)}")
