@@ -101,6 +101,7 @@ class Frame3DD:
                 f"{blade.name}: squares of frequencies {squares.tolist()}: no stable steady state; lower the speed"
             )
         order = np.argsort(squares)
+        shapes[:, [0, 3]] = 0.0  # along and about the axis it is all but rigid: rounding
         at_stations = CubicSpline(ends / blade.length, shapes, axis=2)(STATIONS).transpose(0, 2, 1)
         return Modes(
             omega, np.sqrt(squares[order]), at_stations[order].astype(complex), n, seconds=time.perf_counter() - begun

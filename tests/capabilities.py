@@ -115,7 +115,7 @@ BLADES = {
     "articulated/sprung": Asks(hinged=True),
     "rotating-cable": Asks(unlike=True, hinged=True),
     "tip-mass": Asks(tip=True),
-    "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0, stations=True),
+    "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
     "hodges-rutkowski": Asks(taper=True, stations=True),
     "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
 }

@@ -17,7 +17,10 @@ import numpy as np
 HELD = 1e30
 """What a reaction's stiffness is called where there is no motion at all."""
 
-STODOLA, CONSISTENT, TOLERANCE = 2, 0, 1e-9
+JACOBI, STODOLA = 1, 2
+"""Subspace iteration, which gives up on some blades; Stodola's, which may leave out a plane where planes do not couple."""
+
+CONSISTENT, TOLERANCE = 0, 1e-9
 
 
 def main():
@@ -67,10 +70,18 @@ def solve(request):
     frame.addLoadCase(load)
     if request["tip"]:
         frame.changeExtraNodeMass(number[-1:], [request["tip"]], *[zero[:1]] * 9, False)
-    frame.enableDynamics(request["count"], STODOLA, CONSISTENT, TOLERANCE, 0.0)
-    modal = frame.run()[-1]
+    try:
+        modal = run(frame, request["count"], JACOBI)
+    except RuntimeError:
+        modal = run(frame, request["count"], STODOLA)
     shapes = np.stack([modal.xdsp, modal.ydsp, modal.zdsp, modal.xrot], axis=1)
     return {"frequencies": (2 * np.pi * np.array(modal.freq)).tolist(), "shapes": shapes.tolist()}
+
+
+def run(frame, count, method):
+    """The modes, by one of Frame3DD's methods; RuntimeError where that gives up."""
+    frame.enableDynamics(count, method, CONSISTENT, TOLERANCE, 0.0)
+    return frame.run()[-1]
 
 
 if __name__ == "__main__":
