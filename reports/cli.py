@@ -61,6 +61,7 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
 
 
 Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Flag = Annotated[bool, Parameter(negative=())]
 
 
 class UsageError(ValueError):
@@ -283,16 +284,29 @@ def _speeds(omega: str | None, rpm: str | None) -> tuple[Sequence[float] | None,
 
 
 @app.command
-def report(folder: Path, /) -> int:
+def report(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     """Write report.md and figures anew from the results.jsonl in a folder.
 
     Parameters
     ----------
     folder
         What `southwell verify --out` was given.
+    html
+        Also report.html, one file with the figures inside it.
+    pdf
+        Also report.pdf; needs the extra `pdf` (WeasyPrint).
     """
-    run = _results(folder)
-    _show(run, folder)
+    written = _show(_results(folder), folder)
+    if html or pdf:
+        from . import html as page
+
+        if html:
+            print(page.write(written))
+        if pdf:
+            try:
+                print(page.pdf(written))
+            except page.PdfError as error:
+                raise UsageError(str(error)) from error
     return PASSED
 
 
@@ -447,8 +461,8 @@ def _junit(run: Run, path: Path) -> None:
         raise UsageError(f"--junit {path}: cannot be written ({error.strerror}): give another file") from error
 
 
-def _show(run: Run, folder: Path) -> None:
-    """Write the report, and print what it says first."""
+def _show(run: Run, folder: Path) -> Path:
+    """Write the report, print what it says first; the report's path."""
     from . import markdown  # with its figures half of a command's time to start, and of every worker's
 
     report = markdown.write(run, folder)
@@ -459,6 +473,7 @@ def _show(run: Run, folder: Path) -> None:
     if run.controls:
         console.print(terminal.controls(run))
     console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
+    return report
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, condense_page, controls, lumped, shares, summary, witnesses
+from . import bench, condense_page, controls, evidence, lumped, shares, summary, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -28,13 +28,17 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
 }
 """Drawn for each blade; the key ends the file's name."""
 
+URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
 LARGEST: dict[Verdict, str] = {
-    "fail": "Worst failure",
-    "inconclusive": "Largest inconclusive difference",
     "known difference": "Largest known difference",
     "pass": "Largest difference that passes",
 }
 """What the headline names, gravest first."""
+
+SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a"}
+"""Verdicts as the heat table has them, under a legend that has them in full."""
+
+LEGEND = ", ".join(f"{sign} {v}{f' ({SHORT[v]})' if v in SHORT else ''}" for v, sign in SYMBOL.items())
 
 TEXT = re.compile(r"([\\`*_{}\[\]|~])")
 """What Markdown could take for markup."""
@@ -46,8 +50,14 @@ def plain(text: object) -> str:
 
 
 def table(rows: Sequence[dict[str, str]]) -> str:
-    """A Markdown table of ready-made cells; numbers stay as they are written."""
-    return pd.DataFrame(list(rows)).to_markdown(index=False, disable_numparse=True)
+    """A Markdown table of ready-made cells; numbers stay as they are written, columns are not filled up with spaces."""
+    text = pd.DataFrame(list(rows)).to_markdown(index=False, disable_numparse=True)
+    return re.sub(r":-+\|", ":--|", re.sub(r" +\|", " |", text))
+
+
+def anchor(heading: str) -> str:
+    """The fragment that GitHub, and this package's HTML, give a heading: ``park-blade/windpact`` → ``park-bladewindpact``."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def write(run: Run, folder: Path) -> Path:
@@ -96,9 +106,12 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     environment.filters["plain"] = plain
     found, borne_out = lumped.taken(run), witnesses.table(run)
     return environment.get_template("report.md.jinja").render(
-        headline=headline(run),
-        heat=heat(run),
-        legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
+        headline=[evidence.answer(run), *urgent(run)],
+        evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
+        remarks=[told for told in (witnesses.headline(run), controls.headline(run)) if told],
+        heat=heat(run, linked=True),
+        unasked=unasked(run),
+        legend=LEGEND,
         cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
         witnesses=table([{k: plain(v) for k, v in row.items()} for row in borne_out]) if borne_out else "",
         controls=_controls(run),
@@ -124,24 +137,51 @@ def _controls(run: Run) -> dict[str, str]:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first."""
-    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
-    lines = [f"**{len(run.cells)} cells**: {counted}."]
+    lines = [evidence.answer(run), *urgent(run)]
     for verdict, what in LARGEST.items():
-        worst = summary.largest(c for c in run.cells if c.verdict == verdict)
-        if worst:
-            where = f"{worst.case}, {column(worst)}, {summary.labels(run.cells)[worst]}, "
-            where += units(run, worst.case).at(worst.omega)
-            lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(where)}).")
+        if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
+            lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
     return lines + [told for told in (witnesses.headline(run), controls.headline(run)) if told]
 
 
-def heat(run: Run) -> str:
-    """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it."""
+def urgent(run: Run) -> list[str]:
+    """A line for the worst failure and one for the largest inconclusive difference, where there are any."""
+    found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
+    return [
+        f"{what}: {summary.plus_minus(cell)} ({plain(evidence.where(run, cell))})."
+        for what, cell in found.items()
+        if cell
+    ]
+
+
+def unasked(run: Run) -> str:
+    """Codes that answered nowhere, and why, in a line; empty if there are none."""
+    told = []
+    for name in _silent(run):
+        mine = [c for c in run.cells if broad(c) == name]
+        reasons = "; ".join(dict.fromkeys(c.reason for c in mine if c.verdict == "not run"))
+        told.append(f"{plain(name)} ({plain(reasons) or 'not applicable'})")
+    return ", ".join(told)
+
+
+def _silent(run: Run) -> list[str]:
+    """Columns without a single answer, if any other has one."""
     names = columns(run.cells, broad)
+    empty = [n for n in names if all(c.verdict in ("not run", "not applicable") for c in run.cells if broad(c) == n)]
+    return empty if len(empty) < len(names) else []
+
+
+def heat(run: Run, linked: bool = False) -> str:
+    """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it.
+
+    Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases lead to their sections.
+    """
+    names = [n for n in columns(run.cells, broad) if n not in _silent(run)]
     rows = []
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
-        rows.append({"case": plain(case)} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
+        shown = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
+        rows.append({"case": shown} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
     if any(c.shares for c in run.cells):
         shares = {plain(n): witnesses.shared([c for c in run.cells if broad(c) == n]) for n in names}
         rows.append({"case": "*shares with core*"} | shares)
@@ -154,7 +194,7 @@ def _heat(cells: Sequence[Cell]) -> str:
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
     shown = f"<br>{amount(size, worst.target)}" if worst and size is not None else ""
-    return f"{SYMBOL[verdict]} {verdict}{shown}"
+    return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{shown}"
 
 
 @dataclass(frozen=True)
@@ -168,7 +208,9 @@ class Section:
     focus: str
     main: str
     rest: list[tuple[str, str]]
+    told: str
     figures: list[str]
+    mistakes: list[str]
     reasons: str
     count: int
     shares: str
@@ -193,12 +235,24 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         focus=unit.at(focus) if focus is not None else "",
         main=tables[focus] if focus is not None else "",
         rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
-        figures=figures,
+        told=told(cells),
+        figures=[f for f in figures if not f.endswith("-mistakes.svg")],
+        mistakes=[f for f in figures if f.endswith("-mistakes.svg")],
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
         shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
         shares_at=shares.heading(run, case, unit),
     )
+
+
+def told(cells: Sequence[Cell]) -> str:
+    """One case's cells by verdict, and the largest difference of each of those that have one."""
+    parts = []
+    for verdict, n in summary.counts(cells).items():
+        if n:
+            far = summary.largest(c for c in cells if c.verdict == verdict)
+            parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(far)}' if far else ''}")
+    return "; ".join(parts)
 
 
 def comparison(cells: Sequence[Cell], unit: Units) -> str:

@@ -14,8 +14,8 @@ from ..cases import results
 from ..cases.lumping import CASE, OMEGA
 from ..cases.results import Cell, Run
 from . import bench, summary
-from .markdown import comparison, heat, units
-from .summary import SYMBOL, broad, columns
+from .markdown import LEGEND, comparison, heat, unasked, units
+from .summary import broad, columns
 
 ROWS = Path(__file__).with_name("readme.jsonl")
 README = Path(__file__).parents[1] / "README.md"
@@ -44,10 +44,11 @@ def block(run: Run) -> str:
     """The README's part between its markers."""
     table1 = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
     made = ", ".join(f"{name} {version}" for name, version in run.versions.items())
+    none = unasked(run)
     return f"""{heat(run)}
 
 In each field the gravest verdict of all modes and speeds, and the largest difference from core behind it (of a known
-difference: from core with all effects). {", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())}.
+difference: from core with all effects). {LEGEND}.{f" No answer in this run: {none}." if none else ""}
 
 `{CASE}` at {units(run, CASE).at(OMEGA)}, Table 1 of the paper:
 

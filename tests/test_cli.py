@@ -212,7 +212,7 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
         (code, omega, mode) for code in ("exact-beam", "yoo-shin") for omega in (0.0, 10.0) for mode in (1, 2)
     }
     assert all(c.verdict == "pass" for c in run.cells)
-    assert shown.splitlines()[0] == "8 cells: 8 ✔ pass."
+    assert shown.splitlines()[0] == "Nothing contradicts core. 8 cells: 8 ✔ pass."
     assert f"southwell verify {beam} --codes exact-beam,yoo-shin" in (out / "report.md").read_text()
 
     written = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
@@ -295,7 +295,7 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert len(kept.cells) >= 4
     assert {(c.code, c.verdict) for c in kept.cells} == {("exact-beam", "pass")}
     assert kept.versions
-    assert f"**{len(kept.cells)} cells**" in (results_file.parent / "report.md").read_text()
+    assert f"** {len(kept.cells)} cells: " in (results_file.parent / "report.md").read_text()
     assert gone(tmp_path)
 
 

@@ -11,7 +11,7 @@ from markdown_it import MarkdownIt
 from southwell.cases.library import load
 from southwell.cases.lumping import lumping
 from southwell.cases.results import Run, Setting, append, read
-from southwell.reports import markdown, summary
+from southwell.reports import evidence, markdown, summary
 
 from . import samples
 
@@ -56,38 +56,87 @@ def report(tmp_path: Path) -> str:
 
 
 def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
-    first, second = report.split("\n\n")[1:3]
-    numbers = [int(n) for n in re.findall(r"\d+", first)]
+    first, second, third = report.split("\n\n")[1:4]
+    verdict, _, counts = first.partition("** ")
+    assert verdict == "**No: 1 answer contradicts core."
+    numbers = [int(n) for n in re.findall(r"\d+", counts)]
     assert numbers[0] == sum(numbers[1:]) == len(samples.run().cells)
-    assert "1 ✘ fail" in first
+    assert "1 ✘ fail" in counts
     assert second == "Worst failure: +0.500 % ± 0.0100 % (blade/stiff, alpha, chordwise 1, 10 rad/s)."
+    assert third.startswith("Largest inconclusive difference: +0.0500 %")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "says"),
+    [
+        ([], "Nothing was compared."),
+        (["not run", "not applicable"], "Nothing was compared."),
+        (["pass", "known difference", "not run"], "Nothing contradicts core."),
+        (["pass", "inconclusive"], "Nothing contradicts core, but 1 of the answers cannot tell."),
+        (["pass", "inconclusive", "fail", "fail"], "No: 2 answers contradict core."),
+    ],
+)
+def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says: str) -> None:
+    cells = tuple(samples.cell(verdict=v, mode=k) for k, v in enumerate(verdicts, 1))
+    assert evidence.answer(Run(cells)).startswith(f"**{says}**")
+
+
+def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> None:
+    cells = (
+        samples.cell(shares="nothing", difference=1e-4, omega=20.0),
+        samples.cell(shares="nothing", difference=-3e-4, mode=2),
+        samples.cell(
+            shares="nothing", mode=3, verdict="known difference", full=11.0, reason="no coriolis: +1 %; without"
+        ),
+        samples.cell(role="table", difference=2e-3, target=5e-3, code="author2000"),
+        samples.cell(role="table", difference=9e-4, target=1e-3, code="author2000", mode=2),
+        samples.cell(role="same discretisation", shares="discretisation", difference=2e-12, target=1e-8, code="twin"),
+        samples.empty("fail", "crashed", shares="nothing", code="odd"),
+        samples.empty("not run", "not installed", shares="nothing", code="absent"),
+    )
+    independent, printed, own = evidence.rows(Run(cells))
+    assert independent["answers"] == "1 ✘, 1 ≈, 2 ✔"
+    assert independent["worst difference"].startswith("✘ beam, odd, 10 rad/s: no answer: crashed")
+    assert independent["largest known difference"].endswith("10 rad/s; cause: no coriolis: +1 %")
+    assert (
+        printed["worst difference"] == "✔ +0.0900 % ± 0.0002 %: beam, author2000, chordwise 2, 10 rad/s; target 0.10 %"
+    )
+    assert own["worst difference"].startswith("✔ +2e-12")
+    assert own["worst difference"].endswith("target 1e-08")
+    passing = evidence.rows(Run(cells[:2]))[0]["worst difference"]
+    assert passing.startswith("✔ −0.0300 %")
 
 
 def test_the_heat_table_has_a_sign_and_a_word_for_every_case_and_code(report: str) -> None:
-    head, *rows = Tables(rendered(report)).tables[0]
-    assert head == ["case", "alpha", "beta", "gamma", "delta"]
+    head, *rows = Tables(rendered(report)).tables[1]
+    assert head == ["case", "alpha", "beta", "gamma"]
     assert [row[0] for row in rows] == ["beam", "blade/stiff"]
     assert rows[0][1].startswith("✔ pass")
-    assert rows[0][3] == "≈ known difference 0.250 %"
-    assert rows[0][4] == "○ not run"
-    assert rows[1][1:] == ["✘ fail 0.500 %", "? inconclusive 0.0500 %", "– not applicable", ""]
+    assert rows[0][3] == "≈ known 0.250 %"
+    assert rows[1][1:] == ["✘ fail 0.500 %", "? inconclusive 0.0500 %", "– n/a"]
+    assert "≈ known difference (known), – not applicable (n/a)" in report
+
+
+def test_a_code_without_any_answer_has_no_column_but_its_name_and_reason(report: str) -> None:
+    assert "No answer anywhere, so no column: delta (not installed" in report
+    only = Run(tuple(c for c in samples.run().cells if c.code == "delta"))
+    assert "○ not run" in markdown.heat(only)
 
 
 def test_every_table_is_whole(report: str) -> None:
     tables = Tables(rendered(report)).tables
     assert (
-        len(tables) == 1 + len(samples.SPEEDS) + 1 + 1 + 1 + 1
-    )  # heat, beam's speeds, reasons, stiff, reasons, versions
+        len(tables) == 2 + len(samples.SPEEDS) + 1 + 1 + 1 + 1
+    )  # evidence, heat, beam's speeds, reasons, stiff, reasons, versions
     assert all(len({len(row) for row in table}) == 1 for table in tables)
 
 
 def test_every_cell_that_is_not_a_plain_pass_has_its_reason(report: str) -> None:
     for cell in samples.run().cells:
         if cell.verdict != "pass":
-            row = next(
-                line for line in report.splitlines() if markdown.plain(cell.reason) in line and line.startswith("|")
-            )
-            assert f"{summary.SYMBOL[cell.verdict]} {cell.verdict}" in row
+            head = f"| {summary.SYMBOL[cell.verdict]} {cell.verdict} |"
+            rows = [line for line in report.splitlines() if line.endswith(f"| {markdown.plain(cell.reason)} |")]
+            row = next(row for row in rows if row.startswith(head))
             assert cell.code in row
 
 
