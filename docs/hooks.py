@@ -28,6 +28,8 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     made.clear()
     made.update(site.pages(RUN))
     config.nav = [_extended(entry) for entry in config.nav or []]
+    if site.REPORT in made:
+        config.nav.append({"The last run": site.REPORT})
     return config
 
 

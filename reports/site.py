@@ -3,6 +3,7 @@
 Nothing in them is typed twice: words are those of case files, adapters, docstrings and options.
 """
 
+import re
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -17,6 +18,9 @@ from . import cli, closed_forms, code_pages
 from .markdown import plain, table
 
 Pages = dict[str, str]
+
+REPORT = "report.md"
+"""A run's report on the site; only there if there is a run."""
 
 FLOORS = {
     "core": "The language (blade, modes) and the in-house solver.",
@@ -35,7 +39,18 @@ def pages(folder: Path) -> Pages:
     """
     path = folder / cli.RESULTS
     run = results.read(path) if path.exists() else Run(())
-    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms.pages()}
+    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms.pages(), **report(folder)}
+
+
+def report(folder: Path) -> Pages:
+    """A run's report as it lies there, and its figures; nothing if there is none."""
+    path = folder / "report.md"
+    if not path.exists():
+        return {}
+    text = path.read_text(encoding="utf-8")
+    figures = re.findall(r"!\[.*?\]\((figures/[\w.-]+\.svg)\)", text)
+    drawn = {name: (folder / name).read_text(encoding="utf-8") for name in figures}
+    return {REPORT: text.replace("<details>", '<details markdown="1">')} | drawn
 
 
 def cases() -> Pages:

@@ -15,7 +15,7 @@ import yaml
 from southwell.cases import library, results
 from southwell.cases.settings import settings
 from southwell.references import codes
-from southwell.reports import cli, site
+from southwell.reports import cli, markdown, site
 
 from . import samples
 
@@ -48,7 +48,7 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
     made = site.cases() | site.api()
     named = leaves(configuration()["nav"])
     assert set(PAGES) <= set(named), "add it to the nav of mkdocs.yml"
-    there = {*PAGES, *made, "codes/index.md", "cli.md", "closed-forms.md", "report.md"}
+    there = {*PAGES, *made, "codes/index.md", "cli.md", "closed-forms.md"}
     assert set(named) <= there
     assert len(named) == len(set(named))
 
@@ -174,3 +174,13 @@ def test_formulas_are_there_without_a_script(built: Path) -> None:
 def test_the_api_is_filled_from_docstrings(built: Path) -> None:
     html = (built / "api" / "core.html").read_text(encoding="utf-8")
     assert "A rotating blade on its hub; properties vary linearly between stations." in html
+
+
+def test_a_runs_report_is_on_the_site_with_its_figures(tmp_path: Path) -> None:
+    assert site.report(tmp_path) == {}
+    written = markdown.write(samples.run(), tmp_path).read_text(encoding="utf-8")
+    made = site.report(tmp_path)
+    links = re.findall(r"!\[.*?\]\((.*?)\)", written)
+    assert set(made) == {site.REPORT, *links}
+    assert len(links) == 4
+    assert made[site.REPORT].count('<details markdown="1">') == written.count("<details>") > 0
