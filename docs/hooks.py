@@ -27,9 +27,8 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Make the pages, and put them into the nav under the index of their folder."""
     made.clear()
     made.update(site.pages(RUN))
-    config.nav = [_extended(entry) for entry in config.nav or []]
-    if site.REPORT in made:
-        config.nav.append({"The last run": site.REPORT})
+    last = [{"The last run": site.REPORT}] if site.REPORT in made else []
+    config.nav = [*(_extended(entry) for entry in config.nav or []), *last]
     return config
 
 
