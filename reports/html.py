@@ -40,6 +40,7 @@ details { margin: 0.8rem 0; } summary { cursor: pointer; font-weight: 600; }
 pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size: 0.92em; }
 @page { size: A4 landscape; margin: 12mm; @bottom-right { content: counter(page) " / " counter(pages); font-size: 8pt; } }
 @media print {
+  html { font-size: 9pt; }
   body { font-size: 9pt; padding: 0; max-width: none; } p, li, h1, h2, h3, summary { max-width: none; }
   table { font-size: 6.6pt; } th, td { padding: 1px 3px; } tr, img { break-inside: avoid; } h2, h3 { break-after: avoid; }
   .wide { overflow: visible; } img { max-width: 62%; } a { color: inherit; text-decoration: none; }
