@@ -1,66 +1,29 @@
-"""The dashboard: what it shows is what the rows say, in a real browser, by mouse and by keyboard; hostile names stay text."""
+"""The dashboard's files: what they hold is what the rows say; nothing is fetched; the history's steps and who made them."""
 
 import json
 import re
 import shutil
-from collections.abc import Iterator
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from southwell.cases import history, results
-from southwell.cases.results import Run
+from southwell.cases import history, library
+from southwell.core.blade import Blade
 from southwell.reports import cli, readme
+from southwell.reports.dashboard import moving as shapes
 from southwell.reports.dashboard.data import page
+from southwell.reports.dashboard.moving import moving
+from southwell.reports.dashboard.past import CORE, moves, of_history
 from southwell.reports.dashboard.steps import frequency_steps, timing_steps
-from southwell.reports.dashboard.write import write
+from southwell.reports.dashboard.write import SCRIPTS, write
+from southwell.reports.units import RAD_S
 
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
-needs_browser = pytest.mark.skipif(
-    BROWSER is None or find_spec("playwright") is None, reason="needs Chromium (Debian: apt install chromium), and: pip install playwright"
-)
-HOSTILE = '<img src=x onerror="document.title=1">/</script><script>document.title=2</script>'
+from .dashboards import HOSTILE, WORSE, hostile, kept, run
 
-
-def run() -> Run:
-    return results.read(readme.ROWS)
-
-
-def hostile() -> Run:
-    """The README's rows, one case of theirs under a name that would do harm if it were markup."""
-    plain = run()
-    name = plain.cells[0].case
-    return replace(
-        plain,
-        cells=tuple(
-            replace(c, case=HOSTILE, reason=HOSTILE) if c.case == name else replace(c, seconds=0.5) for c in plain.cells
-        ),
-        settings=tuple(replace(s, case=HOSTILE, title=HOSTILE) if s.case == name else s for s in plain.settings),
-    )
-
-
-def kept(file: Path) -> Path:
-    """A history of seven runs: a frequency moves at the fifth; a cell is gone in the last; the last line is torn."""
-    first = run()
-    for k in range(7):
-        cells = first.cells[:-1] if k == 6 else first.cells
-        moved = tuple(
-            replace(c, frequency=c.frequency * (1 + 1e-6)) if k >= 4 and n == 5 and c.frequency else c
-            for n, c in enumerate(_with_numbers(cells))
-        )
-        history.append(file, history.entry(replace(first, cells=moved), f"commit{k}", machine="a machine"))
-    with file.open("ab") as out:
-        out.write(b'{"commit":"to')
-    return file
-
-
-def _with_numbers(cells: Any) -> list[Any]:
-    return [c for c in cells if c.frequency is not None]
+LARGEST_FIRST_PAGE = 1.5e6
 
 
 def data(path: Path) -> Any:
@@ -71,18 +34,27 @@ def data(path: Path) -> Any:
 
 
 def test_every_cell_is_there_and_the_first_page_is_small(tmp_path: Path) -> None:
-    path = write({"a run": run()}, None, tmp_path)
-    first = data(path)
-    assert len(first["cells"]) == len(run().cells)
-    assert (
-        sum((tmp_path / name).stat().st_size for name in ("index.html", "dashboard.js", "charts.js", "dashboard.css"))
-        < 1.5e6
-    )
+    first = data(write({"a run": run()}, None, tmp_path))
+    rows = run().cells
+    assert len(first["cells"]) == len(rows)
+    needed = ("index.html", "dashboard.css", *SCRIPTS["matrix"])
+    assert sum((tmp_path / name).stat().st_size for name in needed) < LARGEST_FIRST_PAGE
     assert {c["page"] for c in first["cases"]} == {p.name for p in tmp_path.glob("case-*.html")}
-    worst = max((c for c in run().cells if c.verdict == "known difference"), key=lambda c: abs(c.difference or 0.0))
-    assert any(
-        c[0] == [x["name"] for x in first["cases"]].index(worst.case) and worst.reason == c[7] for c in first["cells"]
+    assert {c["page"] for c in first["columns"] if c["page"]} == {p.name for p in tmp_path.glob("code-*.html")}
+    for cell, row in zip(first["cells"], rows, strict=True):
+        assert first["cases"][cell[0]]["name"] == row.case
+        assert first["verdicts"][cell[4]]["name"] == row.verdict
+        assert cell[7] == row.reason
+
+
+def test_the_worst_cell_of_many_is_the_worst_of_the_readmes(tmp_path: Path) -> None:
+    """README's table, written by other code, against what a code's page says."""
+    write({"a run": run()}, None, tmp_path)
+    worst = {case: text for case, *_, text, _, _ in data(tmp_path / page("southwell-equation", "code"))["worst"]}
+    row = next(
+        line for line in readme.README.read_text(encoding="utf-8").splitlines() if line.startswith("| tip-mass ")
     )
+    assert worst["tip-mass"].split(" ± ")[0].lstrip("+−") in row
 
 
 def test_nothing_is_fetched_from_anywhere(tmp_path: Path) -> None:
@@ -91,12 +63,57 @@ def test_nothing_is_fetched_from_anywhere(tmp_path: Path) -> None:
         if file.suffix in (".html", ".js", ".css"):
             text = re.sub(r'(?s)<script type="application/json".*?</script>', "", file.read_text(encoding="utf-8"))
             assert set(re.findall(r"https?://[^\"' ]+", text)) <= {"http://www.w3.org/2000/svg"}
+            for name in re.findall(r'(?:src|href)="(?!data:)([^"]+)"', text):
+                assert (file.parent / name).is_file()
+
+
+def test_no_text_of_a_case_is_markup(tmp_path: Path) -> None:
+    write({HOSTILE: hostile()}, None, tmp_path)
+    for file in tmp_path.glob("*.html"):
+        text = file.read_text(encoding="utf-8")
+        assert "<img" not in text
+        assert "<!--" not in text
+        assert text.count("<script") == text.count("</script>") <= 1 + len(SCRIPTS["case"])
+    assert data(tmp_path / page(HOSTILE))["name"] == HOSTILE
 
 
 def test_page_names_are_files_whatever_the_case_is_called() -> None:
-    assert page("park-blade/windpact") == "case-park-blade_2f_windpact.html"
-    assert re.fullmatch(r"case-[\w.-]+\.html", page(HOSTILE))
-    assert page("a/b") != page("a_b") != page("a_2f_b")
+    assert page("park-cantilever") == "case-park-cantilever.html"
+    assert page("pybmodes", "code") == "code-pybmodes.html"
+    names = ["a/b", "a_b", "A/b", "a-b", HOSTILE, WORSE, "é" * 300, "é" * 301, "../../x"]
+    pages = [page(name) for name in names]
+    assert len({p.lower() for p in pages}) == len(names)
+    assert all(re.fullmatch(r"case-[a-z0-9_.-]{1,100}\.html", p) for p in pages)
+
+
+def test_moving_shapes_are_the_beams() -> None:
+    """A cantilever at rest: φ(½)/φ(1) = 0.33952, and the second mode's node lies at 0.7834 (Young and Felgar 1949)."""
+    cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 0.0]
+    found = moving("park-cantilever", cells, RAD_S)
+    assert found
+    at_rest = found["speeds"][0]["modes"]
+    flap = {m["name"]: np.array(m["re"])[:, 2] + 1j * np.array(m["im"])[:, 2] for m in at_rest}
+    assert abs(flap["flapwise 1"][10] / flap["flapwise 1"][20]) == pytest.approx(0.33952, abs=2e-4)
+    second = (flap["flapwise 2"] / flap["flapwise 2"][20]).real
+    node = np.interp(0.0, second[12:], np.linspace(0, 1, 21)[12:])
+    assert node == pytest.approx(0.7834, abs=2e-3)
+    other = [replace(c, full=None if c.full is None else 1.5 * c.full) for c in cells]
+    assert moving("park-cantilever", other, RAD_S) is None
+    assert moving(HOSTILE, cells, RAD_S) is None
+
+
+def test_a_rotor_without_a_steady_state_has_no_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
+    (blade,) = (v.blade for v in library.load("park-cantilever").variants)
+    soft = replace(blade, stiffness=1e-9 * blade.stiffness)
+
+    def found(case: str) -> Blade:
+        return soft
+
+    monkeypatch.setattr(shapes, "_blade", found)
+    cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 30.0]
+    shown = moving("park-cantilever", [replace(c, full=None) for c in cells], RAD_S)
+    assert shown is not None
+    assert shown["speeds"] == []
 
 
 def test_steps_of_frequencies_are_moves_beyond_rounding() -> None:
@@ -105,9 +122,54 @@ def test_steps_of_frequencies_are_moves_beyond_rounding() -> None:
 
 def test_steps_of_timings_are_levels_not_points() -> None:
     noisy = [1.0, 1.1, 0.95, 1.05, 1.02, 5.0, 0.98, 1.04, 1.0, 1.1]
-    assert timing_steps(noisy) == []
-    assert timing_steps([*noisy, 2.0, 2.1, 1.95, 2.05]) == [10]
-    assert timing_steps([1.0, 2.0]) == []
+    assert [k for k, _ in timing_steps(noisy)] == [0]
+    assert timing_steps([*noisy, 2.0, None, 2.1, 1.95, 2.05])[1] == (10, pytest.approx(2.025))
+    assert [k for k, _ in timing_steps([*noisy, 0.4, 0.41, 0.4])] == [0, 10]
+    assert [k for k, _ in timing_steps([*noisy, 5.0, 0.1, 5.0])] == [0]
+    assert [k for k, _ in timing_steps([1.0, 2.0])] == [0]
+    assert [k for k, _ in timing_steps([0.0] * 6 + [5e-4] * 6)] == [0]
+    assert timing_steps([None, None]) == []
+
+
+def test_random_times_of_one_level_seldom_step() -> None:
+    random = np.random.default_rng(5)
+    series = random.lognormal(0.0, 0.15, (300, 60))
+    assert sum(len(timing_steps(times.tolist())) > 1 for times in series) <= 3
+
+
+def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
+    found = moves(history.read(kept(tmp_path / "h.jsonl")).entries)
+    assert {(m["run"], m["who"], m["case"]) for m in found} == {
+        (4, "scikit-fem", "tip-mass"),
+        (5, CORE, "wright-flapwise"),
+    }
+    assert [m["change"] for m in found] == [pytest.approx(1e-6, rel=1e-6), pytest.approx(1e-5, rel=1e-6)]
+    wright = {(c.omega, c.mode) for c in run().cells if c.case == "wright-flapwise" and c.frequency}
+    assert next(m["count"] for m in found if m["who"] == CORE) == len(wright)
+
+
+def test_times_of_two_machines_are_two_series(tmp_path: Path) -> None:
+    entries = []
+    for k in range(12):
+        cells = tuple(replace(c, seconds=0.1 if k < 6 else 1.0) for c in run().cells if c.case == "tip-mass")
+        entries.append(history.entry(replace(run(), cells=cells), str(k), machine="slow" if k >= 6 else "fast"))
+    assert of_history(history.History(tuple(entries)))["steps"] == []
+    one = tuple(replace(e, machine="one") for e in entries)
+    steps = of_history(history.History(one))["steps"]
+    assert {(s["run"], s["kind"], s["case"]) for s in steps} == {(6, "time", "tip-mass")}
+    assert all(s["change"] == pytest.approx(9.0) for s in steps)
+
+
+def test_every_number_is_in_the_history(tmp_path: Path) -> None:
+    rows = of_history(history.read(kept(tmp_path / "h.jsonl")))["cells"]
+    assert {(r[0], r[1], r[2], r[3]) for r in rows} == {(c.case, c.code, c.omega, c.mode) for c in run().cells}
+    by_key = {tuple(r[:4]): r for r in rows}
+    for c in run().cells:
+        frequencies, verdicts = by_key[c.case, c.code, c.omega, c.mode][5], by_key[c.case, c.code, c.omega, c.mode][7]
+        if c.code == "frame3dd":
+            assert verdicts[6] is None
+        elif (c.case, c.code) != ("tip-mass", "scikit-fem"):
+            assert frequencies == c.frequency
 
 
 def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -129,135 +191,3 @@ def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys:
     for words in ([], [str(tmp_path / "nowhere")], [str(folder), "--history", str(tmp_path / "none.jsonl")]):
         status, out, err = southwell(*words, "--out", str(tmp_path / "other"))
         assert (status, out, err.count("\n")) == (2, "", 1)
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("site")
-    return write({"now": hostile(), "before": run()}, history.read(kept(folder / "h.jsonl")), folder).parent
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        open_ = playwright.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        yield open_
-        open_.close()
-
-
-@pytest.fixture
-def tab(browser: Any) -> Iterator[Any]:
-    """A page whose console must stay silent."""
-    found = browser.new_page(viewport={"width": 1280, "height": 900})
-    said: list[str] = []
-    found.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
-    found.on("pageerror", lambda e: said.append(str(e)))
-    yield found
-    found.close()
-    assert said == []
-
-
-@needs_browser
-def test_every_page_opens_from_the_file_system(tab: Any, site: Path) -> None:
-    pages = sorted(site.rglob("*.html"))
-    assert len(pages) > 20
-    for path in pages:
-        tab.goto(path.as_uri())
-        assert tab.locator("h1").count() == 1
-        assert tab.title() not in ("1", "2")
-
-
-@needs_browser
-def test_a_hostile_name_is_text(tab: Any, site: Path) -> None:
-    tab.goto((site / "index.html").as_uri())
-    assert tab.locator("main img").count() == 0
-    assert tab.locator("table.matrix tbody th").first.inner_text() == HOSTILE
-    tab.goto((site / page(HOSTILE)).as_uri())
-    assert tab.locator("h1").inner_text() == HOSTILE
-    assert tab.locator("main img").count() == 0
-
-
-@needs_browser
-def test_filters_by_mouse(tab: Any, site: Path) -> None:
-    tab.goto((site / "index.html").as_uri())
-    rows = tab.locator("table.matrix tbody tr").count()
-    tab.select_option("select[name=code]", "exudyn-ancf")
-    assert tab.locator("table.matrix thead th").count() == 2
-    tab.select_option("select[name=verdict]", label="✔ pass")
-    assert 1 < tab.locator("table.matrix tbody tr").count() < rows
-    assert tab.locator("table.matrix td.v5").count() == 0
-    tab.select_option("select[name=code]", "")
-    tab.select_option("select[name=family]", "flapwise")
-    tab.select_option("select[name=speed]", "rest")
-    tab.locator("table.matrix td.v3").first.hover()
-    assert "flapwise" in tab.locator("#detail").inner_text()
-    assert "at rest" in tab.locator("#detail").inner_text()
-    tab.select_option("select[name=verdict]", label="✘ fail")
-    assert "No cell is of this kind" in tab.locator("main").inner_text()
-
-
-@needs_browser
-def test_fields_by_keyboard(tab: Any, site: Path) -> None:
-    tab.goto((site / "index.html").as_uri())
-    fields = tab.locator("table.matrix td[tabindex='0']")
-    assert fields.count() == 1
-    fields.focus()
-    before = tab.evaluate("document.activeElement.getAttribute('aria-label')")
-    tab.keyboard.press("ArrowDown")
-    tab.keyboard.press("ArrowRight")
-    after = tab.evaluate("document.activeElement.getAttribute('aria-label')")
-    assert after
-    assert before != after
-    assert after.split(",")[0] in tab.locator("#detail").inner_text()
-    tab.keyboard.press("Enter")
-    tab.wait_for_url(re.compile(r"/case-.*\.html$"))
-
-
-@needs_browser
-def test_a_case_page(tab: Any, site: Path) -> None:
-    tab.goto((site / page("park-cantilever")).as_uri())
-    diagram = tab.locator("svg[aria-label='Campbell diagram']")
-    lines = diagram.locator("polyline").count()
-    tab.get_by_role("button", name="6P").click()
-    assert diagram.locator("polyline").count() == lines + 1
-    assert tab.get_by_role("button", name="6P").get_attribute("aria-pressed") == "true"
-    tab.get_by_role("button", name="6P").press("Enter")
-    assert diagram.locator("polyline").count() == lines
-    play = tab.get_by_role("button", name="play")
-    still = play.get_attribute("aria-pressed")
-    play.click()
-    assert play.get_attribute("aria-pressed") != still
-    shapes = tab.locator("select[name=shape] option")
-    assert shapes.count() == 6
-    tab.select_option("select[name=shape]", "2")
-    tab.select_option("select[name=speed]", label="10 rad/s")
-    assert tab.locator("#differences tbody tr").count() > 30
-    assert tab.locator("#timing tbody tr").count() > 3
-
-
-@needs_browser
-def test_the_history(tab: Any, site: Path) -> None:
-    tab.goto((site / "history.html").as_uri())
-    assert "lines cut short and left out: 8" in tab.locator("main").inner_text()
-    assert tab.locator("#runs tbody tr").count() == 7
-    steps = tab.locator("#steps tbody tr").all_inner_texts()
-    assert len([s for s in steps if "frequency" in s]) == 1
-    assert "commit4" in steps[0]
-    assert "absent" in tab.locator("#moved").inner_text()  # from the sixth to the seventh
-    tab.select_option("select[name=from]", "3")
-    tab.select_option("select[name=to]", "4")
-    assert "1.00e-6" in tab.locator("#moved").inner_text()
-    tab.select_option("select[name=from]", "0")
-    tab.select_option("select[name=to]", "1")
-    assert "No frequency moved" in tab.locator("#moved").inner_text()
-
-
-@needs_browser
-@pytest.mark.parametrize("name", ["index.html", page("park-cantilever"), "codes.html", "history.html"])
-def test_on_a_phone_only_tables_scroll_sideways(browser: Any, site: Path, name: str) -> None:
-    phone = browser.new_page(viewport={"width": 390, "height": 844})
-    phone.goto((site / name).as_uri())
-    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
-    phone.close()

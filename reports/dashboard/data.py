@@ -1,40 +1,53 @@
-"""What the dashboard's pages show, as plain data: one object for the first page, one for each case, one for the history."""
+"""What the pages of a run show, as plain data: one object for the matrix, one for each case, one for each code."""
 
-from collections.abc import Sequence
+import hashlib
+import re
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
-from ...cases import library
-from ...cases.controls import outcomes
-from ...cases.errors import CaseError
+from ...cases.controls import Outcome, outcomes
 from ...cases.results import Cell, Run
-from ...core import sections, solve
-from ...core.blade import Blade
-from ...core.eigen import UnstableError
-from ...core.modes import STATIONS
-from .. import summary
-from ..code_pages import own
+from ...references import codes as registry
+from ...references.codes import UnknownCodeError
+from .. import code_pages, summary
 from ..summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
 from ..units import BY_KEY, Units
+from .moving import moving
 
-ELEMENTS, MODES = 40, 6
-"""Of core's shapes for the moving picture."""
+LONGEST = 80
+"""Of a page's name before its number: file systems end at 255 bytes."""
+
+
+def page(name: str, kind: str = "case") -> str:
+    """File name of a case's or code's page: what is plain in its name, and a number of its own where not all is.
+
+    Two names never share one, not even where the file system tells no capitals from small letters.
+    """
+    plain = re.sub(r"[^a-z0-9.-]", "_", name.lower())[:LONGEST]
+    number = "" if plain == name else "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
+    return f"{kind}-{plain}{number}.html"
+
+
+def verdicts() -> list[dict[str, str]]:
+    """Names and signs, gravest first; cells have their place in this list."""
+    return [{"name": v, "sign": SYMBOL[v]} for v in GRAVEST_FIRST]
 
 
 def first(run: Run, name: str) -> dict[str, Any]:
     """The matrix: every cell in short, cases, columns, what became of core made wrong on purpose."""
-    known, heads = summary.cases(run), columns(run.cells, broad)
+    known, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
     named = labels(run.cells)
     titles = {s.case: s.title for s in run.settings}
     return {
         "run": name,
         "command": run.command,
         "headline": headline(run),
-        "verdicts": [{"name": v, "sign": SYMBOL[v]} for v in GRAVEST_FIRST],
+        "right": summary.status(run) == 0,
+        "verdicts": verdicts(),
         "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in known],
-        "columns": [{"name": h, "shares": shared(run, h)} for h in heads],
+        "columns": [
+            {"name": h, "shares": shared(run, h), "page": page(h, "code") if h in pages else None} for h in heads
+        ],
         "versions": run.versions,
         "cells": [
             [
@@ -49,10 +62,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
             ]
             for c in run.cells
         ],
-        "controls": [
-            {"name": o.mistake.name, "status": o.status, "cases": {name: asdict(c) for name, c in o.cases.items()}}
-            for o in outcomes(run.controls)
-        ],
+        "controls": [_control(o) for o in outcomes(run.controls)],
     }
 
 
@@ -62,21 +72,28 @@ def headline(run: Run) -> str:
     independent = [c for c in run.cells if c.role == "code" and c.verdict in ("pass", "fail", "inconclusive")]
     far = summary.largest(independent)
     where = f" Largest difference of an independent code: {plus_minus(far)} ({far.case}, {far.code})." if far else ""
-    return f"{'Not all is well' if summary.status(run) else 'All is well'}: {len(run.cells)} cells, {counted}.{where}"
+    tried = outcomes(run.controls)
+    caught = sum(o.status == "caught" for o in tried)
+    wrong = f" {caught} of {len(tried)} deliberate mistakes in core are caught." if tried else ""
+    return f"{'Not all is well' if summary.status(run) else 'All is well'}: {len(run.cells)} cells: {counted}.{where}{wrong}"
+
+
+def _control(outcome: Outcome) -> dict[str, Any]:
+    rows = outcome.cases.values()
+    far = max(rows, key=lambda r: abs(r.change or 0.0), default=None)
+    return {
+        "name": outcome.mistake.name,
+        "status": outcome.status,
+        "change": far.change if far else None,
+        "where": f"{far.case}, {far.mode}" if far else "",
+        "caught": list(dict.fromkeys(name for r in rows for name in r.caught)),
+        "cases": [r.case for r in rows if r.caught],
+    }
 
 
 def shared(run: Run, head: str) -> str:
     """What the codes of a column share with core."""
     return ", ".join(dict.fromkeys(c.shares for c in run.cells if broad(c) == head and c.shares))
-
-
-def page(case: str) -> str:
-    """File name of a case's page: letters, digits, dots and hyphens of its name, the rest by number."""
-    return (
-        "case-"
-        + "".join(ch if ch.isascii() and (ch.isalnum() or ch in "-.") else f"_{ord(ch):x}_" for ch in case)
-        + ".html"
-    )
 
 
 def units(run: Run, case: str) -> Units:
@@ -86,7 +103,7 @@ def units(run: Run, case: str) -> Units:
 
 
 def of_case(run: Run, case: str) -> dict[str, Any]:
-    """Everything of one case: its words, cells, refinements, and core's shapes at its highest speed."""
+    """Everything of one case: its words, cells, refinements, and core's shapes at its lowest and highest speed."""
     u = units(run, case)
     cells = [c for c in run.cells if c.case == case]
     named = labels(run.cells)
@@ -97,7 +114,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
         "speed": u.speed,
         "frequency": u.frequency,
         "perSpeed": u.frequencies / u.speeds,
-        "verdicts": [{"name": v, "sign": SYMBOL[v]} for v in GRAVEST_FIRST],
+        "verdicts": verdicts(),
         "columns": columns(cells),
         "cells": [_cell(c, named.get(c, ""), u) for c in cells],
         "levels": [
@@ -105,7 +122,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
             for v in run.levels
             if v.case == case
         ],
-        "shapes": shapes(case, max((c.omega for c in cells), default=0.0), u),
+        "shapes": moving(case, cells, u),
     }
 
 
@@ -119,10 +136,7 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
         "mode": c.mode,
         "name": name,
         "verdict": GRAVEST_FIRST.index(c.verdict),
-        "size": size(c),
         "text": plus_minus(c) if size(c) is not None else "",
-        "u": c.uncertainty,
-        "target": c.target,
         "reason": c.reason,
         "elements": c.elements,
         "order": c.order,
@@ -130,63 +144,64 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
     }
 
 
-def shapes(case: str, omega: float, u: Units) -> dict[str, Any] | None:
-    """Core's modes for the moving picture: places at rest (21, 3), and displacements, real and imaginary (21, 3) each.
-
-    None where the case is not one of the package's blades, or its files are not here.
-    """
-    blade = _blade(case)
-    if blade is None:
-        return None
-    try:
-        found = solve.modes(blade, omega, ELEMENTS, MODES)
-    except UnstableError:
-        return None
-    rest = sections.frames(blade, STATIONS * blade.length)[:, :3, 3]
-    largest = np.abs(found.shapes[:, :, :3]).max(axis=(1, 2))
-    moved = found.shapes[:, :, :3] / np.where(largest > 0, largest, 1.0)[:, None, None] * 0.12 * blade.length
-    return {
-        "speed": omega * u.speeds,
-        "omega": omega,
-        "length": blade.length + blade.hub_radius,
-        "rest": rest.round(6).tolist(),
-        "modes": [
-            {"f": f * u.frequencies, "re": m.real.round(6).tolist(), "im": m.imag.round(6).tolist()}
-            for f, m in zip(found.frequencies.tolist(), moved, strict=True)
-        ],
-    }
-
-
-def _blade(case: str) -> Blade | None:
-    stem = case.partition("/")[0]
-    if stem not in library.names():
-        return None
-    try:
-        return next((v.blade for v in library.load(stem).variants if v.name == case), None)
-    except CaseError:
-        return None
+def code_names(run: Run) -> list[str]:
+    """Codes that have a page: all with answers of their own, or a reason for none."""
+    return list(dict.fromkeys(c.code for c in run.cells if c.role in code_pages.ROLES))
 
 
 def codes(run: Run) -> list[dict[str, Any]]:
-    """Of every code: version, what it shares with core, its cells by verdict, and its worst difference on every blade."""
-    names = list(dict.fromkeys(c.code for c in run.cells if c.role in ("code", "same discretisation")))
-    return [_code(run, name) for name in names]
+    """All codes in a line each."""
+    out = []
+    for name in code_names(run):
+        cells = code_pages.own(run, name)
+        far = summary.largest(cells)
+        out.append(
+            {
+                "name": name,
+                "page": page(name, "code"),
+                "title": _known(name).get("title", name),
+                "version": run.versions.get(name, ""),
+                "shares": shared(run, name),
+                "counts": [[GRAVEST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
+                "worst": f"{plus_minus(far)} ({far.case})" if far else "",
+                "defects": len(code_pages.defects(name)),
+            }
+        )
+    return out
 
 
-def _code(run: Run, name: str) -> dict[str, Any]:
-    cells: Sequence[Cell] = own(run, name)
+def of_code(run: Run, name: str) -> dict[str, Any]:
+    """One code: version, what it shares with core and leaves out, its worst difference on every blade, known defects."""
+    cells, named = code_pages.own(run, name), labels(run.cells)
     worst = []
-    for case in summary.cases(run):
+    for case in dict.fromkeys(c.case for c in cells):
         mine = [c for c in cells if c.case == case]
-        far = summary.worst(mine) if mine else None
-        if mine:
-            verdict = summary.gravest(mine)
-            text = plus_minus(far) if far else mine[0].reason
-            worst.append([case, page(case), GRAVEST_FIRST.index(verdict), text])
+        far = summary.worst(mine)
+        where = f"{named[far]}, {units(run, case).at(far.omega)}" if far else ""
+        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in mine))
+        verdict = GRAVEST_FIRST.index(summary.gravest(mine))
+        worst.append([case, page(case), verdict, len(mine), plus_minus(far) if far else "", where, reason])
     return {
         "name": name,
         "version": run.versions.get(name, ""),
         "shares": shared(run, name),
-        "counts": {v: n for v, n in summary.counts(cells).items() if n},
+        "verdicts": verdicts(),
         "worst": worst,
+        "defects": [
+            {"what": d.what, "avoided": d.avoided, "script": f"references/defects/{d.script}.py"}
+            for d in code_pages.defects(name)
+        ],
+        "title": name,
+        **_known(name),
     }
+
+
+def _known(name: str) -> dict[str, str]:
+    """What the adapter says of itself; nothing of a code that is not known here, as in another's results."""
+    if name not in registry.names():
+        return {}
+    try:
+        code = registry.code(name)
+    except UnknownCodeError:
+        return {}
+    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint}

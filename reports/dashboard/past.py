@@ -1,70 +1,134 @@
-"""The history as plain data: what every frequency, difference and timing was, run by run, and where they stepped."""
+"""The history as plain data: what every frequency, difference and timing was, run by run, where they stepped, and who moved.
+
+A difference is ``code/core − 1``, so each cell also says what core was: where it is core that moved, core is named.
+"""
 
 from collections import defaultdict
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf
 from typing import Any
 
-from ...cases.history import Entry, History
+from ...cases.gate import MOVED
+from ...cases.history import Entry, History, Key
+from ..summary import GRAVEST_FIRST
+from .data import verdicts
 from .steps import frequency_steps, timing_steps
+
+CORE = "core"
 
 
 def of_history(history: History) -> dict[str, Any]:
-    """Frequencies that never moved are one number; those that did are a number a run."""
+    """All numbers; of what is the same in every run, one number for all."""
     entries = history.entries
+    cells, timings = _cells(entries), _timings(entries)
     return {
-        "runs": [{"commit": e.commit, "date": e.date, "machine": e.machine, "versions": e.versions} for e in entries],
+        "runs": [_run(e) for e in entries],
         "torn": list(history.torn),
-        "frequencies": _frequencies(entries),
-        "timings": _timings(entries),
-        "verdicts": [_verdicts(e) for e in entries],
-        "controls": [sorted({c.control for c in e.controls if c.caught}) for e in entries],
+        "verdicts": verdicts(),
+        "steps": [*moves(entries), *_slower(timings)],
+        "cells": cells,
+        "timings": timings,
     }
 
 
-def _frequencies(entries: tuple[Entry, ...]) -> list[dict[str, Any]]:
-    series: dict[tuple[str, str, float, int], list[Any]] = defaultdict(lambda: [None] * len(entries))
+def _run(e: Entry) -> dict[str, Any]:
+    return {
+        "commit": e.commit,
+        "date": e.date,
+        "machine": e.machine,
+        "versions": e.versions,
+        "counts": [[k, n] for k, v in enumerate(GRAVEST_FIRST) if (n := sum(p.verdict == v for p in e.cells))],
+        "caught": len({c.control for c in e.controls if c.caught}),
+        "controls": len({c.control for c in e.controls}),
+    }
+
+
+def _by_key(entries: Sequence[Entry]) -> dict[Key, list[Any]]:
+    series: dict[Key, list[Any]] = defaultdict(lambda: [None] * len(entries))
     for k, entry in enumerate(entries):
-        for c in entry.cells:
-            if c.frequency is not None:
-                series[c.case, c.code, c.omega, c.mode][k] = c
+        for point in entry.cells:
+            series[point.key][k] = point
+    return series
+
+
+def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
+    """Case, code, speed (rad/s), mode, family, then frequencies, differences, verdicts: a list by run, or one for all."""
     out = []
-    for (case, code, omega, mode), points in series.items():
+    for (case, code, omega, mode), points in _by_key(entries).items():
+        there = [p for p in points if p is not None]
         values = [None if p is None else p.frequency for p in points]
-        steps = frequency_steps(values)
-        gone = [k for k, p in enumerate(points) if p is None]
-        if not steps and not gone:
-            continue
-        out.append(
-            {
-                "case": case,
-                "code": code,
-                "omega": omega,
-                "mode": mode,
-                "values": values,
-                "differences": [None if p is None else p.difference for p in points],
-                "steps": steps,
-            }
-        )
+        differences = [None if p is None else p.difference for p in points]
+        judged = [None if p is None else GRAVEST_FIRST.index(p.verdict) for p in points]
+        family = there[-1].family
+        out.append([case, code, omega, mode, family, _short(values), _short(differences, 1.0), _short(judged)])
     return out
 
 
-def _timings(entries: tuple[Entry, ...]) -> list[dict[str, Any]]:
-    """Seconds of each code on each case: of all its speeds."""
-    series: dict[tuple[str, str], list[float | None]] = defaultdict(lambda: [None] * len(entries))
+def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
+    """One value where all runs have the same, to rounding; ``scale``: of a number that is itself relative."""
+    one = values[0]
+    if one is None:
+        return None if all(v is None for v in values) else list(values)
+    near = MOVED * abs(one if scale is None else scale)
+    return one if all(v is not None and abs(v - one) <= near for v in values) else list(values)
+
+
+def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
+    """Where frequencies stepped: a row for each run, mover (a code, or core) and case."""
+    found: dict[tuple[int, str, str], dict[tuple[float, int], float | None]] = defaultdict(dict)
+    for (case, code, omega, mode), points in _by_key(entries).items():
+        own = [None if p is None else p.frequency for p in points]
+        core = [
+            None if p is None or p.frequency is None or p.difference is None else p.frequency / (1.0 + p.difference)
+            for p in points
+        ]
+        for who, values in ((code, own), (CORE, core)):
+            for k in frequency_steps(values):
+                before = next(v for v in reversed(values[:k]) if v is not None)
+                found[k, who, case][omega, mode] = _change(before, values[k])
+    out = []
+    for (k, who, case), where in found.items():
+        (omega, mode), change = max(where.items(), key=_size)
+        step = {"run": k, "kind": "frequency", "who": who, "case": case, "count": len(where)}
+        out.append({**step, "change": change, "omega": omega, "mode": mode})
+    return out
+
+
+def _change(before: float | None, after: float | None) -> float | None:
+    """Relative; None from nothing."""
+    return after / before - 1.0 if before and after is not None else None
+
+
+def _size(item: tuple[Any, float | None]) -> float:
+    return inf if item[1] is None else abs(item[1])
+
+
+def _timings(entries: Sequence[Entry]) -> list[dict[str, Any]]:
+    """Seconds of each code on each case, of all its speeds; each machine by itself, for only those can be compared."""
+    series: dict[tuple[str, str, str], list[float | None]] = defaultdict(lambda: [None] * len(entries))
     for k, entry in enumerate(entries):
         spent: dict[tuple[str, str], dict[float, float]] = defaultdict(dict)
-        for c in entry.cells:
-            if c.seconds is not None:
-                spent[c.case, c.code][c.omega] = c.seconds
-        for key, by_speed in spent.items():
-            series[key][k] = round(sum(by_speed.values()), 4)
+        for p in entry.cells:
+            if p.seconds is not None:
+                spent[p.case, p.code][p.omega] = p.seconds
+        for (case, code), by_speed in spent.items():
+            series[case, code, entry.machine][k] = round(sum(by_speed.values()), 6)
     return [
-        {"case": case, "code": code, "values": values, "steps": timing_steps(values)}
-        for (case, code), values in series.items()
+        {"case": case, "code": code, "machine": machine, "values": values, "steps": timing_steps(values)}
+        for (case, code, machine), values in series.items()
     ]
 
 
-def _verdicts(entry: Entry) -> dict[str, int]:
-    out: dict[str, int] = defaultdict(int)
-    for c in entry.cells:
-        out[c.verdict] += 1
-    return dict(out)
+def _slower(timings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each run and code: in how many cases, and the largest change, and where."""
+    found: dict[tuple[int, str], dict[str, float | None]] = defaultdict(dict)
+    for t in timings:
+        for (_, before), (k, after) in pairwise(t["steps"]):
+            found[k, t["code"]][t["case"]] = _change(before, after)
+    out = []
+    for (k, code), where in found.items():
+        case, change = max(where.items(), key=_size)
+        step = {"run": k, "kind": "time", "who": code, "case": case, "count": len(where)}
+        out.append({**step, "change": change, "omega": None, "mode": None})
+    return out

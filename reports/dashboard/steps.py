@@ -4,14 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-MOVED = 1e-9
-"""Relative: what frequencies may differ by from run to run."""
+from ...cases.gate import MOVED
 
-BEFORE, AFTER = 4, 2
+BEFORE, AFTER = 4, 3
 """Runs on either side that a step of a timing needs."""
 
 SPREADS, LEAST = 5.0, 0.2
 """A timing's step is more than this many standard deviations (estimated from medians), and this part of what was before."""
+
+TICK = 1e-3
+"""Seconds: a shorter change of a time is none."""
 
 SIGMA = 1.4826
 """Standard deviation over median absolute deviation, of a normal distribution (Hampel 1974)."""
@@ -29,23 +31,24 @@ def frequency_steps(values: Sequence[float | None]) -> list[int]:
     return out
 
 
-def timing_steps(seconds: Sequence[float | None]) -> list[int]:
-    """Where a timing's level changes: the median of the runs from there on against the median and spread of those before.
+def timing_steps(seconds: Sequence[float | None]) -> list[tuple[int, float]]:
+    """The levels a timing had: where each begins, and its median; more than one if there was a step.
 
-    A single slow run is no step: at least ``AFTER`` runs must follow it at the new level, and ``BEFORE`` stand before.
+    A step is where ``AFTER`` runs on end lie beyond the scatter of the level before, on one side of it, and ``BEFORE`` runs
+    tell what that level was: a single slow run is none, nor are two.
     """
     at = [k for k, value in enumerate(seconds) if value is not None]
     values = np.array([seconds[k] for k in at], float)
-    out, begin, k = [], 0, BEFORE
+    begins, k = [0], BEFORE
     while k <= len(values) - AFTER:
-        before, after = values[begin:k], values[k : k + max(AFTER, 3)]
+        before, after = values[begins[-1] : k], values[k : k + AFTER]
         level = float(np.median(before))
         spread = SIGMA * float(np.median(np.abs(before - level)))
-        beyond = np.abs(after - level) > max(SPREADS * spread, LEAST * level)
-        same_side = np.ptp(np.sign(after - level)) == 0
-        if beyond.all() and same_side:
-            out.append(at[k])
-            begin, k = k, k + BEFORE
+        away = (after - level) / max(SPREADS * spread, LEAST * level, TICK)
+        if (away > 1).all() or (away < -1).all():
+            begins.append(k)
+            k += BEFORE
         else:
             k += 1
-    return out
+    ends = [*begins[1:], len(values)]
+    return [(at[a], float(np.median(values[a:b]))) for a, b in zip(begins, ends, strict=True)] if at else []

@@ -1,4 +1,4 @@
-"""Writes the site: a page for the matrix, for each case, for the codes, for the history; style and scripts beside them."""
+"""Writes the site: a page for the matrix, for each case and code, for the history; style and scripts beside them."""
 
 import json
 from importlib.resources import files
@@ -14,7 +14,16 @@ from .. import summary
 from . import data
 from .past import of_history
 
-ASSETS = ("dashboard.css", "dashboard.js", "charts.js")
+SCRIPTS = {
+    "matrix": ("page.js", "grid.js", "matrix.js"),
+    "case": ("page.js", "grid.js", "charts.js", "rotor.js", "case.js"),
+    "codes": ("page.js", "codes.js"),
+    "code": ("page.js", "codes.js"),
+    "history": ("page.js", "charts.js", "history.js"),
+}
+"""What a page of each kind needs; the last draws it."""
+
+ASSETS = ("dashboard.css", *dict.fromkeys(name for names in SCRIPTS.values() for name in names))
 
 
 def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
@@ -31,32 +40,27 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
     for k, (name, run) in enumerate(runs.items()):
         here = folder / f"run-{k + 1}" if k else folder
         up = "../" if k else ""
-        _run(
-            run,
-            name,
-            here,
-            {"up": up, "runs": {n: up + path for n, path in starts.items()}, "past": history is not None},
-        )
+        links = {n: up + path for n, path in starts.items()}
+        _run(run, name, here, {"up": up, "runs": links, "here": name, "past": history is not None})
     if history is not None:
-        shared = {"up": "", "runs": starts, "past": True}
+        shared = {"up": "", "runs": starts, "here": "", "past": True}
         (folder / "history.html").write_text(_page("history", "History", of_history(history), shared), encoding="utf-8")
     return folder / "index.html"
 
 
 def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
+    codes = {"codes": data.codes(run), "verdicts": data.verdicts()}
     pages = {
         "index.html": _page("matrix", name, data.first(run, name), shared),
-        "codes.html": _page("codes", f"Codes · {name}", {"codes": data.codes(run), "verdicts": _verdicts()}, shared),
+        "codes.html": _page("codes", f"Codes · {name}", codes, shared),
     }
+    for code in data.code_names(run):
+        pages[data.page(code, "code")] = _page("code", f"{code} · {name}", data.of_code(run, code), shared)
     for case in summary.cases(run):
         pages[data.page(case)] = _page("case", f"{case} · {name}", data.of_case(run, case), shared)
     for path, text in pages.items():
         (folder / path).write_text(text, encoding="utf-8")
-
-
-def _verdicts() -> list[dict[str, str]]:
-    return [{"name": v, "sign": summary.SYMBOL[v]} for v in summary.GRAVEST_FIRST]
 
 
 def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:
@@ -71,4 +75,5 @@ def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]
     text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     for sign in "<>&\u2028\u2029":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
-    return environment.get_template("page.html.jinja").render(kind=kind, title=title, data=Markup(text), **shared)
+    template = environment.get_template("page.html.jinja")
+    return template.render(kind=kind, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)

@@ -1,0 +1,84 @@
+"""Core's mode shapes for the moving picture; they are not among a run's rows, and are solved for when the site is written."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ...cases import library
+from ...cases.errors import CaseError
+from ...cases.pairing import aligned, families, weights
+from ...cases.results import Cell
+from ...core import sections
+from ...core.blade import Blade
+from ...core.chain import SteadyStateError
+from ...core.eigen import UnstableError
+from ...core.modes import STATIONS, Modes
+from ...core.solve import modes
+from ..units import Units
+
+ELEMENTS, COUNT = 40, 6
+
+FARTHEST, STEEPEST = 0.12, 0.5
+"""What a shape is scaled to: displacement over the rotor's radius, and turning in rad, whichever comes first."""
+
+HALF_CHORD = 0.035
+"""Of the ribbon that stands for the blade, over the rotor's radius: the rows know no chord."""
+
+SAME = 0.01
+"""Relative: a blade of this name whose frequencies differ more from the run's is another blade."""
+
+
+def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
+    """Modes at the lowest and highest speed: lengths over the rotor's radius, in the hub's axes.
+
+    ``rest`` and ``across`` (21, 3): places, and the half chord; a mode's ``re`` and ``im`` (21, 4): displacement, and turning
+    about the blade. None where the case is not one of the package's blades, or its files are not here, or the run was of
+    another blade of this name.
+    """
+    blade = _blade(case)
+    if blade is None:
+        return None
+    radius, weight = blade.length + blade.hub_radius, weights(blade)
+    solved = []
+    for omega in sorted({min(c.omega for c in cells), max(c.omega for c in cells)}):
+        try:
+            found = modes(blade, omega, ELEMENTS, COUNT)
+        except (SteadyStateError, UnstableError):
+            continue
+        if not _same(found, cells):
+            return None
+        solved.append(_at(aligned(found, weight), families(aligned(found, weight), weight), radius, u))
+    frames = sections.frames(blade, STATIONS * blade.length)
+    return {
+        "rest": (frames[:, :3, 3] / radius).round(5).tolist(),
+        "across": (HALF_CHORD * frames[:, :3, 1]).round(5).tolist(),
+        "speeds": solved,
+    }
+
+
+def _at(found: Modes, names: Sequence[str], radius: float, u: Units) -> dict[str, Any]:
+    out = []
+    for k, (name, shape) in enumerate(zip(names, found.shapes, strict=True)):
+        far, steep = np.abs(shape[:, :3]).max() / radius / FARTHEST, np.abs(shape[:, 3]).max() / STEEPEST
+        scaled = shape / [radius, radius, radius, 1.0] / max(far, steep)
+        label = f"{name} {1 + list(names[:k]).count(name)}"
+        f = float(found.frequencies[k]) * u.frequencies
+        out.append({"name": label, "f": f, "re": scaled.real.round(5).tolist(), "im": scaled.imag.round(5).tolist()})
+    return {"speed": found.omega * u.speeds, "modes": out}
+
+
+def _same(found: Modes, cells: Sequence[Cell]) -> bool:
+    """Whether the run's lowest frequency at this speed is among those found."""
+    known = [c.full for c in cells if c.omega == found.omega and c.full is not None]
+    return not known or bool(np.abs(found.frequencies / min(known) - 1.0).min() < SAME)
+
+
+def _blade(case: str) -> Blade | None:
+    stem = case.partition("/")[0]
+    if stem not in library.names():
+        return None
+    try:
+        return next((v.blade for v in library.load(stem).variants if v.name == case), None)
+    except CaseError:
+        return None

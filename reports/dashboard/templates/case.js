@@ -1,0 +1,143 @@
+"use strict";
+// A case: its words, Campbell diagram, convergence, moving mode shapes, times, every mode and code.
+
+const solved = DATA.cells.filter((c) => c.f !== null && c.mode);
+const inWords = (speed) => at(speed, DATA.speed);
+
+function casePage() {
+  const s = DATA.setting;
+  MAIN.append(make("h1", {}, DATA.name));
+  if (s) MAIN.append(make("p", {}, s.title), make("p", { class: "muted" }, s.description),
+    make("p", { class: "muted" }, Object.entries(s.facts).map(([k, v]) => `${k}: ${v}`).join(" · ")), make("p", { class: "muted" }, `Source: ${s.source}`));
+  differences();
+  MAIN.append(make("div", { class: "pair" }, campbell(), viewer(), convergence(), timing()));
+  everything();
+}
+
+function differences() {
+  const speeds = unique(DATA.cells.map((c) => c.speed)).sort((a, b) => a - b);
+  const place = make("div", {}), detail = make("div", { id: "detail", "aria-live": "polite" });
+  const draw = (speed) => {
+    const here = DATA.cells.filter((c) => c.speed === Number(speed)), modes = unique(here.filter((c) => c.mode).sort((a, b) => a.mode - b.mode).map((c) => c.name));
+    const columns = DATA.columns.filter((name) => here.some((c) => c.code === name));
+    const silent = columns.filter((name) => !here.some((c) => c.code === name && c.mode));
+    const field = (name, code) => {
+      const c = here.find((cell) => cell.code === code && (cell.name === name || !cell.mode));
+      return c ? { verdict: c.verdict, text: c.text, label: `${name}, ${code}: ${DATA.verdicts[c.verdict].name} ${c.text}`,
+        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${DATA.frequency}, core ${digits(c.ref, 8)}`,
+          c.reason ? make("p", { class: "muted" }, c.reason) : null] } : null;
+    };
+    const answering = columns.filter((name) => !silent.includes(name));
+    const core = (name) => here.find((c) => c.name === name && c.full !== null)?.full;
+    place.replaceChildren(modes.length ? grid("mode", modes.map((name) => make("span", {}, name, make("small", {}, core(name) ? ` ${digits(core(name), 6)}` : ""))), answering, modes.map((name) => answering.map((code) => field(name, code))), detail) : make("p", {}, "No code has an answer at this speed."),
+      silent.length ? make("p", { class: "muted" }, "No answer: ", ...silent.flatMap((name) => { const c = here.find((cell) => cell.code === name); return [`${name} (${sign(c.verdict)}: ${c.reason}). `]; })) : "");
+  };
+  MAIN.append(make("h2", {}, "Difference ± uncertainty"), make("div", { class: "filters" }, chooser("speed", speeds.map((v) => [v, inWords(v)]), draw, "speed", speeds.at(-1))), place, detail,
+    make("p", { class: "muted" }, `Beside each mode: core with all effects, ${DATA.frequency}. A known difference is from that; every other from core with the code's own effects.`));
+  draw(speeds.at(-1));
+}
+
+function campbell() {
+  const names = unique(solved.map((c) => c.name)), on = new Set([1, 2, 3]), place = make("div", {});
+  let code = "";
+  const toggle = (n) => make("button", { "aria-pressed": String(on.has(n)), onclick: (event) => {
+    if (!on.delete(n)) on.add(n);
+    event.currentTarget.setAttribute("aria-pressed", String(on.has(n)));
+    draw();
+  } }, `${n}P`);
+  const last = Math.max(...solved.map((c) => c.speed));
+  const controls = make("div", { class: "filters", role: "group", "aria-label": "Lines and marks" },
+    last > 0 ? make("span", { class: "group" }, ...[1, 2, 3, 4, 5, 6, 9, 12].map(toggle)) : null,
+    chooser("marks", [["", "all codes"], ["none", "none"], ...unique(solved.map((c) => c.code)).map((c) => [c, c])], (v) => { code = v; draw(); }, "marks"));
+  function draw() {
+    const core = names.map((name, k) => ({ name, colour: colour(k), dash: dash(k),
+      points: [...new Map(solved.filter((c) => c.name === name && c.full !== null).map((c) => [c.speed, c.full]))].sort((a, b) => a[0] - b[0]) }));
+    const top = Math.max(...core.flatMap((c) => c.points.map((p) => p[1])));
+    const rays = last > 0 ? [...on].sort((a, b) => a - b).map((n) => {
+      const end = Math.min(last, top / (n * DATA.perSpeed));
+      return { name: `${n}P`, end: `${n}P`, colour: "#8a949e", width: 1, quiet: true, points: [[0, 0], [end, n * DATA.perSpeed * end]] };
+    }) : [];
+    const dots = names.map((name, k) => ({ name, colour: colour(k), marks: true, line: false,
+      points: solved.filter((c) => c.name === name && (!code || c.code === code)).map((c) => [c.speed, c.f]) }));
+    const drawing = chart([...rays, ...core, ...dots], { x: `rotor speed, ${DATA.speed}`, y: `frequency, ${DATA.frequency}`, yMin: 0, label: "Campbell diagram" });
+    place.replaceChildren(drawing, legend(core));
+  }
+  const block = make("section", {}, make("h2", {}, "Campbell diagram"));
+  if (!solved.length) { block.append(make("p", { class: "muted" }, "No code has an answer.")); return block; }
+  draw();
+  block.append(controls, place, make("p", { class: "muted" }, "Lines: core, all effects. Points: the codes' answers. nP: n per revolution."));
+  return block;
+}
+
+function convergence() {
+  const split = (key) => key.split("|").map(Number);
+  const block = make("section", {}, make("h2", {}, "Convergence")), place = make("div", {});
+  const keys = unique(DATA.levels.map((v) => `${v[1]}|${v[2]}`)).sort((a, b) => split(b)[0] - split(a)[0] || split(a)[1] - split(b)[1]);
+  if (!keys.length) { block.append(make("p", { class: "muted" }, "No refinements in this run.")); return block; }
+  const named = ([speed, mode]) => `${DATA.cells.find((c) => c.speed === speed && c.mode === mode)?.name || `mode ${mode}`}, ${inWords(speed)}`;
+  function draw(key) {
+    const [speed, mode] = split(key), levels = DATA.levels.filter((v) => v[1] === speed && v[2] === mode);
+    const series = unique(levels.map((v) => v[0])).map((code, k) => {
+      const core = DATA.cells.find((c) => c.code === code && c.speed === speed && c.mode === mode)?.ref;
+      const points = levels.filter((v) => v[0] === code && core).map((v) => [v[3], Math.max(Math.abs(v[4] / core - 1), 1e-14)]).sort((a, b) => a[0] - b[0]);
+      return { name: code, colour: colour(k), dash: dash(k), points, marks: true };
+    }).filter((s) => s.points.length);
+    place.replaceChildren(chart(series, { x: "elements, or terms of a series", y: "difference from core, relative", logX: true, logY: true, label: "Convergence" }), legend(series));
+  }
+  block.append(make("div", { class: "filters" }, chooser("mode", keys.map((key) => [key, named(split(key))]), draw, "convergence")), place,
+    make("p", { class: "muted" }, "Each refinement against core with the same effects, converged."));
+  draw(keys[0]);
+  return block;
+}
+
+function viewer() {
+  const block = make("section", {}, make("h2", {}, "Mode shapes")), shapes = DATA.shapes;
+  if (!shapes || !shapes.speeds.length) {
+    block.append(make("p", { class: "muted" }, "Not drawn: the case is not one of the package's own blades as this run had it, or its files are not here."));
+    return block;
+  }
+  const canvas = make("canvas", { width: 900, height: 520, role: "img", "aria-label": "A blade moving in one of its modes while the rotor turns" });
+  const picture = rotor(canvas, shapes), still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  let speed = shapes.speeds.length - 1, mode = 0, playing = !still;
+  const show = () => picture.show(shapes.speeds[speed].modes[mode], shapes.speeds[speed].speed !== 0);
+  const list = () => shapes.speeds[speed].modes.map((m, k) => make("option", { value: k }, `${m.name}: ${digits(m.f, 5)} ${DATA.frequency}`));
+  const button = make("button", { "aria-pressed": String(playing), onclick: () => {
+    playing = !playing;
+    button.setAttribute("aria-pressed", String(playing));
+    picture.play(playing);
+  } }, "move");
+  const modes = chooser("mode", [], (v) => { mode = Number(v); show(); }, "shape"), select = modes.querySelector("select");
+  const speeds = chooser("at", shapes.speeds.map((s, k) => [k, inWords(s.speed)]), (v) => {
+    speed = Number(v);
+    mode = Math.min(mode, shapes.speeds[speed].modes.length - 1);
+    select.replaceChildren(...list());
+    select.value = mode;
+    show();
+  }, "shape-speed", speed);
+  select.replaceChildren(...list());
+  show();
+  picture.play(playing);
+  block.append(make("div", { class: "filters" }, button, modes, speeds), canvas,
+    make("p", { class: "muted" }, "Core's shapes, about the steady state. Amplitude, chord, and both rates are for the eye; thick: the leading edge. Upwards: the rotor's axis."));
+  return block;
+}
+
+function timing() {
+  const spent = new Map(DATA.cells.filter((c) => c.seconds).map((c) => [JSON.stringify([c.code, c.speed]), [c.code, c.seconds]]));
+  const lines = unique([...spent.values()].map(([code]) => code)).map((code) => {
+    const all = [...spent.values()].filter(([name]) => name === code).map(([, seconds]) => seconds).sort((a, b) => a - b);
+    return [code, all[Math.floor(all.length / 2)], all.reduce((a, b) => a + b, 0)];
+  }).sort((a, b) => b[2] - a[2]);
+  const longest = Math.max(...lines.map((l) => l[2]));
+  return make("section", {}, make("h2", {}, "Time"), make("p", { class: "muted" }, "Of the finest solution, while other codes ran beside it: a hint, not a measurement."),
+    lines.length ? table(["code", "median, s", "all speeds, s", ""], lines.map(([code, median, sum]) => row(code, digits(median, 2), digits(sum, 2),
+      make("td", { class: "bar" }, make("span", { style: `width:${(100 * sum / longest).toFixed(1)}%` })))), { id: "timing" }) : make("p", { class: "muted" }, "No times in this run."));
+}
+
+function everything() {
+  const lines = DATA.cells.map((c) => row(inWords(c.speed), c.name, c.code, judged(c.verdict), c.text, digits(c.f, 8), c.elements, digits(c.order, 3), make("td", { class: "reason" }, c.reason)));
+  MAIN.append(make("details", {}, make("summary", {}, `Every number: ${lines.length} cells`),
+    table(["speed", "mode", "code", "verdict", "difference ± uncertainty", `frequency, ${DATA.frequency}`, "elements", "order", "why"], lines, { id: "everything" })));
+}
+
+casePage();

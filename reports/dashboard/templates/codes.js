@@ -1,0 +1,25 @@
+"use strict";
+// All codes in a table; one code: what it is, its worst difference on every blade, what it gets wrong.
+
+const prose = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", {}, part) : part));
+
+function codes() {
+  MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share core's mechanical model or discretisation are one witness of the implementation, not several of the answer."),
+    table(["code", "", "version", "shares with core", "cells", "largest difference", "known defects"], DATA.codes.map((code) => row(link(code.page, code.name),
+      code.title, code.version, code.shares, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join("  "), code.worst, code.defects || "")), { id: "codes" }),
+    make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
+}
+
+function code() {
+  MAIN.append(make("h1", {}, DATA.title), make("p", {}, make("code", {}, DATA.name), ` · version ${DATA.version || "unknown"} · shares with core: ${DATA.shares || "not said in these results"}`,
+    DATA.lacks === undefined ? "" : ` · leaves out: ${DATA.lacks || "nothing"}`));
+  if (DATA.hint && DATA.version === "not installed") MAIN.append(make("p", { class: "muted" }, `To install: ${DATA.hint}`));
+  MAIN.append(make("h2", {}, "The largest difference, blade by blade"),
+    table(["case", "gravest verdict", "cells", "difference ± uncertainty", "where", "why"], DATA.worst.map(([name, page, v, n, text, where, why]) =>
+      row(link(page, name), judged(v), n, text, where, make("td", { class: "reason" }, why))), { id: "worst" }),
+    make("h2", {}, "Known defects"));
+  if (!DATA.defects.length) MAIN.append(make("p", { id: "defects" }, "None known."));
+  else MAIN.append(make("ul", { id: "defects" }, ...DATA.defects.map((d) => make("li", {}, ...prose(d.what), make("p", { class: "muted" }, "Here: ", ...prose(d.avoided), " Reproducer: ", make("code", {}, d.script), ".")))));
+}
+
+({ codes, code })[document.body.dataset.page]();

@@ -1,0 +1,131 @@
+"use strict";
+// The history: the runs, who moved what between two of them, where numbers stepped, and every number run by run.
+
+const RUNS = DATA.runs, MOVED = 1e-9, MOST = 400;
+const [CASE, CODE, OMEGA, MODE, FAMILY, VALUES, DIFFERENCES, VERDICTS] = [0, 1, 2, 3, 4, 5, 6, 7];
+const of = (values, k) => (Array.isArray(values) ? values[k] : values);
+const date = (run) => run.date.slice(0, 16).replace("T", " ");
+const named = (k) => `${k + 1}: ${RUNS[k].commit.slice(0, 10)}, ${date(RUNS[k]).slice(0, 10)}`;
+const where = (mode, family, omega) => `${mode}${family ? ` (${family})` : ""}, ${at(omega, "rad/s")}`;
+
+function versions(from, to) {
+  const a = RUNS[from].versions, b = RUNS[to].versions;
+  return unique([...Object.keys(a), ...Object.keys(b)]).filter((n) => a[n] !== b[n]).map((n) => `${n} ${a[n] || "absent"} → ${b[n] || "absent"}`).join(", ");
+}
+
+function historyPage() {
+  MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.torn.length ? `; lines cut short and left out: ${DATA.torn.join(", ")}` : ""));
+  if (!RUNS.length) return;
+  MAIN.append(table(["run", "commit", "date, UTC", "cells", "mistakes caught", "machine", "new versions"], RUNS.map((r, k) => row(k + 1, make("td", { title: r.commit }, r.commit.slice(0, 12)), date(r),
+    make("td", {}, ...r.counts.map(([v, n]) => make("span", { class: `chip v${v}`, title: DATA.verdicts[v].name }, `${n} ${DATA.verdicts[v].sign}`))),
+    r.controls ? `${r.caught} of ${r.controls}` : "", r.machine, make("td", { class: "reason" }, k ? versions(k - 1, k) : ""))).reverse(), { id: "runs" }),
+    make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
+  between();
+  steps();
+  numbers();
+}
+
+// What moved in one cell: the code's own frequency, core's (from the difference), the verdict, whether it has an answer.
+function change(cell, from, to) {
+  const [x, y, dx, dy] = [of(cell[VALUES], from) ?? null, of(cell[VALUES], to) ?? null, of(cell[DIFFERENCES], from) ?? null, of(cell[DIFFERENCES], to) ?? null];
+  const both = x !== null && y !== null, code = both && x ? y / x - 1 : null;
+  const core = both && x && dx !== null && dy !== null ? (y / (1 + dy)) / (x / (1 + dx)) - 1 : null;
+  const before = of(cell[VERDICTS], from) ?? null, after = of(cell[VERDICTS], to) ?? null;
+  return { cell, x, y, code, core, before, after, gone: x !== null && y === null, fresh: x === null && y !== null,
+    moved: Math.abs(code) > MOVED, shifted: Math.abs(core) > MOVED, judged: before !== after && before !== null && after !== null };
+}
+
+function between() {
+  const place = make("div", { id: "moved" }), options = RUNS.map((_, k) => [k, named(k)]);
+  let from = Math.max(0, RUNS.length - 2), to = RUNS.length - 1;
+  const verdictOf = (k) => (k === null ? "absent" : sign(k));
+  function who(all) {
+    const groups = new Map(), put = (name, key, c, size) => {
+      if (!groups.has(name)) groups.set(name, { moved: new Map(), gone: 0, fresh: 0, judged: 0, far: null });
+      const group = groups.get(name);
+      if (key) group.moved.set(key, size); else for (const kind of ["gone", "fresh"]) group[kind] += c[kind];
+      if (key && (!group.far || Math.abs(size) > Math.abs(group.far[0]))) group.far = [size, c.cell];
+      return group;
+    };
+    for (const c of all) {
+      const key = JSON.stringify([c.cell[CASE], c.cell[OMEGA], c.cell[MODE]]);
+      if (c.moved) put(c.cell[CODE], key, c, c.code);
+      if (c.shifted) put("core", key, c, c.core);
+      if (c.gone || c.fresh) put(c.cell[CODE], null, c);
+      if (c.judged) put(c.cell[CODE], null, { gone: 0, fresh: 0 }).judged += 1;
+    }
+    return [...groups].map(([name, g]) => row(name, g.moved.size || "", g.far ? relative(g.far[0]) : "", g.far ? `${g.far[1][CASE]}, ${where(g.far[1][MODE], g.far[1][FAMILY], g.far[1][OMEGA])}` : "", g.gone || "", g.fresh || "", g.judged || ""));
+  }
+  function times() {
+    const sums = new Map();
+    for (const t of DATA.timings) {
+      const x = t.values[from], y = t.values[to];
+      if (t.machine !== RUNS[from].machine || x === null || y === null) continue;
+      const sum = sums.get(t.code) || [0, 0];
+      sums.set(t.code, [sum[0] + x, sum[1] + y]);
+    }
+    return [...sums].map(([code, [x, y]]) => row(code, digits(x, 3), digits(y, 3), x ? `× ${digits(y / x, 3)}` : ""));
+  }
+  function draw() {
+    const all = DATA.cells.map((cell) => change(cell, from, to)).filter((c) => c.moved || c.shifted || c.judged || c.gone || c.fresh);
+    const size = (c) => (c.gone || c.fresh || c.judged ? Infinity : Math.max(Math.abs(c.code), Math.abs(c.core)));
+    all.sort((p, q) => (size(p) === size(q) ? 0 : size(q) - size(p)));
+    const other = versions(from, to), clock = times();
+    place.replaceChildren(make("p", { class: "muted" }, other ? `Versions: ${other}.` : "The same versions of everything."),
+      all.length ? table(["who", "frequencies moved", "largest move", "where", "answers gone", "answers new", "verdicts changed"], who(all), { id: "who" }) : make("p", {}, "No frequency moved, no verdict changed."),
+      all.length ? make("details", {}, make("summary", {}, all.length > MOST ? `The first ${MOST} of ${all.length} cells` : `All ${all.length} cells`), table(["case", "code", "mode, speed", "from, rad/s", "to, rad/s", "code moved", "core moved", "verdict"], all.slice(0, MOST).map((c) => row(c.cell[CASE], c.cell[CODE],
+        where(c.cell[MODE], c.cell[FAMILY], c.cell[OMEGA]), digits(c.x, 12) || "absent", digits(c.y, 12) || "absent", c.moved ? relative(c.code) : "", c.shifted ? relative(c.core) : "",
+        c.judged ? `${verdictOf(c.before)} → ${verdictOf(c.after)}` : "")), { id: "cells" })) : "",
+      clock.length ? make("details", {}, make("summary", {}, "Times of what both have"), table(["code", "from, s", "to, s", "ratio"], clock, { id: "times" }))
+        : make("p", { class: "muted" }, "Times are not compared: different machines, or none."));
+  }
+  MAIN.append(make("h2", {}, "Who moved what between two runs"), make("div", { class: "filters" }, chooser("from", options, (v) => { from = Number(v); draw(); }, "from", from),
+    chooser("to", options, (v) => { to = Number(v); draw(); }, "to", to)), place);
+  draw();
+}
+
+function steps() {
+  const all = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
+  MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A frequency steps where it moves by more than 1e-9, a code's own or core's; a time where its level changes and stays, beyond its scatter, on one machine."),
+    all.length ? table(["at run", "who", "what", "largest change", "where", "versions that changed"], all.map((s) => row(named(s.run), s.who,
+      s.kind === "time" ? `time, in ${s.count} ${s.count === 1 ? "case" : "cases"}` : `${s.count} ${s.count === 1 ? "frequency" : "frequencies"}`, s.change === null ? "from nothing" : relative(s.change), s.mode === null ? s.case : `${s.case}, mode ${where(s.mode, "", s.omega)}`,
+      make("td", { class: "reason" }, s.run ? versions(s.run - 1, s.run) : ""))), { id: "steps" }) : make("p", { id: "steps" }, "None."));
+}
+
+function numbers() {
+  const place = make("div", { class: "chart" }), chosen = {};
+  const names = unique([...DATA.cells.filter((c) => c[VALUES] !== null), ...DATA.timings.map((t) => [t.case])].map((c) => c[CASE]));
+  if (!names.length) return;
+  const choosers = ["case", "code", "number"].map((name) => chooser(name, [], (v) => { chosen[name] = v; draw(); }, `series-${name}`));
+  const fill = (k, options) => {
+    const name = ["case", "code", "number"][k], select = choosers[k].querySelector("select"), known = options.map(([value]) => String(value));
+    select.replaceChildren(...options.map(([value, text]) => make("option", { value }, text)));
+    if (!known.includes(chosen[name])) chosen[name] = known[0];
+    select.value = chosen[name];
+  };
+  function list() {
+    const out = [];
+    for (const c of DATA.cells) {
+      if (c[CASE] !== chosen.case || c[CODE] !== chosen.code || c[VALUES] === null) continue;
+      const text = `mode ${where(c[MODE], c[FAMILY], c[OMEGA])}`;
+      out.push([`f ${text}`, `frequency: ${text}`, c[VALUES], "frequency, rad/s"], [`d ${text}`, `difference: ${text}`, c[DIFFERENCES], "difference from core, relative"]);
+    }
+    for (const t of DATA.timings) if (t.case === chosen.case && t.code === chosen.code) out.push([`t ${t.machine}`, `time on ${t.machine}`, t.values, "seconds, all speeds", t.steps.slice(1).map(([k]) => k + 1)]);
+    return out.filter((n) => n[2] !== null);
+  }
+  function draw() {
+    fill(0, names.map((n) => [n, n]));
+    fill(1, unique([...DATA.cells.filter((c) => c[CASE] === chosen.case && c[VALUES] !== null).map((c) => c[CODE]), ...DATA.timings.filter((t) => t.case === chosen.case).map((t) => t.code)]).map((n) => [n, n]));
+    const all = list();
+    fill(2, all);
+    const [, text, values, unit, levels] = all.find((n) => String(n[0]) === chosen.number);
+    const points = RUNS.map((_, k) => [k + 1, of(values, k) ?? NaN]);
+    const moved = points.filter(([, v], k) => k && Number.isFinite(v) && Number.isFinite(points[k - 1][1]) && Math.abs(v - points[k - 1][1]) > MOVED * (unit.startsWith("f") ? Math.abs(v) : 1)).map(([k]) => k);
+    place.replaceChildren(chart([{ name: text, colour: COLOURS[0], marks: true, points }], { x: "run", y: unit, whole: true, height: 240, label: text, steps: levels || moved }),
+      make("p", { class: "muted" }, Array.isArray(values) ? "Dashed: steps." : "The same in every run, to rounding."));
+  }
+  MAIN.append(make("h2", {}, "Every number, run by run"), make("div", { class: "filters" }, ...choosers), place);
+  draw();
+}
+
+historyPage();

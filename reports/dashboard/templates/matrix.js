@@ -1,0 +1,82 @@
+"use strict";
+// The first page: the verdict, the heat map with its filters, core made wrong on purpose.
+
+const [CASE, COLUMN, SPEED, NAME, VERDICT, SIZE, TEXT, REASON] = [0, 1, 2, 3, 4, 5, 6, 7];
+const FILTERS = ["code", "family", "speed", "verdict"];
+const family = (cell) => cell[NAME].replace(/ \d+$/, "");
+const unit = (cell) => DATA.cases[cell[CASE]].unit;
+const speed = (cell) => at(cell[SPEED], unit(cell));
+
+function matrix() {
+  const chosen = Object.fromEntries(FILTERS.map((name) => [name, new URLSearchParams(location.hash.slice(1)).get(name) || ""]));
+  const place = make("div", {}), detail = make("div", { id: "detail", "aria-live": "polite" });
+  const select = (name, options) => chooser(name, [["", "all"], ...options], (value) => {
+    chosen[name] = value;
+    history.replaceState(null, "", `#${new URLSearchParams(Object.entries(chosen).filter(([, v]) => v))}`);
+    draw();
+  }, name, chosen[name]);
+  const speeds = unique(DATA.cells.filter((c) => c[SPEED]).sort((a, b) => unit(a).localeCompare(unit(b)) || a[SPEED] - b[SPEED]).map(speed));
+  const clear = make("button", { onclick: () => {
+    for (const name of FILTERS) { chosen[name] = ""; filters.querySelector(`[name=${name}]`).value = ""; }
+    history.replaceState(null, "", "#");
+    draw();
+  } }, "show all");
+  const filters = make("div", { class: "filters", role: "group", "aria-label": "Filters" },
+    select("code", DATA.columns.map((c) => [c.name, c.name])),
+    select("family", unique(DATA.cells.map(family)).filter(Boolean).sort().map((f) => [f, f])),
+    select("speed", [["at rest", "at rest"], ["turning", "turning"], ...speeds.map((s) => [s, s])]),
+    select("verdict", DATA.verdicts.map((v, k) => [v.name, sign(k)])), clear);
+
+  const kept = (cell) => (!chosen.code || DATA.columns[cell[COLUMN]].name === chosen.code)
+    && (!chosen.family || family(cell) === chosen.family)
+    && (!chosen.speed || (chosen.speed === "turning" ? cell[SPEED] !== 0 : speed(cell) === chosen.speed))
+    && (!chosen.verdict || DATA.verdicts[cell[VERDICT]].name === chosen.verdict);
+
+  function field(k, j, group) {
+    if (!group.length) return null;
+    const grave = Math.min(...group.map((c) => c[VERDICT]));
+    const worst = group.filter((c) => c[VERDICT] === grave).reduce((a, b) => (Math.abs(b[SIZE] || 0) > Math.abs(a[SIZE] || 0) ? b : a));
+    const item = DATA.cases[k], column = DATA.columns[j];
+    return {
+      verdict: grave, text: worst[TEXT].split(" ± ")[0], href: item.page,
+      label: `${item.name}, ${column.name}: ${DATA.verdicts[grave].name} ${worst[TEXT]}`,
+      tell: () => [make("strong", {}, link(item.page, item.name), " × ", link(column.page, column.name)), "  ", chip(grave),
+        worst[TEXT] ? `${worst[TEXT]} (${worst[NAME]}, ${speed(worst)}; ` : "(", `${group.length} ${group.length === 1 ? "cell" : "cells"})`,
+        worst[REASON] ? make("p", { class: "muted" }, worst[REASON]) : null],
+    };
+  }
+
+  function draw() {
+    const shown = DATA.cells.filter(kept), groups = new Map();
+    for (const cell of shown) {
+      const key = `${cell[CASE]} ${cell[COLUMN]}`;
+      if (!groups.has(key)) groups.set(key, []);
+      groups.get(key).push(cell);
+    }
+    const cases = DATA.cases.map((_, k) => k).filter((k) => shown.some((c) => c[CASE] === k));
+    const columns = DATA.columns.map((_, j) => j).filter((j) => shown.some((c) => c[COLUMN] === j));
+    const shares = make("tr", { class: "shares" }, make("th", { scope: "row" }, "shares with core"), ...columns.map((j) => make("td", {}, DATA.columns[j].shares)));
+    place.replaceChildren(cases.length ? grid("case", cases.map((k) => make("a", { href: DATA.cases[k].page, title: DATA.cases[k].title }, ...broken(DATA.cases[k].name))),
+      columns.map((j) => link(DATA.columns[j].page, DATA.columns[j].name)),
+      cases.map((k) => columns.map((j) => field(k, j, groups.get(`${k} ${j}`) || []))), detail, shares) : make("p", {}, "No cell is of this kind."));
+  }
+
+  MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("p", { id: "headline", class: DATA.right ? "v3" : "v0" }, DATA.headline),
+    make("p", { class: "muted" }, "In each field: the gravest verdict of all modes and speeds shown, and the largest difference from core behind it. ",
+      "Point at a field, or go from one to the next with the arrow keys, for details; Enter opens the case."),
+    filters, make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))), place, detail);
+  draw();
+  if (DATA.controls.length) controls();
+  MAIN.append(make("h2", {}, "How to get this"), make("p", {}, make("code", {}, DATA.command)),
+    make("p", { class: "muted" }, Object.entries(DATA.versions).map(([k, v]) => `${k} ${v}`).join(", ")));
+}
+
+function controls() {
+  MAIN.append(make("h2", {}, "Core made wrong on purpose"), make("p", { class: "muted" }, "Every run tries; the matrix must notice."),
+    table(["mistake", "outcome", "largest change of a frequency", "where", "in cases", "caught by"], DATA.controls.map((o) => row(o.name,
+      make("td", { class: o.status === "caught" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "caught" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
+      o.change === null && o.where ? "no such mode" : relative(o.change), o.where, make("td", { title: o.cases.join(", ") }, o.cases.length),
+      make("td", { class: "reason" }, `${o.caught.length}: ${o.caught.join(", ")}`))), { id: "controls" }));
+}
+
+matrix();
