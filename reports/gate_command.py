@@ -69,7 +69,10 @@ def command(
         before = within(before, after)
     missed = [o.mistake.name for o in outcomes(run.controls) if o.status == "missed"]
     found = compare(before, after, earlier, tolerance, missed)
-    terminal.output().print(gate_text.terminal(found, strict))
+    console = terminal.output()
+    for shown in gate_text.tables(found):
+        console.print(shown)
+    console.print(gate_text.verdict(found, strict), markup=False, soft_wrap=True)
     if annotations:
         for line in gate_text.annotations(found, Path()):
             print(line)

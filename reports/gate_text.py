@@ -4,15 +4,14 @@ Frequencies and speeds are in rad/s, as they are kept; digits enough to show a c
 """
 
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 
 from rich import box
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.markup import escape
 from rich.table import Table
-from rich.text import Text
 
 from ..cases.gate import MISS, RANK, Change, Comparison, Gone, Timing
 from ..cases.history import Caught, Entry, Point
@@ -131,17 +130,15 @@ def _timing(timing: Timing) -> Row:
     }
 
 
-def terminal(found: Comparison, strict: bool) -> RenderableType:
-    """Everything, for the terminal or a log."""
-    parts: list[RenderableType] = []
+def tables(found: Comparison) -> Iterator[RenderableType]:
+    """All but the verdict, for the terminal or a log."""
     for title, rows in sections(found):
         shown = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
         for head in rows[0]:
             shown.add_column(head, overflow="fold")
         for row in rows:
             shown.add_row(*map(escape, row.values()))
-        parts.append(shown)
-    return Group(*parts, Text(verdict(found, strict)))
+        yield shown
 
 
 def markdown(found: Comparison, strict: bool) -> str:

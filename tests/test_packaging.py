@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
-ELSEWHERE = {"tests", "examples"}
+ELSEWHERE = {"tests", "examples", "docs"}
 """Folders with modules that are not installed."""
 
 
