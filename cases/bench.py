@@ -43,6 +43,7 @@ class Timing:
         sweep: all of ``SWEEP``, likewise.
         spread: largest over smallest of the single speeds' times.
         error: largest relative difference of the six lowest frequencies from the exact beam's, at one speed.
+        equal: what core needs to be as accurate; none of core itself, nor where ``ELEMENTS`` are too few.
         note: why it was not run.
     """
 
@@ -52,7 +53,17 @@ class Timing:
     sweep: float | None = None
     spread: float | None = None
     error: float | None = None
+    equal: "Equal | None" = None
     note: str = ""
+
+
+@dataclass(frozen=True)
+class Equal:
+    """Core with the fewest elements whose error is no larger than a code's; seconds as in ``Timing``."""
+
+    elements: int
+    single: float
+    sweep: float
 
 
 @dataclass(frozen=True)
@@ -79,7 +90,7 @@ def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
     Raises:
         UnknownCodeError: a name that no code has.
     """
-    exact = _answer(EXACT, OMEGA)[1]
+    exact = _answer(EXACT, OMEGA, registry.code(EXACT).levels[-1])[1]
     return Bench(
         _side_by_side(say, names, exact), _growth(say), {"python": sys.version.split()[0], "numpy": np.__version__}
     )
@@ -103,36 +114,53 @@ def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple
     versions = {name: _version(name) for name in names if name in registry.names()}
     found = ["core", *(name for name, version in versions.items() if version)]
     pools = {name: Pool(1) for name in found}
-    single: dict[str, list[float]] = {name: [] for name in found}
-    swept: dict[str, list[float]] = {name: [] for name in found}
-    error: dict[str, float] = {}
+    runs = [(name, ELEMENTS) for name in found]
     try:
-        for turn in range(ROUNDS + 1):  # the first only loads libraries
-            for name, pool in pools.items():
-                say(f"one speed, round {turn} of {ROUNDS}: {name}")
-                seconds, frequencies = pool.submit(_answer, name, OMEGA).result()
-                error[name] = max(abs(a / b - 1.0) for a, b in zip(frequencies[: len(exact)], exact, strict=True))
-                if turn:
-                    single[name].append(seconds)
+        error: dict[str, float] = {}
+        for name in found:  # which loads its libraries too
+            say(f"accuracy: {name}")
+            error[name] = _error(pools[name].submit(_answer, name, OMEGA).result()[1], exact)
+        enough = {name: _enough(pools["core"], error[name], exact) for name in found[1:]}
+        runs += [("core", n) for n in sorted({n for n in enough.values() if n} - {ELEMENTS})]
+        single: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
+        swept: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
+        for turn in range(ROUNDS):
+            for name, elements in runs:
+                say(f"one speed, round {turn + 1} of {ROUNDS}: {name}")
+                single[name, elements].append(pools[name].submit(_answer, name, OMEGA, elements).result()[0])
         for turn in range(SWEEPS):
-            for name, pool in pools.items():
+            for name, elements in runs:
                 say(f"{len(SWEEP)} speeds, round {turn + 1} of {SWEEPS}: {name}")
-                swept[name].append(pool.submit(_swept, name).result())
+                swept[name, elements].append(pools[name].submit(_swept, name, elements).result())
     finally:
         for pool in pools.values():
             pool.stop()
+    one, all_ = ({run: statistics.median(seconds) for run, seconds in times.items()} for times in (single, swept))
     measured = {
         name: Timing(
             name,
             versions.get(name) or "",
-            statistics.median(single[name]),
-            statistics.median(swept[name]),
-            max(single[name]) / min(single[name]),
+            one[name, ELEMENTS],
+            all_[name, ELEMENTS],
+            max(single[name, ELEMENTS]) / min(single[name, ELEMENTS]),
             error[name],
+            Equal(n, one["core", n], all_["core", n]) if (n := enough.get(name)) else None,
         )
         for name in found
     }
     return tuple(measured.get(name) or Timing(name, "", note=_hint(name)) for name in ("core", *names))
+
+
+def _enough(pool: Pool, error: float, exact: tuple[float, ...]) -> int | None:
+    """The fewest elements, up to ``ELEMENTS``, with which core's error is no larger."""
+    for n in range(2, ELEMENTS + 1):
+        if _error(pool.submit(_answer, "core", OMEGA, n).result()[1], exact) <= error:
+            return n
+    return None
+
+
+def _error(frequencies: tuple[float, ...], exact: tuple[float, ...]) -> float:
+    return max(abs(a / b - 1.0) for a, b in zip(frequencies[: len(exact)], exact, strict=True))
 
 
 def _version(name: str) -> str | None:
@@ -143,11 +171,10 @@ def _hint(name: str) -> str:
     return registry.code(name).hint if name in registry.names() else "not among the codes known here"
 
 
-def _answer(name: str, omega: float) -> tuple[float, tuple[float, ...]]:
+def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, tuple[float, ...]]:
     """Seconds, and the six lowest frequencies (rad/s)."""
     blade = library.load(CASE).variants[0].blade
     code = None if name == "core" else registry.code(name)
-    elements = ELEMENTS if name != EXACT else registry.code(EXACT).levels[-1]
     begun = time.perf_counter()
     found = code.solve(blade, omega, elements, COUNT) if code else modes(blade, omega, elements, COUNT)
     seconds = time.perf_counter() - begun
@@ -156,17 +183,17 @@ def _answer(name: str, omega: float) -> tuple[float, tuple[float, ...]]:
     return seconds, tuple(found.frequencies[:6].tolist())
 
 
-def _swept(name: str) -> float:
+def _swept(name: str, elements: int = ELEMENTS) -> float:
     """Seconds for all speeds of the sweep, the blade new."""
     blade = library.load(CASE).variants[0].blade
     code = None if name == "core" else registry.code(name)
     begun = time.perf_counter()
     if code is None:
-        for _ in sweep(blade, SWEEP, ELEMENTS, COUNT):
+        for _ in sweep(blade, SWEEP, elements, COUNT):
             pass
     else:
         for omega in SWEEP:
-            code.solve(blade, omega, ELEMENTS, COUNT)
+            code.solve(blade, omega, elements, COUNT)
     return time.perf_counter() - begun
 
 

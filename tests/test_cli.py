@@ -249,7 +249,13 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
     command += ["--codes", "exact-beam,misbehaving:HANG"]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "SOUTHWELL_TEST": str(mark)}
     child = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        start_new_session=True,
+        preexec_fn=heeding,
     )
     results_file = out / "results.jsonl"
     waited = time.monotonic() + 120
@@ -259,6 +265,11 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
         time.sleep(0.1)
     assert len(running(mark)) > 2
     return child, results_file
+
+
+def heeding() -> None:
+    """Interrupts are heeded, as at a terminal, even where these tests run in the background, which ignores them."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def running(mark: Path) -> list[str]:
