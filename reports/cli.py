@@ -405,6 +405,7 @@ def install(code: str, /) -> int:
 app.command(f"{__package__}.campbell_command:command", name="campbell")
 app.command(f"{__package__}.bench:command", name="bench")
 app.command(f"{__package__}.condense:command", name="condense")
+app.command(f"{__package__}.closed_forms_page:command", name="closed-forms")
 app.command(f"{__package__}.conform:command", name="conform")
 app.command(f"{__package__}.show:command", name="show")
 app.command(f"{__package__}.convert:command", name="convert")

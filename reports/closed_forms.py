@@ -1,4 +1,7 @@
-"""Core against mechanisms that are known in closed form: a figure each, and the page that shows them."""
+"""Core against mechanisms that are known in closed form, drawn: frequencies above, differences below."""
+
+import re
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,15 +10,15 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
-from ..references.closed_forms import FORMS, ClosedForm, differences
-from .markdown import plain, table
-from .style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, beside, house, svg, title
+from ..references.closed_forms import ClosedForm, differences
+from .style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, house, title
+from .style import beside as labels
 
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
 
-FOLDER = "closed-forms"
-"""Where the figures go, beside the page."""
+PAGE = "closed-forms.md"
+"""What ``southwell closed-forms`` writes."""
 
 FINE = 600
 """Points of a closed form's line."""
@@ -24,37 +27,13 @@ LEAST = 1e-17
 """Differences of nothing are drawn here."""
 
 
-def pages() -> dict[str, str]:
-    """The page, and its figures as SVG, by their paths."""
-    out, parts, rows = {}, [_HEAD], []
-    for form in FORMS:
-        values, off = solved(form)
-        out[f"{FOLDER}/{form.name}.svg"] = svg(figure(form, values, off))
-        parts.append(_section(form))
-        rows.append(
-            {
-                "mechanism": plain(form.title),
-                "source": plain(form.source),
-                "speeds": str(len(form.speeds)),
-                "largest difference": f"{np.nanmax(off):.1e}",
-            }
-        )
-    parts.insert(1, table(rows))
-    return {"closed-forms.md": "\n\n".join(parts) + "\n"} | out
-
-
-_HEAD = """# Closed forms
-
-Core takes any mechanism, so it can be held to every one that is known in closed form. Those here turn, and each shows
-something that a solver which only knows blades could not: critical speeds, a steady state away from the guess, loops. The
-numbers and figures are made when this page is; the tests have more (double pendulum, slider-crank, four-bar, portal frame).
-
-Lines: the closed form. Points: core. Below: the relative difference of the eigenvalues."""
-
-
-def _section(form: ClosedForm) -> str:
-    picture = f"![{form.title}: frequencies against speed]({FOLDER}/{form.name}.svg)"
-    return f"## {form.title}\n\n$$\n{form.formula}\n$$\n\n{plain(form.about)}\n\n*Source:* {plain(form.source)}.\n\n{picture}"
+def beside(folder: Path) -> str:
+    """The page in a report's folder, a heading lower and without its formulas; empty if there is none."""
+    path = folder / PAGE
+    if not path.exists():
+        return ""
+    text = re.sub(r"\$\$.*?\$\$\n\n", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    return re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 
 def solved(form: ClosedForm) -> tuple[Complex, Array]:
@@ -105,7 +84,7 @@ def _frequencies(axes: Axes, form: ClosedForm, fine: Array, exact: Complex, valu
             clip_on=False,
         )
         ends.append((float(exact[-1, k].imag), branch, colour))
-    beside(axes, ends, size=8)
+    labels(axes, ends, size=8)
     axes.set_ylabel("|λ|, rad/s")
     if (exact.real > 0).any():
         axes.legend(

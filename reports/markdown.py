@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..cases.lumping import CASE as LUMPED
 from ..cases.results import Cell, Run, Setting, Verdict
-from . import bench, condense_page, controls, evidence, lumped, shares, summary, witnesses
+from . import bench, closed_forms, condense_page, controls, evidence, lumped, shares, summary, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 from .style import save
@@ -78,7 +78,12 @@ def write(run: Run, folder: Path) -> Path:
     if figure := lumped.lumping(run):
         save(figure, figures / "lumped-mass.svg")
     path = folder / "report.md"
-    path.write_text(render(run, drawn, bench.beside(folder), condense_page.beside(folder)), encoding="utf-8")
+    beside = {
+        "cost": bench.beside(folder),
+        "condensed": condense_page.beside(folder),
+        "known": closed_forms.beside(folder),
+    }
+    path.write_text(render(run, drawn, **beside), encoding="utf-8")
     return path
 
 
@@ -87,7 +92,7 @@ def units(run: Run, case: str) -> Units:
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
-def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "") -> str:
+def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "", known: str = "") -> str:
     """The report's text.
 
     Args:
@@ -95,6 +100,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         figures: paths of each case's figures, relative to the report.
         cost: the tables of ``bench``.
         condensed: the page of ``condense``.
+        known: that of ``closed-forms``.
     """
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
@@ -122,6 +128,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         command=run.command,
         cost=cost,
         condensed=condensed,
+        known=known,
     )
 
 

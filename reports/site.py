@@ -14,7 +14,7 @@ from ..cases.results import Run, Setting
 from ..cases.schema import Case
 from ..cases.settings import settings
 from ..references import codes as registry
-from . import cli, closed_forms, code_pages
+from . import cli, closed_forms_page, code_pages
 from .markdown import plain, table
 
 Pages = dict[str, str]
@@ -39,7 +39,7 @@ def pages(folder: Path) -> Pages:
     """
     path = folder / cli.RESULTS
     run = results.read(path) if path.exists() else Run(())
-    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms.pages(), **report(folder)}
+    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms_page.pages(), **report(folder)}
 
 
 def report(folder: Path) -> Pages:

@@ -1,15 +1,19 @@
 """Core against the closed forms that the documentation shows: what it shows is held, and a wrong core would be seen."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.lines import Line2D
 
-from southwell.references import closed_forms as forms
+from southwell.cases.results import Run
+from southwell.references import linkages
 from southwell.references.closed_forms import FORMS, ClosedForm, differences
-from southwell.reports import closed_forms
+from southwell.reports import closed_forms, closed_forms_page, markdown
 from southwell.reports.style import INK
+
+from .test_cli import southwell
 
 Found = tuple[ClosedForm, np.ndarray, np.ndarray]
 
@@ -70,17 +74,59 @@ def test_the_rings_difference_is_discretisation(monkeypatch: pytest.MonkeyPatch)
     """Of fourth order: twice the elements, a difference 16 times as small (at least ten)."""
     ring, off = FORMS[-1], []
     for arcs in (10, 20):
-        monkeypatch.setattr(forms, "_ARCS", arcs)
+        monkeypatch.setattr(linkages, "ARCS", arcs)
         off.append(differences(ring, 1.0)[1].max())
     assert off[0] / off[1] > 10
 
 
 def test_the_page_has_every_figure_and_the_same_bytes_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(replace(form, speeds=form.speeds[::12]) for form in FORMS[:3])
-    monkeypatch.setattr(closed_forms, "FORMS", few)
-    made = closed_forms.pages()
-    assert made == closed_forms.pages()
+    monkeypatch.setattr(closed_forms_page, "FORMS", few)
+    made = closed_forms_page.pages()
+    assert made == closed_forms_page.pages()
     text = made["closed-forms.md"]
     assert set(made) == {"closed-forms.md", *(f"closed-forms/{form.name}.svg" for form in few)}
     assert all(f"]({name})" in text for name in made if name.endswith(".svg"))
     assert all(form.formula in text for form in few)
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> tuple[ClosedForm, ...]:
+    chosen = tuple(replace(form, speeds=form.speeds[::12]) for form in FORMS if form.name in ("turntable", "four-bar"))
+    monkeypatch.setattr(closed_forms_page, "FORMS", chosen)
+    return chosen
+
+
+def test_the_command_writes_what_the_report_takes_up(
+    few: tuple[ClosedForm, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert not closed_forms.beside(tmp_path)
+    status, shown, _ = southwell(f"closed-forms --out {tmp_path}", capsys)
+    assert status == 0
+    assert shown.count("✔ pass") == len(few)
+    report = markdown.write(Run(()), tmp_path).read_text(encoding="utf-8")
+    assert "\n## Closed forms\n" in report
+    assert "$$" not in report
+    for form in few:
+        assert f"\n### {form.title}\n" in report
+        assert f"](closed-forms/{form.name}.svg)" in report
+        assert (tmp_path / "closed-forms" / f"{form.name}.svg").exists()
+
+
+def test_a_core_that_misses_a_closed_form_ends_with_status_1(
+    few: tuple[ClosedForm, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wrong = replace(few[0], exact=lambda omega: (1 + 1e-6) * few[0].exact(omega))
+    monkeypatch.setattr(closed_forms_page, "FORMS", (wrong, few[1]))
+    status, shown, _ = southwell(f"closed-forms --out {tmp_path}", capsys)
+    assert status == 1
+    assert "1.0e-06 | 1e-09 | ✘ fail" in shown
+
+
+def test_a_folder_that_is_a_file_is_refused(
+    few: tuple[ClosedForm, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    status, _, err = southwell(f"closed-forms --out {tmp_path / 'file'}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "file: cannot be written" in err
