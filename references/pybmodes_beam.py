@@ -7,7 +7,10 @@ except the twist, which varies: of second order where a blade tapers, of fourth 
 What it leaves out, as its element matrices and results show: the gyroscopic term; the steady stretch; the inertia of the
 sections in bending, though not in torsion; displacements along the blade in what it returns, and with them the axial modes
 (whose spin softening it lacks too); precone and pitch, which its input file has and nothing reads. Pitch is twist here.
-A mass at the tip is in its mass matrix but neither pulls the blade nor is softened by the rotation, hence refused.
+A mass at the tip is in its mass matrix but neither pulls the blade nor is softened by the rotation, hence refused. So are mass
+centres off the axis, for which its input file has a column: right at rest, but turning it leaves out the steady moment that
+they make, up to 2.7 % in ``defects/pybmodes_mass_centre.py``; a shear centre off the axis is half applied, at rest too
+(``defects/pybmodes_shear_centre.py``).
 """
 
 import time
@@ -97,7 +100,10 @@ class PyBModes:
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if pyBModes's beam or its input file has no place for something of this blade's."""
         if coupled(blade):
-            return "sections couple (off-diagonal entries): the offsets of the input file are along one axis only"
+            return (
+                "sections couple (off-diagonal entries): of mass centres off the axis pyBModes leaves out the steady moment "
+                "when turning, shear centres it applies by half, and other couplings its input file has none of"
+            )
         if not straight(blade):
             return "prebend or sweep: the elements lie on a straight line"
         if not clamped(blade):

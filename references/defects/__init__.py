@@ -67,6 +67,18 @@ DEFECTS = (
         "Blades with a tip mass are refused.",
     ),
     Defect(
+        ("pybmodes",),
+        "pybmodes_mass_centre",
+        "Mass centres off the axis: turning, the steady moment that they make does not couple flap with torsion.",
+        "Blades with mass centres off the axis are refused.",
+    ),
+    Defect(
+        ("pybmodes",),
+        "pybmodes_shear_centre",
+        "A shear centre off the reference axis moves the tension centre along, but not the mass centre.",
+        "Blades with shear centres off the axis are refused.",
+    ),
+    Defect(
         ("calculix",),
         "calculix_substructure",
         "`*SUBSTRUCTURE GENERATE` holds the nodes that are not retained instead of eliminating them.",

@@ -1,0 +1,122 @@
+"""pyBModes: where mass centres lie off the axis, the steady moment of a turning blade does not couple flap with torsion.
+
+The centrifugal force of mass centres off the axis bends the blade steadily in its stiff plane. That moment M, on a section that
+turns by phi, adds (1 - EI_flap / EI_edge) M phi w'' to the energy, of the size of the term in x phi w' that
+_element_matrices_batch (fem/element.py) has. Without it all is well at rest, and nearly so where both stiffnesses are alike.
+Expected: Ritz' method below with the energy of finite motion (rotations by Cayley's formula) about the steady state, which
+Newton's method finds; no Coriolis force there either.
+Needs: pybmodes, numpy.
+"""
+
+import tempfile
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from pybmodes.models import RotatingBlade
+
+RADIUS, MASS, FLAP, EI, GJ, EA = 10.0, 10.0, 0.001, 1e4, 2e3, 1e8  # m, kg/m, kg m, N m², N m², N
+OFFSET, EDGE = 0.05, 0.02  # m; kg m, about the mass centre
+
+
+def write(folder, rpm, edge_stiffness):
+    """Path of an input file, with its section table beside it: a uniform blade; inertia is given about the axis."""
+    edge = EDGE + MASS * OFFSET**2
+    row = f"0 0 {MASS} {FLAP} {edge} {EI} {edge_stiffness} {GJ} {EA} {-OFFSET} 0 0"
+    (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
+    ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))
+    lines = ["====", "blade", "", "---- General", "f Echo", "1 beam_type", f"{rpm!r} rot_rpm", "1. rpm_mult"]
+    lines += [
+        f"{RADIUS} radius",
+        "0. hub_rad",
+        "0. precone",
+        "0. bl_thp",
+        "1 hub_conn",
+        "20 modepr",
+        "t Tab",
+        "f mid",
+        "",
+    ]
+    lines += ["---- Tip mass", *["0. -"] * 9, "", "---- Properties", "1 id_mat", "'sections.dat' sec_props_file", ""]
+    lines += ["Scaling", *["1. -"] * 10, "", "---- Elements", "40 nselt", "ends", ends]
+    path = folder / "blade.bmi"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+class Exact:
+    """The beam of finite motion: turning by Cayley's vectors and stretching by polynomials of the span, both Ritz'."""
+
+    def __init__(self, speed, edge_stiffness, terms=8):
+        x, w = (0.5 * v for v in np.polynomial.legendre.leggauss(16))
+        self.x, self.w, self.speed, self.edge, self.n = (x + 0.5) * RADIUS, w * RADIUS, speed, edge_stiffness, terms
+        k = np.arange(1, 17)[:, None]
+        powers = ((x + 0.5) ** k) * RADIUS / k
+        self.integral = np.linalg.solve(
+            (x + 0.5) ** (k - 1), powers
+        ).T  # values of a polynomial to its integral from the root
+        k = k[:terms]
+        self.turn, self.slope = (x + 0.5) ** k, k * (x + 0.5) ** (k - 1) / RADIUS
+
+    def motion(self, q):
+        """Sections' axes (16, 3, 3), curvatures (16, 3), stretch (16,), mass centres (16, 3)."""
+        q = q.reshape(4, self.n)
+        p, dp = (q[:3] @ self.turn).T, (q[:3] @ self.slope).T
+        S = np.cross(np.eye(3), p[:, None])
+        share = 1 + (p**2).sum(1) / 4
+        R = np.eye(3) + (S + S @ S / 2) / share[:, None, None]
+        stretch = q[3] @ self.slope * RADIUS
+        place = self.integral @ ((1 + stretch)[:, None] * R[:, :, 0])
+        return R, (dp - np.cross(p, dp) / 2) / share[:, None], stretch, place + OFFSET * R[:, :, 1]
+
+    def energy(self, q):
+        """Of strain, less half the speed squared times the moment of inertia about the rotor's axis."""
+        R, bend, stretch, centre = self.motion(q)
+        strain = EA * stretch**2 + bend**2 @ np.array([GJ, EI, self.edge])
+        inertia = ((v[:, :2] ** 2).sum(1) for v in (centre, R[:, :, 1], R[:, :, 2]))
+        return (
+            self.w @ (strain - self.speed**2 * sum(m * i for m, i in zip((MASS, EDGE, FLAP), inertia, strict=True))) / 2
+        )
+
+    def gradient(self, q):
+        """By complex steps, exact."""
+        return np.array([self.energy(q + 1e-30j * e).imag for e in np.eye(len(q))]) / 1e-30
+
+    def hessian(self, q, h=1e-6):
+        """By central differences."""
+        H = np.array([self.gradient(q + h * e) - self.gradient(q - h * e) for e in np.eye(len(q))]) / (2 * h)
+        return (H + H.T) / 2
+
+    def frequencies(self):
+        """rad/s, ascending, about the steady state."""
+        q = np.zeros(4 * self.n)
+        for _ in range(4):
+            q = q - np.linalg.solve(self.hessian(q), self.gradient(q))
+        rows = []
+        for e in np.eye(len(q)):
+            R, _, _, centre = self.motion(q + 1e-30j * e)
+            moved = ((m, v.imag / 1e-30) for m, v in ((MASS, centre), (EDGE, R[:, :, 1]), (FLAP, R[:, :, 2])))
+            rows.append(np.concatenate([(np.sqrt(m * self.w)[:, None] * v).ravel() for m, v in moved]))
+        rows = np.array(rows)
+        return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(rows @ rows.T, self.hessian(q))).real))
+
+
+def main():
+    print(f"pybmodes {version('pybmodes')}")
+    worst = {}
+    for rpm, ratio in ((0.0, 16.0), (60.0, 1.0), (60.0, 4.0), (60.0, 16.0)):
+        with tempfile.TemporaryDirectory() as folder:
+            found = RotatingBlade(write(Path(folder), rpm, ratio * EI)).run(8, check_model=False).frequencies[:5]
+        expected = Exact(rpm * np.pi / 30, ratio * EI).frequencies()[:5] / (2 * np.pi)
+        off = np.abs(found / expected - 1)
+        worst[rpm, ratio] = off.max()
+        k = int(off.argmax())
+        print(
+            f"{rpm:2g} rpm, EI_edge = {ratio:2g} EI_flap: five modes within {off[k]:.2%}, "
+            f"the worst {found[k]:.4f} Hz (expected {expected[k]:.4f})"
+        )
+    print("defect:", "present" if worst[60.0, 16.0] > 0.01 > 4 * worst[0.0, 16.0] else "gone")
+
+
+if __name__ == "__main__":
+    main()
