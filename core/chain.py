@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Numbers = NDArray[Any]
 
 _STEPS = 40
-_BALANCED, _ROUNDING = 1e-11, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
+_BALANCED, _ROUNDING = 1e-10, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
 ORDER = 3  # of the extrapolation along the speeds
 _SMALLEST_RAMP = 2.0**-8
 
@@ -203,9 +203,9 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
             raise SteadyStateError("diverged")
         displaced = np.abs(shape.nodes - chain.nodes)
         far = max(displaced[:, :3, 3].max() / chain.scale, displaced[:, :3, :3].max())
-        # there, or as near as rounding lets it
+        # there, or as near as rounding lets it; the last step still improves the shape, from which others are extrapolated
         if change < max(_BALANCED * far, _ROUNDING) or (change < 1e-6 and change > 0.1 * before):
-            return Steady(shape, p)
+            return Steady(moved(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape = moved(shape, step)
         before = change

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
 
 from . import blocks, eigen
 from .blocks import Factor, Tridiagonal
@@ -18,6 +19,8 @@ from .eigen import Eigen
 
 Array = NDArray[np.float64]
 Numbers = NDArray[Any]
+
+(_syev,) = get_lapack_funcs(("syev",), dtype=np.float64)
 
 _TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
 _CLEAR, _PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
@@ -69,7 +72,7 @@ def lanczos(
         w, overlap, gram = _against(dual, w, basis[:size])
         if size:
             projected[:size, last] += overlap
-        value, turn = np.linalg.eigh(0.5 * (gram + gram.T))
+        value, turn, _ = _syev(gram)
         keep = value > 1e-20 * max(value[-1], np.abs(overlap).max(initial=0.0) ** 2, 1e-300)
         exhausted = not keep.any() or size + 2 > limit
         if exhausted or size >= look:
@@ -96,10 +99,11 @@ def lanczos(
     if error[positive].max() > 1e-6:
         raise ArithmeticError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
     x = basis[:size, :n].T @ z[:, positive].conj()  # i A⁻¹S has 1/ω at λ = −iω
-    kx, (cx, mx) = stiffness(x), _products(moving, x, 2)
+    parts = np.ascontiguousarray(x).view(np.float64)  # real and imaginary parts side by side
+    kx, cx, mx = (y.view(np.complex128) for y in (stiffness(parts), *_products(moving, parts, 2)))
     kappa, m = (np.real((x.conj() * y).sum(0)) for y in (kx, mx))
     half = -0.5 * np.imag((x.conj() * cx).sum(0))
-    frequencies = kappa / (np.sqrt(half**2 + m * kappa) - half)
+    frequencies = kappa / (np.sqrt(np.maximum(half**2 + m * kappa, 0.0)) - half)  # of a loose joint κ is rounding
     if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
         raise ArithmeticError(
             "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
