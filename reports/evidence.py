@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable
 
 from ..cases.results import Cell, Run, Verdict
-from ..cases.verdict import unsigned
 from . import summary
 from .summary import SYMBOL
 from .units import BY_KEY, RAD_S, Units
@@ -17,6 +16,9 @@ KINDS: dict[str, Callable[[Cell], bool]] = {
     "other": lambda c: True,
 }
 """A cell is of the first kind that takes it; the first two check the answer, the third the implementation only."""
+
+URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
+"""What is named before all else, gravest first."""
 
 SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
 """Verdicts on a difference from core with the same effects, gravest first."""
@@ -40,6 +42,21 @@ def _number(n: int) -> str:
     return f"{n} answer contradicts" if n == 1 else f"{n} answers contradict"
 
 
+def urgent(run: Run) -> list[str]:
+    """A line for the worst failure and one for the largest inconclusive difference, where there are any."""
+    found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
+    return [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+
+
+def first(run: Run) -> list[str]:
+    """What a reader looks for first: the answer, and what is urgent; if nothing is, the independent answer that is
+    farthest from core for its target."""
+    far = farthest(c for c in run.cells if c.shares == "nothing")
+    if not far or any(c.verdict in summary.BAD for c in run.cells):
+        return [answer(run), *urgent(run)]
+    return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}."]
+
+
 def rows(run: Run) -> list[dict[str, str]]:
     """A row a kind: its cells by verdict, the worst difference with the same effects, the largest known one; and where."""
     out = []
@@ -49,19 +66,19 @@ def rows(run: Run) -> list[dict[str, str]]:
             kinds[next(kind for kind, takes in KINDS.items() if takes(cell))].append(cell)
     for kind, cells in kinds.items():
         if cells:
-            same, known = _worst(cells), summary.largest(c for c in cells if c.verdict == "known difference")
+            same, known = farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
             out.append(
                 {
                     "evidence": kind,
                     "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
-                    "worst difference": _shown(run, same),
+                    "worst, for its target": _shown(run, same),
                     "largest known difference": _shown(run, known),
                 }
             )
     return out
 
 
-def _worst(cells: Iterable[Cell]) -> Cell | None:
+def farthest(cells: Iterable[Cell]) -> Cell | None:
     """Of the gravest of ``SAME`` there, the one that is largest for its target."""
     cells = list(cells)
     for verdict in SAME:
@@ -76,11 +93,8 @@ def _shown(run: Run, cell: Cell | None) -> str:
     if cell.difference is None:
         units = _units(run, cell)
         return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
-    if cell.verdict in SAME:
-        target = f"{cell.target:.0e}" if cell.target < summary.TINY else unsigned(cell.target)
-        more = f"target {target}"
-    else:
-        more = f"cause: {cell.reason.partition(';')[0]}"
+    cause = f"cause: {cell.reason.partition(';')[0]}"
+    more = f"target {summary.allowed(cell.target)}" if cell.verdict in SAME else cause
     return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {more}"
 
 

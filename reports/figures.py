@@ -27,7 +27,7 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
     than two speeds.
     """
     cells = [c for c in run.cells if c.case == case and c.role != "same discretisation"]
-    lines = _lines(cells)
+    lines = core_lines(cells)
     speeds = sorted({omega for line in lines.values() for omega in line})
     if len(speeds) < 2:
         return None
@@ -61,7 +61,7 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
     return figure
 
 
-def _lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
+def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
     """Core's frequencies with all effects (rad/s) by mode and speed; modes by name if the names last, else by number."""
     names = labels(cells)
     full = [c for c in cells if c.full is not None and c.reference == c.full]

@@ -28,7 +28,6 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
 }
 """Drawn for each blade; the key ends the file's name."""
 
-URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
 LARGEST: dict[Verdict, str] = {
     "known difference": "Largest known difference",
     "pass": "Largest difference that passes",
@@ -112,7 +111,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     environment.filters["plain"] = plain
     found, borne_out = lumped.taken(run), witnesses.table(run)
     return environment.get_template("report.md.jinja").render(
-        headline=[evidence.answer(run), *urgent(run)],
+        headline=first(run),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
         remarks=[told for told in (witnesses.headline(run), controls.headline(run)) if told],
         heat=heat(run, linked=True),
@@ -144,21 +143,17 @@ def _controls(run: Run) -> dict[str, str]:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first."""
-    lines = [evidence.answer(run), *urgent(run)]
+    lines = [evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
     return lines + [told for told in (witnesses.headline(run), controls.headline(run)) if told]
 
 
-def urgent(run: Run) -> list[str]:
-    """A line for the worst failure and one for the largest inconclusive difference, where there are any."""
-    found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
-    return [
-        f"{what}: {summary.plus_minus(cell)} ({plain(evidence.where(run, cell))})."
-        for what, cell in found.items()
-        if cell
-    ]
+def first(run: Run) -> list[str]:
+    """The answer, and after it what ``evidence`` names first, as text."""
+    answer, *rest = evidence.first(run)
+    return [answer, *map(plain, rest)]
 
 
 def unasked(run: Run) -> str:

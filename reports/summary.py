@@ -9,6 +9,7 @@ from typing import get_args
 
 from ..cases.controls import outcomes
 from ..cases.results import Cell, Run, Verdict
+from ..cases.verdict import unsigned
 
 SYMBOL: dict[Verdict, str] = {
     "pass": "✔",
@@ -131,6 +132,11 @@ def amount(value: float, target: float) -> str:
         if size < 10
         else f"{size:.0f} %"
     )
+
+
+def allowed(target: float) -> str:
+    """A target, in percent, or as it is where it is tiny."""
+    return f"{target:.0e}" if target < TINY else unsigned(target)
 
 
 def plus_minus(cell: Cell) -> str:

@@ -4,6 +4,8 @@ import json
 import re
 import shutil
 from dataclasses import replace
+from importlib.resources import files
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +13,18 @@ import numpy as np
 import pytest
 
 from southwell.cases import history, library
+from southwell.cases.results import Run
 from southwell.core.blade import Blade
 from southwell.reports import cli, readme
 from southwell.reports.dashboard import moving as shapes
-from southwell.reports.dashboard.data import page
+from southwell.reports.dashboard.data import of_case, page
 from southwell.reports.dashboard.moving import moving
 from southwell.reports.dashboard.past import CORE, moves, of_history
 from southwell.reports.dashboard.steps import frequency_steps, timing_steps
 from southwell.reports.dashboard.write import SCRIPTS, write
 from southwell.reports.units import RAD_S
 
+from . import samples
 from .dashboards import HOSTILE, WORSE, hostile, kept, run
 
 LARGEST_FIRST_PAGE = 1.5e6
@@ -55,6 +59,79 @@ def test_the_worst_cell_of_many_is_the_worst_of_the_readmes(tmp_path: Path) -> N
         line for line in readme.README.read_text(encoding="utf-8").splitlines() if line.startswith("| tip-mass ")
     )
     assert worst["tip-mass"].split(" ± ")[0].lstrip("+−") in row
+
+
+def test_a_small_failure_is_named_before_large_known_differences(tmp_path: Path) -> None:
+    cells = list(run().cells)
+    k = next(k for k, c in enumerate(cells) if (c.case, c.code, c.verdict) == ("park-cantilever", "pybmodes", "pass"))
+    cells[k] = replace(cells[k], verdict="fail", difference=1.2e-3, uncertainty=1e-6)
+    write({"a run": replace(run(), cells=tuple(cells))}, None, tmp_path)
+    answer, worst, *_ = data(tmp_path / "index.html")["headline"]
+    assert answer.startswith("No: 1 answer contradicts core.")
+    assert worst.startswith("Worst failure: +0.120 % ± 0.0001 % (park-cantilever, pybmodes, ")
+    mine = next(c for c in data(tmp_path / "codes.html")["codes"] if c["name"] == "pybmodes")
+    assert mine["worst"] == [0, "+0.120 % ± 0.0001 %", "park-cantilever"]
+    assert mine["known"][0] == 2
+    case = data(tmp_path / page("park-cantilever"))
+    assert case["answer"] == "No: 1 answer contradicts core."
+    assert (case["told"][0]["verdict"], case["told"][0]["count"]) == (0, 1)
+
+
+DEUTERANOPE = np.array([[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]])
+PROTANOPE = np.array(
+    [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]
+)
+"""Of linear RGB: Machado, Oliveira and Fernandes 2009, severity 1."""
+
+
+def palettes() -> list[dict[str, Any]]:
+    """Linear RGB of the style's colours, by light and by night."""
+    style = files("southwell.reports.dashboard").joinpath("templates", "dashboard.css").read_text(encoding="utf-8")
+    out = []
+    for block in re.findall(r":root \{(.*?)\}", style, re.S):
+        found = dict(re.findall(r"--(\w+):(#\w+)", block))
+        full = {k: v if len(v) == 7 else "#" + "".join(2 * c for c in v[1:]) for k, v in found.items()}
+        rgb = {k: np.array([int(v[i : i + 2], 16) / 255 for i in (1, 3, 5)]) for k, v in full.items()}
+        out.append({k: np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4) for k, v in rgb.items()})
+    return out
+
+
+def lab(rgb: Any) -> Any:
+    """CIE 1976 L*a*b* of linear sRGB, D65."""
+    xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]) @ np.clip(rgb, 0, 1)
+    x, y, z = np.cbrt(xyz / [0.9505, 1.0, 1.089])
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+def test_verdicts_colours_are_told_apart_by_the_colour_blind_and_text_on_them_is_read() -> None:
+    light, dark = palettes()
+    for palette in (light, dark):
+        for sight in (np.eye(3), DEUTERANOPE, PROTANOPE):
+            seen = {k: lab(sight @ palette[k]) for k in ("pass", "known", "open", "fail", "none")}
+            for a, b in combinations(seen, 2):
+                assert np.linalg.norm(seen[a] - seen[b]) > 8, (a, b)
+        luminance = {k: float(v @ [0.2126, 0.7152, 0.0722]) for k, v in palette.items()}
+        for ink, on in (
+            [("ink", v) for v in ("paper", "soft", "pass", "known", "open", "fail", "none")]
+            + [("muted", v) for v in ("paper", "soft", "none")]
+            + [("link", "paper"), ("link", "soft")]
+        ):
+            bright, dim = sorted((luminance[ink], luminance[on]), reverse=True)
+            assert (bright + 0.05) / (dim + 0.05) > 4.5, (ink, on)  # WCAG 2, AA
+
+
+def test_cores_lines_are_cores_where_a_code_gives_another_mode_the_same_name() -> None:
+    """A code that leaves effects out is compared with core without them, whose first mode is core's second."""
+    cells = (
+        *(samples.cell(omega=w, frequency=f, reference=f, full=f) for w, f in ((0.0, 10.0), (10.0, 12.0))),
+        *(samples.cell(omega=w, mode=2, family="axial", full=f, reference=f) for w, f in ((0.0, 60.0), (10.0, 61.0))),
+        samples.cell(omega=10.0, code="odd", frequency=55.0, reference=55.0, full=61.0, verdict="known difference"),
+    )
+    lines = of_case(Run(cells), "beam")["lines"]
+    assert lines == [
+        {"name": "chordwise 1", "points": [[0.0, 10.0], [10.0, 12.0]]},
+        {"name": "axial 1", "points": [[0.0, 60.0], [10.0, 61.0]]},
+    ]
 
 
 def test_nothing_is_fetched_from_anywhere(tmp_path: Path) -> None:

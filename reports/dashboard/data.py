@@ -9,7 +9,8 @@ from ...cases.controls import Outcome, outcomes
 from ...cases.results import Cell, Run
 from ...references import codes as registry
 from ...references.codes import UnknownCodeError
-from .. import code_pages, summary
+from .. import code_pages, controls, evidence, summary, witnesses
+from ..figures import core_lines
 from ..summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
 from ..units import BY_KEY, Units
 from .moving import moving
@@ -42,6 +43,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
         "run": name,
         "command": run.command,
         "headline": headline(run),
+        "evidence": evidence.rows(run),
         "right": summary.status(run) == 0,
         "verdicts": verdicts(),
         "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in known],
@@ -59,6 +61,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
                 size(c),
                 plus_minus(c) if size(c) is not None else "",
                 c.reason,
+                summary.allowed(c.target),
             ]
             for c in run.cells
         ],
@@ -66,16 +69,10 @@ def first(run: Run, name: str) -> dict[str, Any]:
     }
 
 
-def headline(run: Run) -> str:
-    """The verdict in one line."""
-    counted = ", ".join(f"{n} {v}" for v, n in summary.counts(run.cells).items() if n)
-    independent = [c for c in run.cells if c.role == "code" and c.verdict in ("pass", "fail", "inconclusive")]
-    far = summary.largest(independent)
-    where = f" Largest difference of an independent code: {plus_minus(far)} ({far.case}, {far.code})." if far else ""
-    tried = outcomes(run.controls)
-    caught = sum(o.status == "caught" for o in tried)
-    wrong = f" {caught} of {len(tried)} deliberate mistakes in core are caught." if tried else ""
-    return f"{'Not all is well' if summary.status(run) else 'All is well'}: {len(run.cells)} cells: {counted}.{where}{wrong}"
+def headline(run: Run) -> list[str]:
+    """The verdict in a few lines, those of the report, without its markup."""
+    lines = [*evidence.first(run), witnesses.headline(run), controls.headline(run)]
+    return [line.replace("**", "") for line in lines if line]
 
 
 def _control(outcome: Outcome) -> dict[str, Any]:
@@ -111,12 +108,15 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     return {
         "name": case,
         "setting": asdict(setting) if setting else None,
+        "answer": evidence.answer(Run(tuple(cells))).split("**")[1],
+        "told": told(run, case),
         "speed": u.speed,
         "frequency": u.frequency,
         "perSpeed": u.frequencies / u.speeds,
         "verdicts": verdicts(),
         "columns": columns(cells),
         "cells": [_cell(c, named.get(c, ""), u) for c in cells],
+        "lines": _lines(cells, u),
         "levels": [
             [v.code, v.omega * u.speeds, v.mode, v.elements, v.frequency * u.frequencies]
             for v in run.levels
@@ -124,6 +124,28 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
         ],
         "shapes": moving(case, cells, u),
     }
+
+
+def _lines(cells: list[Cell], u: Units) -> list[dict[str, Any]]:
+    """Core's frequencies with all effects against speed, as the report's Campbell diagram has them."""
+    found = core_lines([c for c in cells if c.role != "same discretisation"] or cells)
+    scaled = {name: [[o * u.speeds, line[o] * u.frequencies] for o in sorted(line)] for name, line in found.items()}
+    return [{"name": name, "points": points} for name, points in scaled.items()]
+
+
+def told(run: Run, case: str) -> list[dict[str, Any]]:
+    """A case's answers by verdict, gravest first: how many, and the farthest from core for its target, and where."""
+    out, cells = [], [c for c in run.cells if c.case == case]
+    for verdict, n in summary.counts(cells).items():
+        mine = [c for c in cells if c.verdict == verdict]
+        far = summary.largest(mine) if verdict == "known difference" else evidence.farthest(mine)
+        text = plus_minus(far) if far and size(far) is not None else ""
+        parts = (summary.column(far), labels(run.cells).get(far), units(run, case).at(far.omega)) if far else ()
+        where = ", ".join(part for part in parts if part)
+        more = f"; target {summary.allowed(far.target)}" if far and verdict != "known difference" else ""
+        if n:
+            out.append({"verdict": GRAVEST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{more}"})
+    return out
 
 
 def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
@@ -138,6 +160,7 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
         "verdict": GRAVEST_FIRST.index(c.verdict),
         "text": plus_minus(c) if size(c) is not None else "",
         "reason": c.reason,
+        "target": summary.allowed(c.target),
         "elements": c.elements,
         "order": c.order,
         "seconds": c.seconds,
@@ -150,24 +173,30 @@ def code_names(run: Run) -> list[str]:
 
 
 def codes(run: Run) -> list[dict[str, Any]]:
-    """All codes in a line each."""
+    """All codes in a line each: how many answers of each verdict, the worst for its target, the largest explained."""
     out = []
     for name in code_names(run):
         cells = code_pages.own(run, name)
-        far = summary.largest(cells)
+        far, known = evidence.farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
         out.append(
             {
                 "name": name,
                 "page": page(name, "code"),
-                "title": _known(name).get("title", name),
+                "title": _known(name).get("title", ""),
                 "version": run.versions.get(name, ""),
                 "shares": shared(run, name),
                 "counts": [[GRAVEST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
-                "worst": f"{plus_minus(far)} ({far.case})" if far else "",
+                "worst": _placed(far),
+                "known": _placed(known),
                 "defects": len(code_pages.defects(name)),
             }
         )
     return out
+
+
+def _placed(cell: Cell | None) -> list[Any] | None:
+    """Verdict, size, case; None for none."""
+    return [GRAVEST_FIRST.index(cell.verdict), plus_minus(cell), cell.case] if cell else None
 
 
 def of_code(run: Run, name: str) -> dict[str, Any]:

@@ -51,6 +51,7 @@ def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
         solved.append(_at(aligned(found, weight), families(aligned(found, weight), weight), radius, u))
     frames = sections.frames(blade, STATIONS * blade.length)
     return {
+        "elements": ELEMENTS,
         "rest": (frames[:, :3, 3] / radius).round(5).tolist(),
         "across": (HALF_CHORD * frames[:, :3, 1]).round(5).tolist(),
         "speeds": solved,

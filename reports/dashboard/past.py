@@ -87,11 +87,12 @@ def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
             for k in frequency_steps(values):
                 before = next(v for v in reversed(values[:k]) if v is not None)
                 found[k, who, case][omega, mode] = _change(before, values[k])
+    families = {(p.case, p.omega, p.mode): p.family for entry in entries for p in entry.cells}
     out = []
     for (k, who, case), where in found.items():
         (omega, mode), change = max(where.items(), key=_size)
         step = {"run": k, "kind": "frequency", "who": who, "case": case, "count": len(where)}
-        out.append({**step, "change": change, "omega": omega, "mode": mode})
+        out.append({**step, "change": change, "omega": omega, "mode": mode, "family": families[case, omega, mode]})
     return out
 
 

@@ -7,10 +7,13 @@ const inWords = (speed) => at(speed, DATA.speed);
 function casePage() {
   const s = DATA.setting;
   MAIN.append(make("h1", {}, DATA.name));
-  if (s) MAIN.append(make("p", {}, s.title), make("p", { class: "muted" }, s.description),
+  if (s) MAIN.append(make("p", {}, s.title));
+  MAIN.append(make("div", { id: "headline", class: `v${Math.min(...DATA.told.map((t) => t.verdict))}` }, make("p", {}, make("strong", {}, DATA.answer)), ...DATA.told.map((t) =>
+    make("p", {}, `${t.count} ${sign(t.verdict)}`, t.text ? `, at worst ${t.text} (${t.where})` : t.where ? ` (${t.where})` : ""))));
+  if (s) MAIN.append(make("p", { class: "muted" }, s.description),
     make("p", { class: "muted" }, Object.entries(s.facts).map(([k, v]) => `${k}: ${v}`).join(" · ")), make("p", { class: "muted" }, `Source: ${s.source}`));
   differences();
-  MAIN.append(make("div", { class: "pair" }, campbell(), viewer(), convergence(), timing()));
+  MAIN.append(make("div", { class: "pair" }, make("div", {}, campbell(), convergence()), make("div", {}, viewer(), timing())));
   everything();
 }
 
@@ -24,21 +27,35 @@ function differences() {
     const field = (name, code) => {
       const c = here.find((cell) => cell.code === code && (cell.name === name || !cell.mode));
       return c ? { verdict: c.verdict, text: c.text, label: `${name}, ${code}: ${DATA.verdicts[c.verdict].name} ${c.text}`,
-        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${DATA.frequency}, core ${digits(c.ref, 8)}`,
+        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${DATA.frequency}, core ${digits(c.ref, 8)} · target ${c.target}`,
           c.reason ? make("p", { class: "muted" }, c.reason) : null] } : null;
     };
     const answering = columns.filter((name) => !silent.includes(name));
-    const core = (name) => here.find((c) => c.name === name && c.full !== null)?.full;
+    const core = (name) => {  // of a code that leaves effects out, another mode may have this name
+      const named = here.filter((c) => c.name === name && c.full !== null);
+      return (named.find((c) => c.ref === c.full) || named[0])?.full;
+    };
+    const reasons = new Map();
+    for (const name of silent) {
+      const c = here.find((cell) => cell.code === name), why = `${sign(c.verdict)}: ${c.reason}`;
+      reasons.set(why, [...(reasons.get(why) || []), name]);
+    }
     place.replaceChildren(modes.length ? grid("mode", modes.map((name) => make("span", {}, name, make("small", {}, core(name) ? ` ${digits(core(name), 6)}` : ""))), answering, modes.map((name) => answering.map((code) => field(name, code))), detail) : make("p", {}, "No code has an answer at this speed."),
-      silent.length ? make("p", { class: "muted" }, "No answer: ", ...silent.flatMap((name) => { const c = here.find((cell) => cell.code === name); return [`${name} (${sign(c.verdict)}: ${c.reason}). `]; })) : "");
+      silent.length ? make("details", { class: "muted" }, make("summary", {}, `No answer: ${silent.join(", ")}`),
+        make("ul", {}, ...[...reasons].map(([why, names]) => make("li", {}, make("strong", {}, names.join(", ")), ` ${why}`)))) : "");
   };
   MAIN.append(make("h2", {}, "Difference ± uncertainty"), make("div", { class: "filters" }, chooser("speed", speeds.map((v) => [v, inWords(v)]), draw, "speed", speeds.at(-1))), place, detail,
     make("p", { class: "muted" }, `Beside each mode: core with all effects, ${DATA.frequency}. A known difference is from that; every other from core with the code's own effects.`));
   draw(speeds.at(-1));
 }
 
+// Between two speeds a frequency's square runs straight in the speed's (Southwell 1921).
+function curve([x, f], [x1, f1]) {
+  return Array.from({ length: 8 }, (_, k) => x + (x1 - x) * (k + 1) / 8).map((s) => [s, Math.sqrt(f * f + (f1 * f1 - f * f) * (s * s - x * x) / (x1 * x1 - x * x))]);
+}
+
 function campbell() {
-  const names = unique(solved.map((c) => c.name)), on = new Set([1, 2, 3]), place = make("div", {});
+  const names = DATA.lines.map((line) => line.name), on = new Set([1, 2, 3]), place = make("div", {});
   let code = "";
   const toggle = (n) => make("button", { "aria-pressed": String(on.has(n)), onclick: (event) => {
     if (!on.delete(n)) on.add(n);
@@ -50,15 +67,14 @@ function campbell() {
     last > 0 ? make("span", { class: "group" }, ...[1, 2, 3, 4, 5, 6, 9, 12].map(toggle)) : null,
     chooser("marks", [["", "all codes"], ["none", "none"], ...unique(solved.map((c) => c.code)).map((c) => [c, c])], (v) => { code = v; draw(); }, "marks"));
   function draw() {
-    const core = names.map((name, k) => ({ name, colour: colour(k), dash: dash(k),
-      points: [...new Map(solved.filter((c) => c.name === name && c.full !== null).map((c) => [c.speed, c.full]))].sort((a, b) => a[0] - b[0]) }));
+    const core = DATA.lines.map(({ name, points }, k) => ({ name, colour: colour(k), dash: dash(k), points: points.flatMap((p, i) => (i ? curve(points[i - 1], p) : [p])) }));
     const top = Math.max(...core.flatMap((c) => c.points.map((p) => p[1])));
     const rays = last > 0 ? [...on].sort((a, b) => a - b).map((n) => {
       const end = Math.min(last, top / (n * DATA.perSpeed));
       return { name: `${n}P`, end: `${n}P`, colour: "#8a949e", width: 1, quiet: true, points: [[0, 0], [end, n * DATA.perSpeed * end]] };
     }) : [];
     const dots = names.map((name, k) => ({ name, colour: colour(k), marks: true, line: false,
-      points: solved.filter((c) => c.name === name && (!code || c.code === code)).map((c) => [c.speed, c.f]) }));
+      points: solved.filter((c) => (names.includes(c.name) ? c.name : `mode ${c.mode}`) === name && (!code || c.code === code)).map((c) => [c.speed, c.f]) }));
     const drawing = chart([...rays, ...core, ...dots], { x: `rotor speed, ${DATA.speed}`, y: `frequency, ${DATA.frequency}`, yMin: 0, label: "Campbell diagram" });
     place.replaceChildren(drawing, legend(core));
   }
@@ -99,7 +115,11 @@ function viewer() {
   const canvas = make("canvas", { width: 900, height: 520, role: "img", "aria-label": "A blade moving in one of its modes while the rotor turns" });
   const picture = rotor(canvas, shapes), still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   let speed = shapes.speeds.length - 1, mode = 0, playing = !still;
-  const show = () => picture.show(shapes.speeds[speed].modes[mode], shapes.speeds[speed].speed !== 0);
+  const along = make("div", {});
+  const show = () => {
+    picture.show(shapes.speeds[speed].modes[mode], shapes.speeds[speed].speed !== 0);
+    along.replaceChildren(...spanwise(shapes.rest, shapes.speeds[speed].modes[mode]));
+  };
   const list = () => shapes.speeds[speed].modes.map((m, k) => make("option", { value: k }, `${m.name}: ${digits(m.f, 5)} ${DATA.frequency}`));
   const button = make("button", { "aria-pressed": String(playing), onclick: () => {
     playing = !playing;
@@ -118,8 +138,20 @@ function viewer() {
   show();
   picture.play(playing);
   block.append(make("div", { class: "filters" }, button, modes, speeds), canvas,
-    make("p", { class: "muted" }, "Core's shapes, about the steady state. Amplitude, chord, and both rates are for the eye; thick: the leading edge. Upwards: the rotor's axis."));
+    make("p", { class: "muted" }, `Core's shapes about the steady state, of ${shapes.elements} elements: their frequencies are not yet the converged ones above. Amplitude, chord, and both rates are for the eye; thick: the leading edge. Upwards: the rotor's axis.`),
+    along, make("p", { class: "muted" }, "Displacements in the hub's axes over the largest of them, each at the moment when it is largest."));
   return block;
+}
+
+// The chosen mode's displacements along the blade: each turned to its own phase, those under a hundredth left out.
+function spanwise(rest, mode) {
+  const radius = rest.map((p) => Math.hypot(...p)), size = (k) => mode.re.map((re, i) => Math.hypot(re[k], mode.im[i][k]));
+  const all = [2, 1, 0].map((k) => ({ k, name: ["axial", "chordwise", "flapwise"][k], sizes: size(k) })), far = Math.max(...all.flatMap((c) => c.sizes));
+  const series = all.map(({ k, name, sizes }, place) => {
+    const most = Math.max(...sizes), i = sizes.indexOf(most), c = mode.re[i][k] / most, s = mode.im[i][k] / most;
+    return { name, most, colour: colour(place), dash: dash(place * COLOURS.length), points: radius.map((r, j) => [r, (mode.re[j][k] * c + mode.im[j][k] * s) / far]) };
+  }).filter((s) => s.most > 0.01 * far);
+  return [chart(series, { x: "radius over the tip's", y: "displacement", height: 190, label: "Displacements along the blade" }), legend(series)];
 }
 
 function timing() {
@@ -131,7 +163,7 @@ function timing() {
   const longest = Math.max(...lines.map((l) => l[2]));
   return make("section", {}, make("h2", {}, "Time"), make("p", { class: "muted" }, "Of the finest solution, while other codes ran beside it: a hint, not a measurement."),
     lines.length ? table(["code", "median, s", "all speeds, s", ""], lines.map(([code, median, sum]) => row(code, digits(median, 2), digits(sum, 2),
-      make("td", { class: "bar" }, make("span", { style: `width:${(100 * sum / longest).toFixed(1)}%` })))), { id: "timing" }) : make("p", { class: "muted" }, "No times in this run."));
+      make("td", { class: "bar" }, make("span", { style: `width:${(100 * sum / longest).toFixed(1)}%` })))), { id: "timing", class: null }) : make("p", { class: "muted" }, "No times in this run."));
 }
 
 function everything() {

@@ -3,10 +3,12 @@
 
 const prose = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", {}, part) : part));
 
+const placed = (far) => make("td", { class: far ? `prose v${far[0]}` : null }, ...(far ? [figure(`${DATA.verdicts[far[0]].sign} ${far[1]}`), make("br"), ...broken(far[2])] : []));
+
 function codes() {
   MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share core's mechanical model or discretisation are one witness of the implementation, not several of the answer."),
-    table(["code", "", "version", "shares with core", "cells", "largest difference", "known defects"], DATA.codes.map((code) => row(link(code.page, code.name),
-      code.title, code.version, code.shares, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join("  "), code.worst, code.defects || "")), { id: "codes" }),
+    table(["code", "what", "version", "shares with core", "answers", "worst, for its target", "largest known difference", "defects"], DATA.codes.map((code) => row(link(code.page, code.name),
+      make("td", { class: "prose" }, code.title), code.version, code.shares, make("td", { class: "prose" }, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join(", ")), placed(code.worst), placed(code.known), code.defects || "")), { id: "codes" }),
     make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
 }
 

@@ -2,13 +2,20 @@
 // A heat map: one field takes part in the tab order, arrow keys move from field to field, Enter opens what a field is about.
 
 // fields[i][j]: null, or {verdict, text, label, tell: () => [children for the detail], href}
+// The sign, the value and its uncertainty, each on a line of its own where there is no room beside each other.
+function parts(field) {
+  const mark = DATA.verdicts[field.verdict].sign, [value, uncertainty] = field.text.split(" ± ");
+  if (uncertainty) return [figure(`${mark} ${value}`), " ", figure(`± ${uncertainty}`, "figure below")];
+  return value ? [mark, " ", figure(value, "figure below")] : [mark];
+}
+
 function grid(corner, rows, columns, fields, detail, last = null) {
   const td = (field) => {
     if (!field) return make("td", {});
     const tell = () => detail.replaceChildren(...field.tell().filter((child) => child !== null));
     return make("td", { class: `v${field.verdict}`, tabindex: "-1", "aria-label": field.label, onfocus: tell, onmouseenter: tell,
       onclick: (event) => enter(event.currentTarget), onkeydown: (event) => key(event, field.href) },
-    `${DATA.verdicts[field.verdict].sign} ${field.text}`);
+    ...parts(field));
   };
   const head = make("tr", {}, make("th", { scope: "col" }, corner), ...columns.map((column) => make("th", { scope: "col" }, column)));
   const body = make("tbody", {}, ...rows.map((name, i) => make("tr", {}, make("th", { scope: "row" }, name), ...fields[i].map(td))), last);
@@ -33,5 +40,5 @@ function grid(corner, rows, columns, fields, detail, last = null) {
     }
   }
 
-  return make("div", { class: "wide" }, make("table", { class: "matrix" }, make("thead", {}, head), body));
+  return sideways(make("div", { class: "wide" }, make("table", { class: "matrix" }, make("thead", {}, head), body)));
 }

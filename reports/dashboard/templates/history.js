@@ -14,7 +14,7 @@ function versions(from, to) {
 }
 
 function historyPage() {
-  MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.torn.length ? `; lines cut short and left out: ${DATA.torn.join(", ")}` : ""));
+  MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.torn.length ? `; left out, for they are cut short: line ${DATA.torn.join(", line ")} of the file` : "", "."));
   if (!RUNS.length) return;
   MAIN.append(table(["run", "commit", "date, UTC", "cells", "mistakes caught", "machine", "new versions"], RUNS.map((r, k) => row(k + 1, make("td", { title: r.commit }, r.commit.slice(0, 12)), date(r),
     make("td", {}, ...r.counts.map(([v, n]) => make("span", { class: `chip v${v}`, title: DATA.verdicts[v].name }, `${n} ${DATA.verdicts[v].sign}`))),
@@ -88,12 +88,21 @@ function steps() {
   const all = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
   MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A frequency steps where it moves by more than 1e-9, a code's own or core's; a time where its level changes and stays, beyond its scatter, on one machine."),
     all.length ? table(["at run", "who", "what", "largest change", "where", "versions that changed"], all.map((s) => row(named(s.run), s.who,
-      s.kind === "time" ? `time, in ${s.count} ${s.count === 1 ? "case" : "cases"}` : `${s.count} ${s.count === 1 ? "frequency" : "frequencies"}`, s.change === null ? "from nothing" : relative(s.change), s.mode === null ? s.case : `${s.case}, mode ${where(s.mode, "", s.omega)}`,
+      s.kind === "time" ? `time, in ${s.count} ${s.count === 1 ? "case" : "cases"}` : `${s.count} ${s.count === 1 ? "frequency" : "frequencies"}`, s.change === null ? "from nothing" : relative(s.change), s.mode === null ? s.case : `${s.case}, mode ${where(s.mode, s.family, s.omega)}`,
       make("td", { class: "reason" }, s.run ? versions(s.run - 1, s.run) : ""))), { id: "steps" }) : make("p", { id: "steps" }, "None."));
 }
 
+// The number that stepped last: what a reader wants to see first.
+function latest() {
+  const [step] = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
+  if (!step) return {};
+  if (step.kind === "time") return { case: step.case, code: step.who, number: `t ${DATA.timings.find((t) => t.case === step.case && t.code === step.who)?.machine}` };
+  const cell = DATA.cells.find((c) => c[CASE] === step.case && c[MODE] === step.mode && c[OMEGA] === step.omega && (c[CODE] === step.who || step.who === "core"));
+  return { case: step.case, code: cell[CODE], number: `${step.who === "core" ? "d" : "f"} mode ${where(cell[MODE], cell[FAMILY], cell[OMEGA])}` };
+}
+
 function numbers() {
-  const place = make("div", { class: "chart" }), chosen = {};
+  const place = make("div", { class: "chart" }), chosen = latest();
   const names = unique([...DATA.cells.filter((c) => c[VALUES] !== null), ...DATA.timings.map((t) => [t.case])].map((c) => c[CASE]));
   if (!names.length) return;
   const choosers = ["case", "code", "number"].map((name) => chooser(name, [], (v) => { chosen[name] = v; draw(); }, `series-${name}`));

@@ -1,7 +1,7 @@
 "use strict";
 // The first page: the verdict, the heat map with its filters, core made wrong on purpose.
 
-const [CASE, COLUMN, SPEED, NAME, VERDICT, SIZE, TEXT, REASON] = [0, 1, 2, 3, 4, 5, 6, 7];
+const [CASE, COLUMN, SPEED, NAME, VERDICT, SIZE, TEXT, REASON, TARGET] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
 const FILTERS = ["code", "family", "speed", "verdict"];
 const family = (cell) => cell[NAME].replace(/ \d+$/, "");
 const unit = (cell) => DATA.cases[cell[CASE]].unit;
@@ -41,7 +41,7 @@ function matrix() {
       verdict: grave, text: worst[TEXT].split(" ± ")[0], href: item.page,
       label: `${item.name}, ${column.name}: ${DATA.verdicts[grave].name} ${worst[TEXT]}`,
       tell: () => [make("strong", {}, link(item.page, item.name), " × ", link(column.page, column.name)), "  ", chip(grave),
-        worst[TEXT] ? `${worst[TEXT]} (${worst[NAME]}, ${speed(worst)}; ` : "(", `${group.length} ${group.length === 1 ? "cell" : "cells"})`,
+        worst[TEXT] ? `${worst[TEXT]} (${worst[NAME]}, ${speed(worst)}; target ${worst[TARGET]}; ` : "(", `${group.length} ${group.length === 1 ? "cell" : "cells"})`,
         worst[REASON] ? make("p", { class: "muted" }, worst[REASON]) : null],
     };
   }
@@ -55,17 +55,19 @@ function matrix() {
     }
     const cases = DATA.cases.map((_, k) => k).filter((k) => shown.some((c) => c[CASE] === k));
     const columns = DATA.columns.map((_, j) => j).filter((j) => shown.some((c) => c[COLUMN] === j));
-    const shares = make("tr", { class: "shares" }, make("th", { scope: "row" }, "shares with core"), ...columns.map((j) => make("td", {}, DATA.columns[j].shares)));
+    const shares = make("tr", { class: "shares" }, make("th", { scope: "row" }, "shares with core"), ...columns.map((j) => make("td", {}, DATA.columns[j].shares.replace("discretisation", "discreti\u00adsation"))));
     place.replaceChildren(cases.length ? grid("case", cases.map((k) => make("a", { href: DATA.cases[k].page, title: DATA.cases[k].title }, ...broken(DATA.cases[k].name))),
-      columns.map((j) => link(DATA.columns[j].page, DATA.columns[j].name)),
+      columns.map((j) => make(DATA.columns[j].page ? "a" : "span", { href: DATA.columns[j].page }, ...broken(DATA.columns[j].name))),
       cases.map((k) => columns.map((j) => field(k, j, groups.get(`${k} ${j}`) || []))), detail, shares) : make("p", {}, "No cell is of this kind."));
   }
 
-  MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("p", { id: "headline", class: DATA.right ? "v3" : "v0" }, DATA.headline),
+  MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("div", { id: "headline", class: DATA.right ? "v3" : "v0" }, ...DATA.headline.map((line) => make("p", {}, line))),
     make("p", { class: "muted" }, "In each field: the gravest verdict of all modes and speeds shown, and the largest difference from core behind it. ",
       "Point at a field, or go from one to the next with the arrow keys, for details; Enter opens the case."),
     filters, make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))), place, detail);
   draw();
+  MAIN.append(make("h2", {}, "The evidence, kind by kind"), table(Object.keys(DATA.evidence[0] || {}),
+    DATA.evidence.map((kind) => row(...Object.values(kind).map((text) => make("td", { class: "prose" }, text)))), { id: "evidence" }));
   if (DATA.controls.length) controls();
   MAIN.append(make("h2", {}, "How to get this"), make("p", {}, make("code", {}, DATA.command)),
     make("p", { class: "muted" }, Object.entries(DATA.versions).map(([k, v]) => `${k} ${v}`).join(", ")));
@@ -73,10 +75,10 @@ function matrix() {
 
 function controls() {
   MAIN.append(make("h2", {}, "Core made wrong on purpose"), make("p", { class: "muted" }, "Every run tries; the matrix must notice."),
-    table(["mistake", "outcome", "largest change of a frequency", "where", "in cases", "caught by"], DATA.controls.map((o) => row(o.name,
+    table(["mistake", "outcome", "largest change of a frequency", "where", "cases", "caught by"], DATA.controls.map((o) => row(o.name,
       make("td", { class: o.status === "caught" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "caught" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
       o.change === null && o.where ? "no such mode" : relative(o.change), o.where, make("td", { title: o.cases.join(", ") }, o.cases.length),
-      make("td", { class: "reason" }, `${o.caught.length}: ${o.caught.join(", ")}`))), { id: "controls" }));
+      make("td", { class: "reason" }, o.caught.length ? `${o.caught.length}: ${o.caught.join(", ")}` : "nobody"))), { id: "controls" }));
 }
 
 matrix();

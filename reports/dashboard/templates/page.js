@@ -24,6 +24,7 @@ const digits = (value, count = 7) => (value === null || value === undefined ? ""
 const brief = (value) => String(Number(Number(value).toPrecision(6)));
 const at = (speed, unit) => (speed ? (unit === "γ" ? `γ = ${brief(speed)}` : `${brief(speed)} ${unit}`) : "at rest");
 const sign = (k) => `${DATA.verdicts[k].sign} ${DATA.verdicts[k].name}`;
+const figure = (text, name = "figure") => make("span", { class: name }, text);  // breaks nowhere
 const chip = (k, before = "") => make("span", { class: `chip v${k}` }, before + sign(k));
 const judged = (k) => make("td", { class: `v${k}` }, sign(k));
 
@@ -40,12 +41,24 @@ function chooser(label, options, onchange, name, value) {
   return make("label", {}, label, select);
 }
 
+// Fades the edge where there is more to scroll to.
+function sideways(box) {
+  const fade = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
+  box.addEventListener("scroll", fade, { passive: true });
+  new ResizeObserver(fade).observe(box);
+  return box;
+}
+
 function row(...values) {
   return make("tr", {}, ...values.map((v) => (v instanceof Node && v.nodeName === "TD" ? v : make("td", {}, v ?? ""))));
 }
 
 function table(head, rows, attributes = {}) {
   const top = make("thead", {}, make("tr", {}, ...head.map((h) => make("th", { scope: "col" }, h))));
-  return make("div", { class: "wide", tabindex: "0", role: "region", "aria-label": head.join(", ") },
-    make("table", attributes, top, make("tbody", {}, ...rows)));
+  for (const line of rows) [...line.children].forEach((field, k) => {  // on a phone a row is a card, its fields labelled
+    field.dataset.label = head[k];
+    if (field.textContent || field.firstElementChild) field.replaceChildren(make("div", {}, ...field.childNodes));
+  });
+  return sideways(make("div", { class: "wide", tabindex: "0", role: "region", "aria-label": head.filter(Boolean).join(", ") },
+    make("table", { class: "cards", ...attributes }, top, make("tbody", {}, ...rows))));
 }
