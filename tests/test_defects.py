@@ -15,6 +15,7 @@ INSTALLED = {
     "pybmodes": find_spec("pybmodes") is not None,
     "calculix": calculix.version() is not None,
     "sharpy": elsewhere.SHARPY.version() is not None,
+    "frame3dd": elsewhere.FRAME3DD.version() is not None,
     "scikit": find_spec("skfem") is not None,
 }
 
@@ -22,7 +23,8 @@ INSTALLED = {
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
 def test_the_defect_is_there(defect: Defect) -> None:
     if not INSTALLED[defect.script.partition("_")[0]]:
-        pytest.skip("not installed")
+        hint = f": southwell codes install {defect.environment}" if defect.environment else ""
+        pytest.skip(f"not installed{hint}")
     said = defects.shown(defect).splitlines()
     assert said[-1] == "defect: present", "mended: strike it off the list"
     assert "expected" in "".join(said[1:-1])

@@ -1,6 +1,7 @@
 """Frame3DD's frame against closed forms and core; the way it is told of the rotation; what it is asked."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.references import frame3dd_frame
+from southwell.references.elsewhere import frame3dd_worker
 from southwell.references.frame3dd_frame import CODE, MOST, SECTIONS, request
 from southwell.references.interface import CodeError
 from southwell.tests.beams import PARK, curved, tapered, yoo_shin
@@ -117,3 +119,29 @@ def test_a_square_below_that_of_the_speed_is_no_steady_state(monkeypatch: pytest
     )
     with pytest.raises(CodeError, match="no stable steady state; lower the speed"):
         CODE.solve(PARK, 10.0, 20, 1)
+
+
+class Frame:
+    """Answers by Stodola's iteration alone, or for some numbers of modes only: two modes along the blade's planes given."""
+
+    def __init__(self, planes: list[list[float]], subspace: set[int]) -> None:
+        self.planes, self.subspace = np.array(planes), subspace
+
+    def enableDynamics(self, count: int, method: int, *_: float) -> None:
+        self.gives_up = method == frame3dd_worker.JACOBI and count not in self.subspace
+
+    def run(self) -> tuple[SimpleNamespace]:
+        if self.gives_up:
+            raise RuntimeError("did not exit gracefully")
+        y, z = (np.outer(column, np.arange(3.0)) for column in self.planes.T)
+        return (SimpleNamespace(freq=[2.0, 1.0, 3.0], xdsp=0 * y, ydsp=y, zdsp=z, xrot=0 * y),)
+
+
+def test_half_an_answer_of_stodolas_iteration_is_none() -> None:
+    """Three modes in one plane, pitched: refused, if they are Stodola's; in two planes, or by subspace iteration, taken."""
+    one, two = [[1.0, 2.0]] * 3, [[1.0, 2.0], [2.0, 4.0], [2.0, -1.0]]
+    with pytest.raises(RuntimeError, match="left out a plane"):
+        frame3dd_worker.modes(Frame(one, set()), 3)
+    for frame in (Frame(two, set()), Frame(one, {5})):
+        assert frame3dd_worker.modes(frame, 3)["frequencies"] == pytest.approx([2 * np.pi, 4 * np.pi, 6 * np.pi])
+    assert len(frame3dd_worker.modes(Frame(one, {3}), 2)["shapes"]) == 2

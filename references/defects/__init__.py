@@ -98,6 +98,20 @@ DEFECTS = (
         "The sections' rotation vectors are set after the beam is made.",
         environment="sharpy",
     ),
+    Defect(
+        ("frame3dd",),
+        "frame3dd_stodola",
+        "Stodola's iteration leaves out all modes of one plane where the planes do not couple, and says nothing.",
+        "Subspace iteration first; what Stodola's finds is refused if all of it moves in one plane.",
+        environment="frame3dd",
+    ),
+    Defect(
+        ("frame3dd",),
+        "frame3dd_subspace",
+        "Subspace iteration gives up on some blades: its frequencies are not numbers.",
+        "It is asked for other numbers of modes; then Stodola's iteration.",
+        environment="frame3dd",
+    ),
 )
 
 

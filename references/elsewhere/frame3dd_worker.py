@@ -20,6 +20,9 @@ HELD = 1e30
 JACOBI, STODOLA = 1, 2
 """Subspace iteration, which gives up on some blades; Stodola's, which may leave out a plane where planes do not couple."""
 
+MORE, ONE_PLANE = 3, 1e-6
+"""Numbers of modes that subspace iteration is asked for, until it has an answer; how little motion across a plane is none."""
+
 CONSISTENT, TOLERANCE = 0, 1e-9
 
 
@@ -70,12 +73,24 @@ def solve(request):
     frame.addLoadCase(load)
     if request["tip"]:
         frame.changeExtraNodeMass(number[-1:], [request["tip"]], *[zero[:1]] * 9, False)
-    try:
-        modal = run(frame, request["count"], JACOBI)
-    except RuntimeError:
-        modal = run(frame, request["count"], STODOLA)
+    return modes(frame, request["count"])
+
+
+def modes(frame, count):
+    """The answer; RuntimeError where there is none to be trusted."""
+    for method, asked in (*((JACOBI, count + more) for more in range(MORE)), (STODOLA, count)):
+        try:
+            modal = run(frame, asked, method)
+            break
+        except RuntimeError:
+            if method == STODOLA:
+                raise
     shapes = np.stack([modal.xdsp, modal.ydsp, modal.zdsp, modal.xrot], axis=1)
-    return {"frequencies": (2 * np.pi * np.array(modal.freq)).tolist(), "shapes": shapes.tolist()}
+    across, along = np.linalg.svd(shapes[:, 1:3].transpose(0, 2, 1).reshape(-1, 2), compute_uv=False)[::-1]
+    if method == STODOLA and count > 1 and across < ONE_PLANE * along:
+        raise RuntimeError("Stodola's iteration left out a plane, and subspace iteration gave up")
+    order = np.argsort(modal.freq)[:count]
+    return {"frequencies": (2 * np.pi * np.array(modal.freq)[order]).tolist(), "shapes": shapes[order].tolist()}
 
 
 def run(frame, count, method):
