@@ -71,7 +71,7 @@ def judge(code: Code, check: Check) -> Outcome:
 CHECKS = (
     Check(
         "declarations",
-        "name, title, shares, model, levels, order, and a version or a hint",
+        "name, title, shares, model, levels, order, digits, and a version or a hint",
         checks.declares,
         runs=False,
     ),
@@ -82,7 +82,7 @@ CHECKS = (
     Check("repeats itself", "the same call, the same answer", checks.repeats),
     Check("shapes", "stations and columns, the root at rest, the first shape in closed form", checks.shapes),
     Check("order", "refinement converges as fast as declared", checks.order),
-    Check("units", "no constant in it belongs to one system of units", checks.units),
+    Check("units", "no constant in it belongs to one system of units, to the digits it declares", checks.units),
     Check("quarter pitch", "swaps the planes", checks.quarter_pitch),
     Check("pitch's sense", "from y towards z", checks.pitch_sense),
     Check("twist's sense", "twisted throughout is pitched", checks.twist_sense),

@@ -15,7 +15,7 @@ from ..core.model import Model
 from ..core.modes import STATIONS, Modes
 from . import conformance_blades as known
 from .conformance_blades import BEAM, CANTILEVER, LENGTH, PLANK, PROPERTIES, Property
-from .interface import Code, CodeError, Shares
+from .interface import Code, CodeError, Shares, digits
 
 Array = NDArray[np.float64]
 Ask = Callable[[Code], None]
@@ -24,7 +24,10 @@ NEAR = 1e-3
 """Relative agreement asked for, extrapolated from the two coarsest levels; or the code's own bracket if that is wider."""
 
 ROUNDING = 1e-6
-"""Relative, where two answers of one code must be the same."""
+"""Relative, at the most, where two answers of one code to the same numbers must be the same."""
+
+FEWEST = 5
+"""Digits with which a code's answers can still be held to ``NEAR``."""
 
 DROPPED, VISIBLE = 0.25, 5e-3
 """How near an answer must be, as a share of what dropping a thing does; how much, relative, that must do to be asked for."""
@@ -47,8 +50,19 @@ def _close(found: Any, exact: Any, what: str, within: float) -> None:
     found, exact = np.atleast_1d(found), np.atleast_1d(exact)
     _keep(len(found) >= len(exact), f"{what}: {len(found)} modes, {len(exact)} expected")
     found = found[: len(exact)]
-    good = (np.abs(found / exact - 1.0) <= within).all()
-    _keep(good, f"{what}: {np.round(found, 6).tolist()} rad/s, expected {np.round(exact, 6).tolist()}")
+    off = np.abs(found / exact - 1.0).max()
+    said = f"{what}: {np.round(found, 6).tolist()} rad/s, expected {np.round(exact, 6).tolist()}"
+    _keep(off <= within, f"{said}: {off:.1e} apart, at most {within:.0e}")
+
+
+def _rounding(code: Code) -> float:
+    """Relative, of two answers: half a unit of the last digit each, where the first digit is 1."""
+    return 10.0 ** (1 - digits(code))
+
+
+def _same(code: Code) -> float:
+    """The same for answers to the same numbers, where conditioning does not matter."""
+    return min(_rounding(code), ROUNDING)
 
 
 def _ask(code: Code, blade: Blade, omega: float, level: int, count: int = 4) -> Modes:
@@ -90,6 +104,8 @@ def declares(code: Code) -> None:
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
     _keep(isinstance(code.model, Model), f"model: {code.model!r}: not a core.model.Model")
     _keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: a whole number, 0 if spectral")
+    told = digits(code)
+    _keep(isinstance(told, int) and told >= FEWEST, f"digits: {told!r}: a whole number, {FEWEST} at least")
     steps = np.divide(code.levels[1:], code.levels[:-1])
     _keep(len(steps) >= 2 and (steps >= 1.4).all(), f"levels: {code.levels}: three at least, each 1.4 times the last")
     version = code.version()
@@ -136,7 +152,7 @@ def counts(code: Code) -> None:
         _keep((f > 0).all() and (np.diff(f) >= 0).all(), f"frequencies: {f.tolist()}: not positive and ascending")
         _keep(modes.omega == known.SPEED, f"Modes.omega: {modes.omega}, asked at {known.SPEED}")
         _keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, asked for {code.levels[0]}")
-    _close(many.frequencies, few.frequencies, "the first three of eight, and of three", ROUNDING)
+    _close(many.frequencies, few.frequencies, "the first three of eight, and of three", _same(code))
 
 
 def repeats(code: Code) -> None:
@@ -179,8 +195,8 @@ def order(code: Code) -> None:
 
 
 def units(code: Code) -> None:
-    """Lengths in decimetres, masses in grams, times in tenths of a second: the same but for what rounding then differs by."""
-    length, mass, rate = 10.0, 1000.0, 0.1
+    """Lengths in feet, masses in pounds, times in minutes: the same, to the digits that the code declares."""
+    length, mass, rate = 1 / 0.3048, 1 / 0.45359237, 60.0
     power = np.add.outer([0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1])
     other = replace(
         BEAM,
@@ -190,13 +206,13 @@ def units(code: Code) -> None:
         mass=BEAM.mass * mass * length ** (power - 1.0),
     )
     here, there = _ask(code, BEAM, known.SPEED, 0), _ask(code, other, known.SPEED * rate, 0)
-    _close(there.frequencies / rate, here.frequencies, "the same beam in dm, g and 0.1 s", NEAR / 10)
+    _close(there.frequencies / rate, here.frequencies, "the same beam in ft, lb and min", _rounding(code))
 
 
 def quarter_pitch(code: Code) -> None:
     """Pitch by 90° is the other plane."""
     pitched, plain = (_ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
-    _close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with planes swapped", ROUNDING)
+    _close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with planes swapped", _same(code))
     for axis in (1, 2):
         same = _along(pitched, axis) == _along(plain, axis)
         _keep(same, f"a plank pitched by 90°: other modes along {'xyz'[axis]} than one with planes swapped has")

@@ -53,6 +53,7 @@ class Frame3DD:
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
+    digits = 8  # it iterates, on equations that ``STIFF`` makes ill-conditioned
     hint = "southwell codes install frame3dd"
 
     def version(self) -> str | None:

@@ -17,6 +17,10 @@ from ..core.modes import Modes
 Shares = Literal["nothing", "mechanical model", "discretisation"]
 
 
+DIGITS = 9
+"""Of a code that declares none."""
+
+
 class CodeError(RuntimeError):
     """A code ran and could not answer; the message says why."""
 
@@ -32,6 +36,9 @@ class Code(Protocol):
         levels: refinements to use, coarse to fine (elements, or terms); each at least 1.4 times the one before.
         order: the theoretical order of convergence of its frequencies (0: spectral).
         hint: how to install what it needs.
+
+    A code that prints, or iterates to, fewer than nine significant digits of its frequencies says so: ``digits: int``. No more
+    is then asked of two answers that should be the same, as of a blade in other units.
     """
 
     name: str
@@ -57,3 +64,8 @@ class Code(Protocol):
             CodeError: if the code ran and could not answer (no steady state, no convergence).
         """
         ...
+
+
+def digits(code: Code) -> int:
+    """Significant digits that its frequencies have: its own declaration, if it has one."""
+    return getattr(code, "digits", DIGITS)

@@ -57,6 +57,7 @@ class Sharpy:
     model = FULL
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
+    digits = 8  # its steady state is iterated to a tolerance
     hint = "southwell codes install sharpy"
 
     def version(self) -> str | None:

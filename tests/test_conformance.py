@@ -14,7 +14,7 @@ from southwell.core.model import FULL, Model
 from southwell.core.modes import Modes
 from southwell.references import codes
 from southwell.references.conformance import CHECKS, Check, judge
-from southwell.references.interface import CodeError, Shares
+from southwell.references.interface import DIGITS, CodeError, Shares
 
 
 @pytest.mark.parametrize("name", codes.OURS)
@@ -47,6 +47,7 @@ class Core:
     order: int = 4
     hint: str = ""
     installed: bool = True
+    digits: int = DIGITS
 
     def version(self) -> str | None:
         return "1.0" if self.installed else None
@@ -108,6 +109,11 @@ def one_more(m: Modes) -> Modes:
     return Modes(m.omega, np.append(m.frequencies, 1e6), np.append(m.shapes, m.shapes[:1], axis=0), m.elements)
 
 
+def printed(m: Modes, digits: int) -> Modes:
+    """As a code prints them."""
+    return replace(m, frequencies=np.array([float(f"{f:.{digits}g}") for f in m.frequencies]))
+
+
 def first_column_of_tip_mass(blade: Blade) -> Blade:
     m = blade.tip_mass[0, 0]
     return replace(blade, tip_mass=np.diag([m, m, m, 0.0, 0.0, 0.0]))
@@ -165,6 +171,13 @@ MISTAKES: dict[str, tuple[Core, set[str]]] = {
         Core(given=lambda b: replace(b, stiffness=b.stiffness + np.diag([0, 0, 0, 0, 1.0, 1.0]))),
         {"units"},
     ),
+    "a constant that does a millionth": (
+        Core(given=lambda b: replace(b, stiffness=b.stiffness + np.diag([0, 0, 0, 0, 1e-4, 1e-4]))),
+        {"units"},
+    ),
+    "six digits, unsaid": (Core(returned=lambda m: printed(m, 6)), {"units"}),
+    "five digits, six said": (Core(returned=lambda m: printed(m, 5), digits=6), {"units"}),
+    "too few digits to judge": (Core(returned=lambda m: printed(m, 4), digits=4), {"declarations"}),
     "declines, and answers": (Core(refused=lambda b: "coned" if b.precone else None), {"refusals"}),
     "declines without a word": (
         Core(refused=lambda b: " " if b.precone else None, solved=lambda b: "coned" if b.precone else None),
@@ -181,6 +194,12 @@ def test_mistakes_are_caught(mistake: str) -> None:
     found = failures(code, among=names)
     assert set(found) == by
     assert all(reason.strip() and "\n" not in reason for reason in found.values())
+
+
+@pytest.mark.parametrize("digits", [5, 7])
+def test_digits_that_are_said_are_enough(digits: int) -> None:
+    """A code that prints few is asked for no more, and keeps every law."""
+    assert failures(Core(returned=lambda m: printed(m, digits), digits=digits)) == {}
 
 
 def test_memory_of_another_call_is_caught() -> None:
