@@ -56,7 +56,12 @@ def convergence(run: Run, case: str, units: Units) -> Figure | None:
             axes.set_visible(k < len(modes))
             axes.tick_params(labelbottom=k + across >= len(modes))
         title(figure, f"{case}: distance from core's converged answer, {units.at(omega)}")
-        figure.text(0.54, (low - 0.42) / height, "elements, or terms of a series; numbers: observed order", ha="center")
+        figure.text(
+            0.54,
+            (low - 0.42) / height,
+            "elements, or terms of a series; numbers: observed order; grey: target",
+            ha="center",
+        )
         figure.text(0.012, 0.55, "|difference|, relative", rotation=90, va="center")
         key(figure, [_line(style[name], label=name) for name in drawn], 0.095)
     return figure

@@ -10,9 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from ..cases.results import Cell, Run, Verdict
-from ..cases.verdict import unsigned
 from .style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, house, key, looks, title
-from .summary import amount, column, columns, counts, labels
+from .summary import allowed, amount, column, columns, counts, labels
 from .units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
@@ -196,5 +195,8 @@ def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -
     targets = sorted({c.target for c in cells})
     axes.vlines(targets, row - 0.5, row + 0.5, color=INK, lw=1.2, zorder=4)
     if row == 0:
-        text = f"target {', '.join(unsigned(t) for t in targets)}"
-        axes.annotate(text, (targets[0], -0.5), (0, 4), textcoords="offset points", ha="center", size=8)
+        text = f"target {', '.join(allowed(t) for t in targets)}"
+        at = axes.transScale.transform((targets[0], 0.0))[0]
+        low, high = axes.transScale.transform([(x, 0.0) for x in axes.get_xlim()])[:, 0]
+        side = "right" if at > low + 0.85 * (high - low) else "center"  # clear of the next heading
+        axes.annotate(text, (targets[0], -0.5), (0, 4), textcoords="offset points", ha=side, size=8)

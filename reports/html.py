@@ -19,7 +19,8 @@ SAFE = "/:;=,()' \n.-+*<>"
 CLASSES = {sign: verdict.replace(" ", "-") for verdict, sign in SYMBOL.items()}
 """Of table cells that begin with a verdict's sign."""
 
-VERDICT = re.compile(rf"<td[^>]*>([{re.escape(''.join(CLASSES))}])(?= )")
+VERDICT = re.compile(rf"<td[^>]*>((?:[\d.e+-]+<br ?/?>)?([{re.escape(''.join(CLASSES))}]))(?= )")
+"""A cell's beginning: a frequency above it where there is one, then the sign."""
 
 STYLE = """
 :root { color-scheme: light; --ink: #1a1a1a; --faint: #d8d8d8; --link: #0b57a4; }
@@ -32,8 +33,8 @@ h3 { font-size: 1.08rem; } a { color: var(--link); }
 .wide { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 12.5px; line-height: 1.35; font-variant-numeric: tabular-nums; }
 th, td { border: 1px solid var(--faint); padding: 3px 6px; text-align: left; vertical-align: top; }
-td.pass { background: #e3f0fa; } td.fail { background: #f6c4a5; font-weight: 700; } td.inconclusive { background: #f0d3e4; }
-td.known-difference { background: #fbf3cf; } td.not-run, td.not-applicable { color: #6b6b6b; }
+td.pass { background: #b7e3d3; } td.fail { background: #f3b08f; font-weight: 700; } td.inconclusive { background: #f9dd9a; }
+td.known-difference { background: #bfe0f7; } td.not-run, td.not-applicable { color: #6b6b6b; }
 th { background: #f3f4f6; } td:first-child { font-weight: 500; }
 img { display: block; max-width: min(100%, 60rem); height: auto; margin: 1rem 0; }
 details { margin: 0.8rem 0; } summary { cursor: pointer; font-weight: 600; }
@@ -46,7 +47,8 @@ pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size
   .wide { overflow: visible; } img { max-width: 62%; } a { color: inherit; text-decoration: none; }
 }
 """
-"""Of screen and of paper; colours stand beside signs and words. Closed parts are printed closed, by a PDF's maker open."""
+"""Of screen and of paper; verdicts have the dashboard's colours, beside signs and words. Closed parts are printed closed,
+by a PDF's maker open."""
 
 
 class PdfError(RuntimeError):
@@ -92,8 +94,9 @@ def render(text: str, folder: Path) -> str:
             if child.type == "image":
                 _inline(child, folder)
     body = reader.renderer.render(tokens, reader.options, {})
-    body = VERDICT.sub(lambda m: f'<td class="{CLASSES[m[1]]}">{m[1]}', body)
+    body = VERDICT.sub(lambda m: f'<td class="{CLASSES[m[2]]}">{m[1]}', body)
     body = re.sub(r"(?<=\d) %", "&nbsp;%", body)
+    body = re.sub(rf"([±{re.escape(''.join(CLASSES))}]) (?=[+−\d]|&lt;\d|known)", r"\1&nbsp;", body)
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
     found = re.search(r"^# (.*)$", text, re.M)
     title = escape(found[1] if found else "Southwell")

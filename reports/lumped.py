@@ -72,7 +72,7 @@ def lumping(run: Run) -> Figure | None:
     with house():
         figure = Figure((WIDTH, 4.0))
         left = figure.add_axes((0.115, 0.125, 0.4, 0.64))
-        right = figure.add_axes((0.62, 0.125, 0.21, 0.64))
+        right = figure.add_axes((0.6, 0.125, 0.205, 0.64))
         _parts(left, found)
         _falling(right, found)
         shares = ", ".join(f"{100 * s:.0f} %" for s in found.shares)

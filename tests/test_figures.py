@@ -166,6 +166,26 @@ def test_labels_do_not_lie_on_each_other(lumped: Run) -> None:
         assert not [(a, b) for k, (a, p) in enumerate(boxes) for b, q in boxes[:k] if p.overlaps(q)]
 
 
+def test_labels_are_not_cut_off(lumped: Run) -> None:
+    for figure in [*all_figures(samples.run()), drawn(lumping_figure(lumped))]:
+        figure.draw_without_rendering()
+        canvas = figure.bbox.padded(1.0)
+        texts = [t for t in [*figure.texts, *(t for axes in figure.axes for t in labels(axes))] if t.get_text().strip()]
+        outside = [t.get_text() for t in texts if not canvas.containsx(t.get_window_extent().x1)]
+        assert outside == []
+
+
+def test_a_wide_target_is_told_clear_of_the_next_heading() -> None:
+    """A table held to 2 % only, whose target lies at the right edge; a tiny one is not told in percent."""
+    table = samples.cell(role="table", code="table", difference=0.014, target=0.02, frequency=11.86)
+    wide = Run((table, samples.cell(code="twin", difference=1e-13, target=1e-8)))
+    for run, told in ((wide, "target 2.00 %"), (Run((samples.cell(target=1e-8, difference=1e-13),)), "target 1e-08")):
+        figure = drawn(differences(run, "beam", RAD_S))
+        figure.draw_without_rendering()
+        known = {t.get_text(): t.get_window_extent() for t in labels(figure.axes[0])}
+        assert known[told].x1 + 10 < known["largest"].x0
+
+
 @given(st.lists(st.floats(-100, 100), max_size=8), st.floats(0.1, 30))
 def test_spread_keeps_order_and_distance_and_moves_no_more_than_it_must(wanted: list[float], gap: float) -> None:
     found = spread(wanted, gap)

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from html.parser import HTMLParser
+from importlib.resources import files
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -86,8 +87,31 @@ def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path)
         name = verdict.replace(" ", "-")
         cells = re.findall(rf'<td class="{name}">(.*?)</td>', text)
         assert cells
-        assert all(cell.startswith(f"{sign} ") for cell in cells)
+        assert all(re.match(rf"([\d.]+<br>)?{re.escape(sign)}( |&nbsp;)", cell) for cell in cells)
         assert f"td.{name}" in html.STYLE
+    plain = re.findall(r"<td>(.*?)</td>", text)
+    below = rf"(^|<br>)[{re.escape(''.join(html.CLASSES))}]( |&nbsp;)"
+    assert [cell for cell in plain if re.search(below, cell)] == [], "also where a frequency stands above the verdict"
+
+
+def test_a_verdict_has_one_colour_in_the_report_and_in_the_dashboard() -> None:
+    style = files("southwell.reports.dashboard").joinpath("templates", "dashboard.css").read_text(encoding="utf-8")
+    known = {"pass": "pass", "known-difference": "known", "inconclusive": "open", "fail": "fail"}
+    for name, colour in known.items():
+        here, there = (
+            re.search(rf"td\.{name} {{ background: (#\w+)", html.STYLE),
+            re.search(rf"--{colour}:(#\w+)", style),
+        )
+        assert here
+        assert there
+        assert here[1] == there[1]
+
+
+def test_lines_break_before_an_uncertainty_only(folder: Path) -> None:
+    text = html.render(markdown.write(samples.run(), folder).read_text(encoding="utf-8"), folder)
+    entries = re.findall(r"<td[^>]*>(.*?±.*?)</td>", text)
+    assert len(entries) > 10
+    assert [e for e in entries if re.search(r"± [\d&]|[✔✘≈?] [+−\d&]|\d %", e)] == []
 
 
 def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
