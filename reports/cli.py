@@ -470,7 +470,9 @@ def _show(run: Run, folder: Path) -> Path:
     console = terminal.output()
     for line in markdown.headline(run):
         console.print(line.replace("**", ""), markup=False)
-    console.print(terminal.matrix(run))
+    for table in terminal.matrix(run, console.width):
+        console.print(table)
+    console.print(terminal.legend(), style="dim", markup=False)
     if run.controls:
         console.print(terminal.controls(run))
     console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)

@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from types import TracebackType
 
 from rich import box
@@ -15,7 +15,7 @@ from ..cases.results import Cell, Run, Verdict
 from ..cases.sweep import Named
 from . import controls as mistakes
 from . import summary, witnesses
-from .summary import SYMBOL, amount, broad, columns
+from .summary import SYMBOL, broad, columns
 from .units import Units
 
 COLOUR: dict[Verdict, str] = {
@@ -28,8 +28,14 @@ COLOUR: dict[Verdict, str] = {
 }
 """Beside sign and number, never instead of them."""
 
-WIDE = 140
+WIDE = 240
 """Columns for tables that go into a file or a log."""
+
+NARROW = 10
+"""Columns that the matrix gives a code at least."""
+
+BETWEEN = 2
+"""Characters between two columns."""
 
 SILENCE = 10.0
 """Seconds between two lines in a log."""
@@ -77,23 +83,35 @@ class Watch:
             self.console.print(f"{step.done} of {step.total} done; running: {running}", markup=False, soft_wrap=True)
 
 
-def matrix(run: Run) -> Table:
-    """Case × code: sign and largest difference; the gravest verdict of all modes and speeds."""
-    signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    caption = f"largest difference from core in % (as 2e-14: relative); {signs}"
-    out = Table(box=box.SIMPLE_HEAD, caption=caption, caption_justify="left", padding=(0, 1, 0, 0), pad_edge=False)
-    out.add_column("case", no_wrap=True)
+def matrix(run: Run, width: int) -> Iterator[Table]:
+    """Case × code: sign and largest difference; the gravest verdict of all modes and speeds.
+
+    In as many tables beneath each other as the ``width`` in characters wants.
+    """
     names = columns(run.cells, broad)
-    for name in names:
-        out.add_column(re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name))
-    for case in summary.cases(run):
-        mine = [c for c in run.cells if c.case == case]
-        out.add_row(case.replace("/", "/\n "), *[_field([c for c in mine if broad(c) == name]) for name in names])
-    if any(c.shares for c in run.cells):
-        shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in names]
-        out.add_section()
-        out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
-    return out
+    cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
+    first = max((len(line) for case in (*cases, "shares with core") for line in case.split("\n")), default=0)
+    count = max(1, (width - first - BETWEEN) // (NARROW + BETWEEN))
+    for part in (names[k : k + count] for k in range(0, len(names), count)):
+        out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+        out.add_column("case", no_wrap=True)
+        for name in part:
+            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name)
+            out.add_column(head, overflow="fold", min_width=NARROW)
+        for case, shown in zip(summary.cases(run), cases, strict=True):
+            mine = [c for c in run.cells if c.case == case]
+            out.add_row(shown, *[_field([c for c in mine if broad(c) == name]) for name in part])
+        if any(c.shares for c in run.cells):
+            shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in part]
+            out.add_section()
+            out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
+        yield out
+
+
+def legend() -> str:
+    """What the fields of ``matrix`` say."""
+    signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
+    return f"largest difference from core in % (as 2e-14: relative); {signs}"
 
 
 def controls(run: Run) -> Table:
@@ -113,8 +131,17 @@ def _field(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    number = f" {amount(size, worst.target).removesuffix(' %')}" if worst and size is not None else ""
+    number = f" {_short(size, worst.target)}" if worst and size is not None else ""
     return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
+
+
+def _short(size: float, target: float) -> str:
+    """A relative number in ``NARROW`` characters: in percent, or as it is where the target is tiny."""
+    value = abs(size) if target < summary.TINY else 100 * abs(size)
+    if 0 < value < 1e-4 and target >= summary.TINY:
+        return "<1e-4"
+    text = f"{value:.0f}" if value >= 100 else f"{value:.2g}" if value >= 0.001 else f"{value:.0e}"
+    return text.replace("e-0", "e-")
 
 
 def frequencies(rows: Sequence[Named], title: str, units: Units) -> Table:

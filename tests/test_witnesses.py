@@ -1,6 +1,10 @@
 """Who counts as a witness: by what it shares with core, once for each model, and only if it agrees throughout."""
 
+import re
+from io import StringIO
+
 import pytest
+from rich.console import Console
 
 from southwell.cases.results import Cell, Run
 from southwell.cases.witnesses import independent, witnesses
@@ -88,7 +92,22 @@ def test_the_matrix_says_what_each_column_shares() -> None:
     last = markdown.heat(RUN).splitlines()[-1]
     assert "discretisation" in last
     assert "mechanical model" in last
-    assert terminal.matrix(RUN).row_count == 3
+    (table,) = terminal.matrix(RUN, 140)
+    assert table.row_count == 3
+
+
+@pytest.mark.parametrize("width", [24, 40, 80, 140])
+def test_on_a_terminal_of_any_width_nothing_of_the_matrix_is_cut_off(width: int) -> None:
+    names = [f"code-{k}" for k in range(12)]
+    run = Run(tuple(samples.cell(code=name, difference=1.234e-5 * k**6) for k, name in enumerate(names)))
+    console = Console(width=width, file=StringIO(), highlight=False)
+    for table in terminal.matrix(run, width):
+        console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in shown
+    assert all(len(line) <= width for line in shown.splitlines())
+    for size in ("0", "0.0012", "0.079", "0.9", "5.1", "19", "58", "145", "323", "656", "1234", "2186"):
+        assert re.search(rf"(?<![\d.]){re.escape(size)}(?![\d.])", shown), size
 
 
 def test_rows_that_do_not_say_leave_it_out() -> None:
