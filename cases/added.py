@@ -13,7 +13,6 @@ the blade; the family may have a column of its own. Two more columns are optiona
 digits: half a unit of the last.
 """
 
-import csv
 import math
 import re
 from collections.abc import Iterable, Sequence
@@ -23,6 +22,7 @@ from pathlib import Path
 
 from ..core.model import FULL
 from ..core.participation import MIXED
+from . import files
 from .cells import Head, empty, printed
 from .columns import Column, References, Rows
 from .errors import CaseError, nearest
@@ -79,21 +79,14 @@ def read(name: str, path: Path) -> Added:
     Raises:
         CaseError: one line naming the file, the line, the field, the value, the likely cause and the remedy.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: give NAME=FILE.csv") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"{path}: cannot be read ({error}): give a CSV file in UTF-8") from error
-    lines = [(k, line.partition("#")[0]) for k, line in enumerate(text.splitlines(), 1)]
-    lines = [(k, line) for k, line in lines if line.strip()]
-    table = [[cell.strip() for cell in row] for row in csv.reader((line for _, line in lines), strict=False)]
-    if len(table) < 2:
-        raise CaseError(f"{path}: no results in it: a header and a line a frequency are needed; see cases/added.py")
-    header = table[0]
-    speed, frequency = _header(header, f"{path}: line {lines[0][0]}")
+    (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
+    speed, frequency = _header(header, f"{path}: line {first}")
+    if not table:
+        raise CaseError(
+            f"{path}: no results in it, only a header: add a line for every frequency, as `0, 0.932, flapwise 1`"
+        )
     rows = []
-    for (k, _), cells in zip(lines[1:], table[1:], strict=True):
+    for k, cells in table:
         where = f"{path}: line {k}"
         if len(cells) != len(header):
             raise CaseError(f"{where}: {len(cells)} columns instead of {len(header)}: a missing or stray comma?")

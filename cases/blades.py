@@ -4,7 +4,6 @@ Beams and stations are straight: shear is rigid (Euler–Bernoulli), the section
 sections, and files of other formats, are in ``readers.sections``. Every kind may say how it is mounted on the hub.
 """
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, ClassVar
@@ -23,6 +22,7 @@ from ..core.blade import (
     twist_at,
     uniform_blade,
 )
+from . import files
 from .errors import CaseError, nearest
 from .readers.sections import FromFile, Mounted, Sections
 
@@ -186,13 +186,9 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
     Raises:
         CaseError: naming file, line and column.
     """
-    if not path.is_file():
-        raise CaseError(f"{path}: no such file: a case's is looked for beside the case file; correct the name")
-    with path.open(encoding="utf-8", newline="") as file:
-        lines = [(k, line) for k, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
-    rows = [[cell.strip() for cell in row] for row in csv.reader(line for _, line in lines)]
-    numbers = [k for k, _ in lines]
-    header = rows[0] if rows else []
+    found = files.table(path, absent="a case's is looked for beside the case file; correct the name")
+    numbers, rows = zip(*found, strict=True)
+    header = rows[0]
     for column in header:
         if column not in needed + optional:
             raise CaseError(
@@ -216,5 +212,7 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
                     f"{where}: {header[j]}: {cell}: not a finite number; a gap in the table? give every value"
                 )
     if len(out) < 2:
-        raise CaseError(f"{path}: {len(out)} stations: a blade needs at least a root and a tip")
+        raise CaseError(
+            f"{path}: rows: {len(out)}: two at least are needed, as a blade's root and tip: cut short? add them"
+        )
     return {column: out[:, j] for j, column in enumerate(header)}

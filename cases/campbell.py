@@ -13,7 +13,7 @@ from ..core.modes import Modes
 from ..core.participation import families, numbered, participation
 from ..core.solve import NO_GRAVITY, sweep
 from .encounters import Encounter, encounters
-from .errors import CaseError
+from .errors import CaseError, unsteady
 from .margins import Margin, Range, Resonance, Southwell, line_of, margins, resonances, southwell
 from .pairing import Array, weights
 from .tracking import Solver, Tracks, track
@@ -108,7 +108,7 @@ def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda 
         try:
             found = next(stream)
         except (SteadyStateError, UnstableError) as error:
-            raise CaseError(f"{blade.name}: speed: {omega:g} rad/s: {error}: give lower speeds") from error
+            raise unsteady(blade.name, omega, error) from error
         told(omega)
         return found
 

@@ -13,7 +13,7 @@ from ..core.eigen import UnstableError
 from ..core.modes import STATIONS, Modes
 from ..core.participation import families, numbered
 from ..core.segments import Segment
-from .errors import CaseError
+from .errors import CaseError, unsteady
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def modes(blade: Condensed, omega: float, count: int) -> Modes:
     try:
         return chain_modes(chain_from_segments(blade.segments, blade.root), omega, count)
     except (SteadyStateError, UnstableError) as error:
-        raise CaseError(f"{blade.name}: speed: {omega:g} rad/s: {error}: give lower speeds") from error
+        raise unsteady(blade.name, omega, error) from error
 
 
 def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:

@@ -17,3 +17,13 @@ def nearest(word: str, known: Iterable[str]) -> str:
     known = tuple(known)
     near = get_close_matches(word, known, 1, cutoff=0.5)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+
+
+def unsteady(blade: str, omega: float, error: Exception) -> CaseError:
+    """What to raise where the solver finds no stable steady state of a blade at ``omega`` rad/s."""
+    if not omega:
+        return CaseError(
+            f"{blade}: at rest: its stiffness is not positive definite: values too far apart? check their units"
+        )
+    what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
+    return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}: give lower speeds")

@@ -150,8 +150,12 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     return Case(path, text, tuple(variants))
 
 
+FASTEST, MOST_SPEEDS = 1e6, 10_000
+"""Of a range: the highest speed, in any unit, and the most steps."""
+
+
 def speed_range(text: str) -> NDArray[np.float64]:
-    """Speeds from ``first:last:step``, both ends included, or from one number.
+    """Speeds from ``first:last:step``, both ends included (the last step is the shorter where it must be), or from one number.
 
     Raises:
         ValueError: saying what is wrong with it.
@@ -163,8 +167,13 @@ def speed_range(text: str) -> NDArray[np.float64]:
         raise ValueError(f"{text!r} is neither a speed nor first:last:step, as in 0:30:5") from None
     if not (0 <= first <= last < math.inf and 0 < step < math.inf):
         raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
-    count = math.floor((last - first) / step * (1 + 1e-12)) + 1
-    return np.array([first + step * k for k in range(count)])
+    if last > FASTEST:
+        raise ValueError(f"{text!r}: {last:g} is faster than any rotor turns: another unit? give at most {FASTEST:g}")
+    steps = (last - first) / step
+    if steps > MOST_SPEEDS:
+        raise ValueError(f"{text!r}: {steps:.3g} steps: a step too short? give at most {MOST_SPEEDS}, as in 0:30:5")
+    speeds = [first + step * k for k in range(math.floor(steps + 1e-9) + 1)]
+    return np.array([*speeds, last] if last - speeds[-1] > 1e-9 * step else speeds)
 
 
 def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:

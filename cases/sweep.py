@@ -8,7 +8,7 @@ from ..core.blade import Blade
 from ..core.chain import SteadyStateError
 from ..core.eigen import UnstableError
 from ..core.solve import modes
-from .errors import CaseError
+from .errors import unsteady
 from .pairing import aligned, families, weights
 
 
@@ -34,7 +34,7 @@ def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int) -> l
         try:
             found = aligned(modes(blade, omega, elements, count), weight)
         except (SteadyStateError, UnstableError) as error:
-            raise CaseError(f"{blade.name}: speed: {omega:g} rad/s: {error}: give lower speeds") from error
+            raise unsteady(blade.name, omega, error) from error
         seen: Counter[str] = Counter()
         for mode, (family, frequency) in enumerate(zip(families(found, weight), found.frequencies, strict=True), 1):
             seen[family] += 1

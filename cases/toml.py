@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import msgspec
 from msgspec import inspect
 
+from . import files
 from .errors import CaseError, nearest
 
 T = TypeVar("T")
@@ -19,13 +20,11 @@ def document(path: Path) -> dict[str, Any]:
     """The tables of a TOML file.
 
     Raises:
-        CaseError: if there is no such file, or it is not TOML.
+        CaseError: if there is no such file, it is no text, or not TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: correct the path, or give the name of a case") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        return tomllib.loads(files.text(path, absent="correct the path, or give the name of a case"))
+    except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
 
 

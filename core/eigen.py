@@ -113,6 +113,6 @@ def scaled(frequencies: Array, x: Numbers, kx: Numbers) -> Eigen:
 def unstable() -> UnstableError:
     """What to raise where a Cholesky factorisation of K fails."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: at this speed the centrifugal force outgrows the "
-        "stiffness; lower the speed, or check the stiffness and its units"
+        "the stiffness about the steady state is not positive definite: the centrifugal force outgrows it, or its units are "
+        "wrong"
     )

@@ -80,8 +80,11 @@ def code(name: str) -> Any:
     module, _, attribute = path.partition(":")
     try:
         found = getattr(import_module(module), attribute)
-    except (ImportError, AttributeError) as error:
-        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}") from error
+    except Exception as error:  # whatever a foreign module does when it is imported
+        what = error if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: {error}"
+        raise UnknownCodeError(
+            f"code: {name!r} cannot be loaded from {path}: {what}: is it module:attribute, and installed or in this folder?"
+        ) from error
     needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
     if missing:

@@ -10,6 +10,7 @@ from tabulate import tabulate
 
 from ..cases import bench as measure
 from ..cases.bench import COUNT, ELEMENTS, OMEGA, SWEEP, Bench, Growth, Timing
+from ..cases.errors import CaseError
 from .terminal import output
 
 FILE = "bench.json"
@@ -34,7 +35,10 @@ def command(*, out: Path = Path("southwell-report")) -> int:
     out
         Folder for the two files; `southwell report` takes them up from the folder of a report.
     """
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = Console(stderr=True, highlight=False)
     bar = Progress(
         SpinnerColumn(),

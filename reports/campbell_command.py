@@ -1,5 +1,6 @@
 """``southwell campbell``: a blade's Campbell diagram, its tables, mode shapes and figures, in one command."""
 
+import os
 import shlex
 import sys
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ from ..core.modes import Modes
 from . import campbell_options as options
 from . import campbell_page, campbell_subjects, terminal
 from . import campbell_tables as tables
-from .cli import Whole
+from .cli import Elements, Whole
 from .mounting import Mounting
 from .units import Units
 
@@ -37,7 +38,7 @@ def command(
     per_rev: str = "1:6",
     operating: str | None = None,
     margin: str = "10%",
-    elements: Whole = 50,
+    elements: Elements = 50,
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
@@ -90,23 +91,37 @@ def command(
             speeds=tuple(speeds),
             modes=modes,
             per_rev=options.per_rev(per_rev),
-            operating=options.operating(operating, units) if operating else None,
+            operating=options.operating(operating, units, speeds) if operating else None,
             margin=options.margin(margin),
             elements=elements,
             gravity=options.gravity(azimuth, tilt),
             load=options.load(load, subject.blade),
         )
         folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+        _check(out)
         diagram = solve(subject.blade, wanted, units, workers)
         _show(diagram, units, subject.about)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
             written = campbell_page.write(diagram, folder, units, line, subject.about)
         except OSError as error:
-            raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+            raise _unwritable(out, error.strerror) from error
         names = ", ".join(path.name for path in written)
         terminal.output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
     return 0
+
+
+def _check(out: Path) -> None:
+    """Before minutes of work: whether a folder is there, or can be made."""
+    there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
+    if not there.is_dir():
+        raise _unwritable(out, f"{there} is a file")
+    if not os.access(there, os.W_OK):
+        raise _unwritable(out, f"no permission in {there}")
+
+
+def _unwritable(out: Path, why: str | None) -> CaseError:
+    return CaseError(f"--out {out}: cannot be written ({why}): give another folder")
 
 
 def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:

@@ -1,5 +1,6 @@
 """What is typed after ``southwell campbell``, made into numbers; each raises a CaseError that names the option."""
 
+from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
@@ -26,6 +27,8 @@ def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
     """Gravity in the hub's axes at an azimuth in degrees; none without one."""
+    if azimuth is None and tilt:
+        raise CaseError(f"--tilt {tilt:g}: it turns gravity, and without --azimuth there is none: add --azimuth 0")
     at, up = angle("--azimuth", azimuth), angle("--tilt", tilt)
     if at is None:
         return 0.0, 0.0, 0.0
@@ -52,14 +55,19 @@ def per_rev(text: str) -> tuple[int, ...]:
     return found
 
 
-def operating(text: str, units: Units) -> tuple[float, float]:
-    """``6.9:12.1`` in the unit of the speeds; rad/s."""
+def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, float]:
+    """``6.9:12.1`` in the unit of the speeds; rad/s, as ``speeds`` are, within which it must lie."""
     try:
         low, high = (float(p) for p in text.split(":"))
     except ValueError:
         raise CaseError(f"--operating: {text!r} is not lowest:highest, as in 6.9:12.1") from None
     if not (0 <= low <= high < inf and high > 0):
         raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
+    first, last = speeds[0] * units.speeds, speeds[-1] * units.speeds
+    if low < first - 1e-9 * last or high > last * (1 + 1e-9):
+        raise CaseError(
+            f"--operating: {text!r}: beyond the speeds, {first:g} to {last:g} {units.speed}: widen those, or correct it"
+        )
     return low / units.speeds, high / units.speeds
 
 

@@ -13,7 +13,7 @@ from typing import Annotated
 
 import msgspec
 import numpy as np
-from cyclopts import App, CycloptsError, Parameter, Token
+from cyclopts import App, CycloptsError, Parameter, Token, UnusedCliTokensError
 from cyclopts.validators import Number
 from rich import box
 from rich.table import Table
@@ -57,10 +57,16 @@ app = App(
 
 def _whole(_: type, tokens: Sequence[Token]) -> int:
     """A whole number as typed (Cyclopts' own conversion rounds 1.5)."""
-    return int(tokens[0].value)
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is not a whole number: give one, as in 10") from None
 
 
 Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
+"""Of one blade; more than the most are gigabytes and minutes, and change nothing."""
+
 Flag = Annotated[bool, Parameter(negative=())]
 
 
@@ -184,7 +190,7 @@ def modes(
     *,
     omega: str | None = None,
     rpm: str | None = None,
-    elements: Whole = 50,
+    elements: Elements = 50,
     modes: Whole = 10,
     json: Annotated[bool, Parameter(negative=())] = False,
     mounting: Mounting | None = None,
@@ -317,6 +323,9 @@ def _results(folder: Path) -> Run:
         run = results.read(path)
     except FileNotFoundError:
         raise UsageError(f"{path}: no such file: give a folder that `southwell verify --out` has written") from None
+    except OSError as error:
+        remedy = "give a folder that `southwell verify --out` has written"
+        raise UsageError(f"{path}: cannot be read ({error.strerror}): {remedy}") from error
     except ValueError as error:
         raise UsageError(str(error)) from error
     if not run.cells:
@@ -481,14 +490,23 @@ def _show(run: Run, folder: Path) -> Path:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status."""
+    if "" not in sys.path:
+        sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
     try:
         with threadpool_limits(1):  # matrices are small: threads would wait for each other
             status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
         sys.stdout.flush()
+    except UnusedCliTokensError as error:
+        words = " ".join(error.unused_tokens or ())
+        print(
+            f"southwell: {words}: not understood here: more words than the command takes; see --help", file=sys.stderr
+        )
+        status = BAD_INPUT
     except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
         print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
         status = BAD_INPUT
     except KeyboardInterrupt:
+        print("southwell: interrupted", file=sys.stderr)
         status = INTERRUPTED
     except BrokenPipeError:  # the reader of a pipe has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

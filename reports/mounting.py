@@ -9,6 +9,9 @@ from cyclopts import Parameter
 from ..cases.errors import CaseError
 from ..cases.readers import Mount
 
+LONGEST = 1e4
+"""No blade's length or hub's radius is more, m."""
+
 
 @Parameter(name="*")
 @dataclass(frozen=True)
@@ -48,27 +51,29 @@ class Mounting:
             CaseError: naming the option that cannot be.
         """
         for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
-            if value is not None and not (isfinite(value) and value >= least):
+            if value is not None and not least <= value <= LONGEST:
                 raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
         return Mount(
             main=self.main,
             length=self.length,
             hub_radius=self.hub_radius,
-            precone=angle("--precone", self.precone),
-            pitch=angle("--pitch", self.pitch),
+            precone=angle("--precone", self.precone, most=89.0),
+            pitch=angle("--pitch", self.pitch, most=180.0),
             subset=None if self.subset is None else _subset(self.subset),
             multipliers=None if self.multipliers is None else _multipliers(self.multipliers),
         )
 
 
-def angle(option: str, degrees: float | None) -> float | None:
+def angle(option: str, degrees: float | None, most: float = 360.0) -> float | None:
     """Radians; None if not given.
 
     Raises:
-        CaseError: if it is not finite.
+        CaseError: if it is not finite, or larger than ``most`` degrees.
     """
     if degrees is not None and not isfinite(degrees):
         raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
+    if degrees is not None and abs(degrees) > most:
+        raise CaseError(f"{option} {degrees:g}: beyond ±{most:g} degrees: another unit? give degrees, as in 2.5")
     return None if degrees is None else radians(degrees)
 
 

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 import tomllib
 from pathlib import Path
 
@@ -36,19 +37,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return here
 
 
-def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
-    path = os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])
+def run(folder: Path, *command: str, installed: bool = False) -> subprocess.CompletedProcess[str]:
+    """In the folder; with ``installed`` as if its package were."""
+    path = os.pathsep.join([*([str(folder)] if installed else []), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": path, "COLUMNS": "200"}
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=120)
 
 
 def typed(part: str) -> list[str]:
-    """The command of the page that has ``part`` in it, to be run by this Python."""
+    """The command of the page that has ``part`` in it; the script, which, unlike ``python -m``, is blind to its folder."""
     lines = [line for block in blocks("console") for line in block.splitlines()]
     (line,) = (line for line in lines if part in line)
     program, *arguments = line.split()
     assert program == "southwell"
-    return [sys.executable, "-m", program, *arguments]
+    return [str(Path(sysconfig.get_path("scripts"), program)), *arguments]
 
 
 def test_it_passes_what_every_adapter_must(folder: Path) -> None:
@@ -63,8 +65,8 @@ def test_its_own_tests_pass(folder: Path) -> None:
     assert re.search(r"^1\d passed, \d+ skipped", done.stdout, re.M)
 
 
-def cells(folder: Path, part: str) -> list[results.Cell]:
-    done = run(folder, *typed(part))
+def cells(folder: Path, part: str, installed: bool = False) -> list[results.Cell]:
+    done = run(folder, *typed(part), installed=installed)
     assert done.returncode == 0, done.stdout + done.stderr
     return [c for c in results.read(folder / "my-report" / "results.jsonl").cells if c.code == "my-code"]
 
@@ -79,12 +81,12 @@ def test_it_is_in_the_matrix(folder: Path) -> None:
 
 
 def test_once_installed_it_goes_by_its_name(folder: Path) -> None:
-    found = cells(folder, "--codes my-code")
+    found = cells(folder, "--codes my-code", installed=True)
     assert len(found) == 21
     assert {c.verdict for c in found} == {"pass"}
 
 
 def test_once_installed_it_is_listed(folder: Path) -> None:
-    listed = run(folder, *typed("southwell codes")).stdout
+    listed = run(folder, *typed("southwell codes"), installed=True).stdout
     row = next(line for line in listed.splitlines() if "my-code" in line)  # its longer fields may go on below
     assert re.search(r"my-code\s+My\b.*✔ 1\.0\s+nothing\s+prestretch", row)

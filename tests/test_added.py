@@ -107,7 +107,7 @@ def test_what_is_added_is_a_witness_too(tmp_path: Path) -> None:
 
 
 BAD = [
-    ("", "no results in it"),
+    ("", "empty: was it written"),
     (HEAD, "no results in it"),
     ("speed [rad/s], frequency [rad/s]\n10, 11.7\n", "line 1: column 'mode' is missing"),
     (
@@ -149,8 +149,8 @@ def test_a_bad_file_is_told_in_one_line(tmp_path: Path, text: str, words: str) -
 def test_not_text_and_not_there(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match=r"none\.csv: no such file: give NAME=FILE\.csv"):
         added.read("rig", tmp_path / "none.csv")
-    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00\x01")
-    with pytest.raises(CaseError, match="cannot be read"):
+    (tmp_path / "binary.csv").write_bytes(b"\x7f\xfe\x00\x01")
+    with pytest.raises(CaseError, match="not a text file"):
         added.read("rig", tmp_path / "binary.csv")
 
 

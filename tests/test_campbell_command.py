@@ -39,7 +39,12 @@ def beam(tmp_path: Path) -> Path:
         ("campbell park-cantilever --operating 7", "--operating: '7' is not lowest:highest, as in 6.9:12.1"),
         ("campbell park-cantilever --operating 12:7", "--operating: '12:7': needs 0 ≤ lowest ≤ highest"),
         ("campbell park-cantilever --operating nan:7", "--operating: 'nan:7': needs 0 ≤ lowest ≤ highest"),
-        ("campbell park-cantilever --rpm 0:30:10 --operating 7:40", "is not within the speeds"),
+        (
+            "campbell park-cantilever --rpm 0:30:10 --operating 7:40",
+            "--operating: '7:40': beyond the speeds, 0 to 30 rpm",
+        ),
+        ("campbell park-cantilever --rpm 0:30:10 --tilt 5", "without --azimuth"),
+        ("campbell park-cantilever --rpm 0:30:10 --elements 20001", "--elements. Must be <= 20000"),
         ("campbell park-cantilever --margin wide", "--margin: 'wide' is neither a percentage nor a fraction"),
         ("campbell park-cantilever --margin 10", "--margin: '10': needs 0 ≤ margin < 1"),
         ("campbell park-cantilever --margin=-5%", "--margin: '-5%': needs 0 ≤ margin < 1"),

@@ -369,3 +369,62 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
     command = f"{shlex.quote(sys.executable)} -m southwell modes park-cantilever --json | head -n 1"
     done = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "[\n", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("modes park-cantilever --modes 1.5", "--modes: '1.5' is not a whole number"),
+        ("modes park-cantilever --elements 100000000", "--elements. Must be <= 20000"),
+        ("modes park-cantilever --rpm 0:30:1e-9", "steps: a step too short"),
+        ("modes park-cantilever --rpm 0:1e9:1e8", "faster than any rotor turns"),
+        ("cases all", "all: not understood here"),
+        ("verify park-cantilever --codes :CODE", "ValueError: Empty module name"),
+        ("bench --out {file}", "cannot be written (File exists)"),
+        ("report {file}", "cannot be read (Not a directory)"),
+        ("campbell park-cantilever --rpm 0:30:10 -o {file}/x", "is a file"),
+        ("modes {folder}/a.toml", "no such file"),
+        ("mechanism {folder}.toml", "cannot be read (Is a directory)"),
+        ("condense {folder}.toml", "cannot be read (Is a directory)"),
+        ("show {blade} --subset 1:1", "subset: ElastoDyn has none, HAWC2 has"),
+        ("show {blade} --precone 95", "--precone 95: beyond ±89 degrees"),
+        ("show {blade} --pitch 1e6", "--pitch 1e+06: beyond ±180 degrees"),
+        ("show {blade} --length 1e300", "--length 1e+300: not a length"),
+        ("show {blade} --main {blade}", "TipRad: not there"),
+    ],
+)
+def test_what_went_wrong_before_is_told_in_one_line(
+    arguments: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Inputs that once ended in a traceback, in silence, never, or in the words of Python."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder.toml").mkdir()
+    blade = Path(__file__).parent / "data" / "blades" / "elastodyn_blade.dat"
+    places = {"file": tmp_path / "file", "folder": tmp_path / "folder", "blade": blade}
+    status, out, err = southwell(arguments.format(**places), capsys)
+    assert (status, out) == (2, "")
+    assert err.startswith("southwell: ")
+    assert err.count("\n") == 1
+    assert told in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("CODE = undefined\n", "NameError: name 'undefined' is not defined"),
+        ("def f(:\n", "SyntaxError"),
+        ("raise RuntimeError('no licence\\nserver')\n", "RuntimeError: no licence server"),
+        ("", "no attribute 'CODE'"),
+    ],
+)
+def test_an_adapter_that_cannot_be_imported_is_told_in_one_line(
+    source: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = f"adapter{abs(hash(source))}"
+    (tmp_path / f"{name}.py").write_text(source)
+    monkeypatch.chdir(tmp_path)
+    status, _, err = southwell(f"conform {name}:CODE", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert told in err
+    assert "in this folder?" in err

@@ -159,7 +159,7 @@ BAD = {
     ),
     "too few": (BLADE, "3   station_total", "2   station_total", r"another station after the 2 announced"),
     "no count": (BLADE, "station_total", "stations", r"station_total: not there"),
-    "NaN": (BLADE, NINE, "NaN", r"line 16: stiffness 55: nan: not a finite number"),
+    "NaN": (BLADE, NINE, "NaN", r"line 16: stiffness 55: NaN: not a finite number"),
     "negative": (
         BLADE,
         NINE,

@@ -96,13 +96,23 @@ def test_variants_repeat_only_what_differs(write) -> None:
 
 @pytest.mark.parametrize(
     ("text", "values"),
-    [("0:30:10", [0, 10, 20, 30]), ("0:1:0.1", np.arange(11) / 10), ("5:9:3", [5, 8]), ("7.5", [7.5]), ("2:2:1", [2])],
+    [
+        ("0:30:10", [0, 10, 20, 30]),
+        ("0:1:0.1", np.arange(11) / 10),
+        ("5:9:3", [5, 8, 9]),
+        ("0:12.1:6", [0, 6, 12, 12.1]),
+        ("7.5", [7.5]),
+        ("2:2:1", [2]),
+    ],
 )
 def test_ranges_include_both_ends(text: str, values: list[float]) -> None:
     np.testing.assert_allclose(speed_range(text), values, atol=1e-12)
 
 
-@pytest.mark.parametrize("text", ["", "0:30", "fast", "0:30:0", "0:30:-5", "30:0:5", "-5:5:1", "0:inf:1", "nan:1:1"])
+@pytest.mark.parametrize(
+    "text",
+    ["", "0:30", "fast", "0:30:0", "0:30:-5", "30:0:5", "-5:5:1", "0:inf:1", "nan:1:1", "0:1e6:1e-3"],
+)
 def test_impossible_ranges_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="0:30:5"):
         speed_range(text)
@@ -161,7 +171,8 @@ def test_bad_input_ends_in_one_line(write, old: str, new: str, told: list[str]) 
 
 BAD_TABLES = [
     (None, ["table.csv: no such file", "beside the case file"]),
-    ("", ["column 'fraction [-]' is missing"]),
+    ("", ["empty: was it written to the end?"]),
+    ("# only this\n", ["only comments"]),
     (TABLE.replace("0,90", "0.5,90").replace("\n1,0", "\n0.2,0"), ["fraction [-]: last is 0.2"]),
     (TABLE.replace("0,90", "0.5,90"), ["stations: first is 5 m"]),
     (TABLE.replace("\n1,0", "\n0.7,0,1,3,4,5,6\n0.3,0,1,3,4,5,6\n1,0"), ["stations: number 2 (3 m)", "sort them"]),
@@ -172,7 +183,7 @@ BAD_TABLES = [
     (TABLE.replace("0,1,3", "0,3"), ["line 5: 6 columns instead of 7", "comma"]),
     (TABLE.replace("90,2,3", "90,2,-3"), ["stiffness: diagonal 4 at station 0 is -3", "positive"]),
     (TABLE.replace("mass [kg/m]", "mass [lb/ft]"), ["unknown column 'mass [lb/ft]': did you mean mass [kg/m]?"]),
-    (TABLE.split("\n1,0")[0], ["1 stations"]),
+    (TABLE.split("\n1,0")[0], ["rows: 1: two at least"]),
 ]
 
 

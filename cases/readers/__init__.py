@@ -12,6 +12,8 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
+
 from ...core.blade import Blade
 from ..errors import CaseError
 from .source import Mount, Reading, Source
@@ -41,8 +43,19 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: one line with file and line, value, likely cause and remedy.
     """
     found = recognise(path)(path, mount)
-    if mount is not None and mount.multipliers is not None and found.source.format != "ElastoDyn":
-        raise CaseError(f"{path}: multipliers: {found.source.format} has none, they are ElastoDyn's: leave them out")
+    if mount is not None:
+        for option, given, format in (
+            ("multipliers", mount.multipliers, "ElastoDyn"),
+            ("subset", mount.subset, "HAWC2"),
+        ):
+            if given is not None and found.source.format != format:
+                raise CaseError(f"{path}: {option}: {found.source.format} has none, {format} has: leave it out")
+    if np.abs(found.blade.twist).max() > np.pi:
+        k = int(np.abs(found.blade.twist).argmax())
+        raise CaseError(
+            f"{path}: twist: {np.degrees(found.blade.twist[k]):.6g} degrees at {found.blade.stations[k]:g} m: more than half a "
+            "turn: another unit, or another column? correct it"
+        )
     return found
 
 

@@ -7,12 +7,14 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import CaseError, nearest
+from .. import files
+from ..errors import CaseError
 
 Array = NDArray[np.float64]
 
@@ -43,21 +45,7 @@ def load(path: Path) -> Text:
     Raises:
         CaseError: if it cannot be read, is no text, or empty.
     """
-    try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: correct the path") from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
-    if b"\0" in raw:
-        raise CaseError(f"{path}: not a text file: give the blade's input file")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:  # names in older files are in Latin-1, in which every byte is a character
-        text = raw.decode("latin-1")
-    if not text.strip():
-        raise CaseError(f"{path}: empty: was it written to the end?")
-    return Text(path, tuple(text.splitlines()))
+    return Text(path, tuple(files.text(path, older=True).splitlines()))
 
 
 def number(token: str) -> float | None:
@@ -91,19 +79,23 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
     """
     if k >= len(text.lines):
         raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: truncated? give it whole")
-    found = leading(text.lines[k])
+    found, words = leading(text.lines[k]), tokens(text.lines[k])
     if len(found) != len(columns):
-        rest = tokens(text.lines[k])[len(found) :]
+        rest = words[len(found) :]
         cause = (
-            f"{rest[0]!r} is not a number" if rest and len(found) < len(columns) else "a column missing or too many?"
+            f"{rest[0]!r} is not a number:"
+            if rest and len(found) < len(columns)
+            else "commas in place of decimal points?"
+            if len(found) == 2 * len(columns)
+            else "a column missing or too many?"
         )
         raise CaseError(
             f"{text.at(k)}: {len(found)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
             f"{', …' if len(columns) > 6 else ''}): {cause} correct the line"
         )
-    for name, value in zip(columns, found, strict=True):
+    for name, value, written in zip(columns, found, words, strict=False):
         if not math.isfinite(value):
-            raise CaseError(f"{text.at(k)}: {name}: {value}: not a finite number; a gap in the data? give a value")
+            raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number; a gap in the data? give a value")
     return found
 
 
@@ -228,9 +220,12 @@ def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -
     for name in names:
         if name.lower() in named:
             return name.lower()
+    near = get_close_matches(names[0].lower(), named, 1, cutoff=0.75)
+    cause = (
+        f"is {near[0]!r} at line {named[near[0]][0] + 1} meant for it?" if near else "cut short, or the names removed?"
+    )
     raise CaseError(
-        f"{text.path}: {names[0]}: not there: each value stands before its name (`1.0 {names[0]} - …`): "
-        f"{nearest(names[0].lower(), named) if len(named) < 60 else 'were the comments removed?'} add it"
+        f"{text.path}: {names[0]}: not there: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
     )
 
 
