@@ -17,7 +17,7 @@ from .reference import Reference
 from .results import Cell, Level
 from .schema import Discretisation
 from .uncertainty import from_print
-from .verdict import percent
+from .verdict import unsigned
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def rows(
                     note = f"suspect print: {datum.evidence}" if datum.suspect else ""
                     cell = printed(head, omega, i, reference, value, note)
                     if held.grounds and cell.verdict == "pass":
-                        cell = replace(cell, reason=f"held to {percent(head.target)}: {held.grounds}")
+                        cell = replace(cell, reason=f"held to {unsigned(head.target)}: {held.grounds}")
                     cells.append(excused(cell, value, coarse[i], source.what) if source else cell)
     return cells, []
 

@@ -47,14 +47,16 @@ def index(run: Run, known: Sequence[Any]) -> str:
     rows = []
     for code in known:
         cells = own(run, code.name)
-        far = summary.largest(cells)
+        far = summary.worst(cells)
         rows.append(
             {
                 "code": f"[{plain(code.title)}]({code.name}.md)",
                 "version": plain(version(run, code)),
                 "shares with core": code.shares,
                 "cells": plain(", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n)),
-                "largest difference": "" if far is None else f"{summary.plus_minus(far)} ({plain(far.case)})",
+                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)} ({plain(far.case)})"
+                if far
+                else "",
                 "known defects": str(len(defects(code.name))),
             }
         )
@@ -106,12 +108,12 @@ def version(run: Run, code: Any) -> str:
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
-    """For each blade: the gravest verdict, how many cells have which, and the largest difference; empty without cells."""
+    """For each blade: the gravest verdict, how many cells have which, and its largest difference; empty without cells."""
     labels = summary.labels(run.cells)
     rows = []
     for case in dict.fromkeys(c.case for c in cells):
         here = [c for c in cells if c.case == case]
-        far = summary.largest(here)
+        far = summary.worst(here)
         where = f"{labels[far]}, {units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
         counted = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(here).items() if n)
@@ -119,7 +121,7 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
             {
                 "blade": plain(case),
                 "cells": plain(counted),
-                "largest difference": summary.plus_minus(far) if far else "",
+                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)}" if far else "",
                 "where": plain(where),
                 "why": plain(reason),
             }

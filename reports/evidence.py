@@ -43,9 +43,11 @@ def _number(n: int) -> str:
 
 
 def urgent(run: Run) -> list[str]:
-    """A line for the worst failure and one for the largest inconclusive difference, where there are any."""
+    """Lines for the worst failure, for failures without a number, and for the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
-    return [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+    told = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+    mute = dict.fromkeys(f"{c.code} ({c.case})" for c in run.cells if c.verdict == "fail" and c.difference is None)
+    return [*told, *([f"Failed without a frequency: {', '.join(mute)}."] if mute else [])]
 
 
 def first(run: Run) -> list[str]:

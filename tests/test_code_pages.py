@@ -58,12 +58,19 @@ def rows(text: str) -> list[list[str]]:
 
 def test_the_largest_difference_of_each_blade_is_the_runs() -> None:
     head, _, *body = rows(code_pages.differences(RUN, code_pages.own(RUN, "scikit-fem")))
-    assert head == ["blade", "cells", "largest difference", "where", "why"]
+    assert head == ["blade", "cells", "worst difference", "where", "why"]
     assert body == [
-        ["first", "2 ✔", "−0.0500 % ± 0.0010 %", "flapwise 2, 10 rad/s", ""],
-        ["second", "1 ✘", "+25 % ± 0.0010 %", "flapwise 1, 10 rad/s", "25 % is more than 0.1 %"],
+        ["first", "2 ✔", "✔ −0.0500 % ± 0.0010 %", "flapwise 2, 10 rad/s", ""],
+        ["second", "1 ✘", "✘ +25 % ± 0.0010 %", "flapwise 1, 10 rad/s", "25 % is more than 0.1 %"],
         ["third", "1 –", "", "", "prebend or sweep"],
     ]
+
+
+def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
+    cells = (cell("scikit-fem", "first", 0.3, "known difference"), cell("scikit-fem", "first", 0.002, "fail"))
+    _, _, (_, counted, shown, *_) = rows(code_pages.differences(Run(cells), cells))
+    assert counted == "1 ✘, 1 ≈"
+    assert shown.startswith("✘ +0.200 %")
 
 
 def test_a_page_says_version_refusals_and_defects() -> None:
@@ -112,7 +119,7 @@ def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys:
     (line,) = (row for row in rows(text) if "(scikit-fem.md)" in row[0])
     assert line[3:] == [
         "1 ✘, 2 ✔, 1 –",
-        "+25 % ± 0.0010 % (second)",
+        "✘ +25 % ± 0.0010 % (second)",
         str(sum("scikit-fem" in d.codes for d in DEFECTS)),
     ]
 

@@ -81,6 +81,11 @@ def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says
     assert evidence.answer(Run(cells)).startswith(f"**{says}**")
 
 
+def test_a_failure_without_a_number_is_told_first_too() -> None:
+    crash = samples.cell(code="crashed", verdict="fail", frequency=None, difference=None, uncertainty=None)
+    assert evidence.urgent(Run((samples.cell(), crash, crash))) == ["Failed without a frequency: crashed (beam)."]
+
+
 def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> None:
     cells = (
         samples.cell(shares="nothing", difference=1e-4, omega=20.0),
