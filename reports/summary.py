@@ -59,9 +59,9 @@ def largest(cells: Iterable[Cell]) -> Cell | None:
 
 
 def worst(cells: Iterable[Cell]) -> Cell | None:
-    """The farthest from the answer of the cells with the gravest verdict; None if those have no numbers."""
+    """The farthest from the answer of the cells with the gravest verdict; None if there are none, or none with numbers."""
     cells = list(cells)
-    grave = gravest(cells)
+    grave = gravest(cells) if cells else None
     return largest(c for c in cells if c.verdict == grave)
 
 
