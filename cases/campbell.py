@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.blade import Blade
-from ..core.chain import SteadyStateError
-from ..core.eigen import UnstableError
 from ..core.modes import Modes
 from ..core.participation import families, numbered, participation
 from ..core.solve import NO_GRAVITY, sweep
 from .encounters import Encounter, encounters
-from .errors import CaseError, unsteady
+from .errors import NO_STATE, CaseError, unsteady
 from .margins import Margin, Range, Resonance, Southwell, line_of, margins, resonances, southwell
 from .pairing import Array, weights
 from .tracking import Solver, Tracks, track
@@ -107,7 +105,7 @@ def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda 
         waiting.append(omega)
         try:
             found = next(stream)
-        except (SteadyStateError, UnstableError) as error:
+        except NO_STATE as error:
             raise unsteady(blade.name, omega, error) from error
         told(omega)
         return found

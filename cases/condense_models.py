@@ -152,7 +152,10 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
         CaseError: naming the motion.
     """
     R = ties.motion(model.points - model.points.mean(axis=0), model.directions, np.eye(4))
-    left = np.abs(model.stiffness @ R).max(axis=0) / (abs(model.stiffness) @ np.abs(R)).max(axis=0)
+    most = (abs(model.stiffness) @ np.abs(R)).max(
+        axis=0
+    )  # none at all where nothing resists the motion, nor any part of it
+    left = np.abs(model.stiffness @ R).max(axis=0) / np.where(most > 0, most, 1.0)
     if left.max() > ties.ASYMMETRY:
         k = int(left.argmax())
         motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"

@@ -7,13 +7,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.chain import SteadyStateError
 from ..core.compressed import chain_from_segments, chain_modes
-from ..core.eigen import UnstableError
 from ..core.modes import STATIONS, Modes
 from ..core.participation import families, numbered
 from ..core.segments import Segment
-from .errors import CaseError, unsteady
+from .errors import NO_STATE, CaseError, unsteady
 
 Array = NDArray[np.float64]
 
@@ -41,7 +39,7 @@ def modes(blade: Condensed, omega: float, count: int) -> Modes:
     """
     try:
         return chain_modes(chain_from_segments(blade.segments, blade.root), omega, count)
-    except (SteadyStateError, UnstableError) as error:
+    except NO_STATE as error:
         raise unsteady(blade.name, omega, error) from error
 
 

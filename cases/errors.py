@@ -3,6 +3,14 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+import numpy as np
+
+from ..core.chain import SteadyStateError
+from ..core.eigen import UnstableError
+
+NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError)
+"""What the solver raises where there is no steady state to vibrate about, or its numbers are out of all proportion."""
+
 
 class CaseError(ValueError):
     """Input that cannot be used. One line: the file, the field, the value, the likely cause, the remedy."""
@@ -21,6 +29,10 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 def unsteady(blade: str, omega: float, error: Exception) -> CaseError:
     """What to raise where the solver finds no stable steady state of a blade at ``omega`` rad/s."""
+    if isinstance(error, np.linalg.LinAlgError):
+        return CaseError(
+            f"{blade}: speed: {omega:g} rad/s: stiffness and mass are out of all proportion: check their units"
+        )
     if not omega:
         return CaseError(
             f"{blade}: at rest: its stiffness is not positive definite: values too far apart? check their units"

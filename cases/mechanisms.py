@@ -109,7 +109,7 @@ def _bodies(text: MechanismFile, path: str) -> tuple[mb.Body, ...]:
     for name, data in text.bodies.items():
         field = f"bodies.{name}"
         b = convert(data, BodyData, path, field)
-        moments = _matrix(b.moments, 3, f"{path}: {field}.moments") if isinstance(b.moments, list) else b.moments
+        moments = _moments(b.moments, f"{path}: {field}.moments") if isinstance(b.moments, list) else b.moments
         out.append(mb.Body(name, mb.inertia(b.mass, moments, b.centre)))
     return tuple(out)
 
@@ -180,6 +180,17 @@ def _pose(frame: Frame, where: str) -> Array:
     pose = sp.exp(np.array([0.0, 0.0, 0.0, *frame.turn]))
     pose[:3, 3] = frame.point
     return pose
+
+
+def _moments(value: list[float | list[float]], where: str) -> Array:
+    """A tensor of inertia: of its principal moments none is more than the others together."""
+    out = _matrix(value, 3, where)
+    least, middle, most = np.linalg.eigvalsh(out).tolist()
+    if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
+        raise CaseError(
+            f"{where}: {most:g} is more than {least:g} and {middle:g} together: no body has such; correct it"
+        )
+    return out
 
 
 def _matrix(value: list[float | list[float]], side: int, where: str) -> Array:

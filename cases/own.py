@@ -7,15 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.blade import Blade
-from ..core.chain import SteadyStateError
 from ..core.discretize import Mass
-from ..core.eigen import UnstableError
 from ..core.elements import Measure
 from ..core.model import FULL, Model
 from ..core.modes import Modes
 from ..core.solve import modes
 from ..references.worker import Answer, Failure, Run
-from .errors import CaseError
+from .errors import NO_STATE, CaseError
 from .pairing import MOTIONS, Array, aligned, families, shares, weights
 from .schema import Compare
 from .study import Refining, Settled, Wanted, settle, solve
@@ -62,7 +60,7 @@ def answers(
     for omega, elements, count in runs:
         try:
             out.append(modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
-        except (SteadyStateError, UnstableError) as error:
+        except NO_STATE as error:
             out.append(Failure("refused", str(error)))
     return out
 

@@ -38,7 +38,7 @@ class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
 class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     """Which modes are compared, and how closely they must agree."""
 
-    modes: Annotated[int, Meta(ge=1, description="how many, from the lowest, of those that qualify")]
+    modes: Annotated[int, Meta(ge=1, le=100, description="how many, from the lowest, of those that qualify")]
     motions: Annotated[
         tuple[Motion, ...],
         Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
@@ -195,6 +195,10 @@ def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
         raise CaseError(f"{path}: speeds.{unit}: {error}") from error
     if not len(speeds):
         raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
+    if speeds.max() > FASTEST:
+        raise CaseError(
+            f"{path}: speeds.{unit}: {speeds.max():g}: no rotor turns so fast: another unit? at most {FASTEST:g}"
+        )
     if (np.diff(speeds) <= 0).any():
         raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")
     return speeds * (np.pi / 30 if unit == "rpm" else 1.0)

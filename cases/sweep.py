@@ -5,10 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..core.blade import Blade
-from ..core.chain import SteadyStateError
-from ..core.eigen import UnstableError
 from ..core.solve import modes
-from .errors import unsteady
+from .errors import NO_STATE, unsteady
 from .pairing import aligned, families, weights
 
 
@@ -33,7 +31,7 @@ def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int) -> l
     for omega in speeds:
         try:
             found = aligned(modes(blade, omega, elements, count), weight)
-        except (SteadyStateError, UnstableError) as error:
+        except NO_STATE as error:
             raise unsteady(blade.name, omega, error) from error
         seen: Counter[str] = Counter()
         for mode, (family, frequency) in enumerate(zip(families(found, weight), found.frequencies, strict=True), 1):

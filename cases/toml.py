@@ -28,8 +28,12 @@ def document(path: Path) -> dict[str, Any]:
         raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
 
 
+LARGEST = 1e30
+"""A number that nothing in a file can be, whatever its unit."""
+
+
 def finite(value: Any, path: str, field: str = "") -> None:
-    """Refuse numbers that are none, wherever they stand.
+    """Refuse numbers that are none, or that no unit explains, wherever they stand.
 
     Raises:
         CaseError: naming the first.
@@ -42,6 +46,8 @@ def finite(value: Any, path: str, field: str = "") -> None:
             finite(item, path, f"{field}[{k}]")
     elif isinstance(value, float) and not math.isfinite(value):
         raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
+    elif isinstance(value, int | float) and abs(value) > LARGEST:
+        raise CaseError(f"{path}: {field}: {value:.3g}: nothing is so large; a slip in the exponent? correct it")
 
 
 def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
@@ -65,10 +71,24 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
         if "unknown" in message:
             return f"{dotted}: unknown key: {nearest(key[1], _keys(kind, field, raw))}"
         return f"{dotted}: missing: add it"
-    value, _ = _walk(kind, field, raw)
+    value, node = _walk(kind, field, raw)
+    choices = _choices(node)
+    if not choices:  # the tag of a structure is in its own union, not among the structure's fields
+        table, _, _ = field.rpartition(".")
+        choices = _choices(_walk(kind, table, raw, whole=True)[1])
+    if isinstance(value, str) and choices and "nvalid" in message:
+        return f"{full}: {value!r}: not one of its values: {nearest(value, choices)}"
     return (
         f"{full}: {value!r}: {message[0].lower()}{message[1:].replace('`', '')}: wrong sign, unit or type? correct it"
     )
+
+
+def _choices(node: Any) -> tuple[str, ...]:
+    """The words that a type, or the tag of its structures, may be."""
+    kinds = node.types if isinstance(node, inspect.UnionType) else (node,)
+    words = [w for k in kinds if isinstance(k, inspect.LiteralType) for w in k.values]
+    tags = [k.tag for k in kinds if isinstance(k, inspect.StructType) and k.tag_field]
+    return tuple(str(word) for word in words or tags)
 
 
 def _keys(kind: type, field: str, raw: Any) -> tuple[str, ...]:
@@ -76,24 +96,25 @@ def _keys(kind: type, field: str, raw: Any) -> tuple[str, ...]:
     return tuple(f.encode_name for f in node.fields) if isinstance(node, inspect.StructType) else ()
 
 
-def _walk(kind: type, field: str, raw: Any) -> tuple[Any, Any]:
-    """The value in a field, as given, and the type it should have."""
+def _walk(kind: type, field: str, raw: Any, whole: bool = False) -> tuple[Any, Any]:
+    """The value in a field, as given, and the type it should have; with ``whole``, all of a union."""
     node: Any = _plain(inspect.type_info(kind), raw)
-    for step in re.findall(r"[^.\[\]]+", field):
+    steps = re.findall(r"[^.\[\]]+", field)
+    for k, step in enumerate(steps):
         if isinstance(raw, list) and step.isdigit():
             raw, node = raw[int(step)], getattr(node, "item_type", None)
         elif isinstance(raw, Mapping) and step in raw:
             raw = raw[step]
             node = next((f.type for f in getattr(node, "fields", ()) if f.encode_name == step), None)
-        node = _plain(node, raw)
+        node = _plain(node, raw, whole and k == len(steps) - 1)
     return raw, node
 
 
-def _plain(node: Any, raw: Any) -> Any:
+def _plain(node: Any, raw: Any, whole: bool = False) -> Any:
     """The type itself, without its descriptions; of several, the one that the value's tag names, or the only structure."""
     while isinstance(node, inspect.Metadata):
         node = node.type
-    if isinstance(node, inspect.UnionType):
+    if isinstance(node, inspect.UnionType) and not (whole or isinstance(raw, str)):
         kinds = [k for k in (_plain(t, raw) for t in node.types) if isinstance(k, inspect.StructType)]
         tagged = [k for k in kinds if k.tag_field and isinstance(raw, Mapping) and raw.get(k.tag_field) == k.tag]
         return next(iter(tagged or kinds), None)

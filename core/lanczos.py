@@ -75,6 +75,8 @@ def lanczos(
         value, turn, _ = _syev(gram)
         keep = value > 1e-20 * max(value[-1], np.abs(overlap).max(initial=0.0) ** 2, 1e-300)
         exhausted = not keep.any() or size + 2 > limit
+        if exhausted and not size:
+            raise ArithmeticError("stiffness and mass are out of all proportion: check their units")
         if exhausted or size >= look:
             look = size + _EVERY
             upper = np.triu(projected[:size, :size], 1)

@@ -42,7 +42,11 @@ def read(path: Path, what: str = "stiffness") -> Exported:
         MatrixFileError: not one of these forms, broken off, or without that matrix.
         OSError: if there is no such file.
     """
-    text = path.read_text(errors="replace")
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    if "\0" in text:
+        raise MatrixFileError(
+            f"{path.name}: not a text file: a binary export, or UTF-16? export or save it as text in UTF-8"
+        )
     if text.startswith("%%MatrixMarket"):
         return _matrix_market(path)
     lines = text.upper().splitlines()

@@ -112,7 +112,7 @@ def rigid(model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Ti
 
 
 def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
-    """The frame moves as the given freedoms do on average; rotations among them are left free.
+    """The frame moves as the given freedoms do on average; rotations are left free, but not where a section is one node.
 
     Args:
         model: the model.
@@ -128,6 +128,8 @@ def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, wei
         CondensationError: no freedoms, too few to tell the six motions of a frame, or no usable weights.
     """
     moves = model.directions[_some(model, freedoms, name)] < 3
+    if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
+        return _tie(model, freedoms, frame, name, "average", np.ones(6))
     shares = (model.mass[freedoms] if weights is None else weights)[moves]
     if shares.ndim == 1 and not (shares > 0).all():
         raise CondensationError(
@@ -175,7 +177,7 @@ def _tie(model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: 
     if (size <= 0).any() or np.linalg.eigvalsh(gram / np.outer(size, size))[0] < 1e-12:
         raise CondensationError(
             f"section {name!r}: its {len(freedoms)} freedoms cannot tell six motions of a frame: "
-            "they lie on one line or point; take all nodes of the section"
+            "they lie on one line or point; take all nodes of the section, or of a beam model each node's six freedoms"
         )
     return Tie(name, kind, frame, freedoms, R, np.linalg.solve(gram, weighed))
 

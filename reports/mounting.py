@@ -8,9 +8,7 @@ from cyclopts import Parameter
 
 from ..cases.errors import CaseError
 from ..cases.readers import Mount
-
-LONGEST = 1e4
-"""No blade's length or hub's radius is more, m."""
+from ..cases.readers.source import LONGEST
 
 
 @Parameter(name="*")

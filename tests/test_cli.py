@@ -428,3 +428,15 @@ def test_an_adapter_that_cannot_be_imported_is_told_in_one_line(
     assert (status, err.count("\n")) == (2, 1)
     assert told in err
     assert "in this folder?" in err
+
+
+@pytest.mark.parametrize("modulus", ["1e-300", "1e-20"])
+@pytest.mark.parametrize("command", ["modes", "campbell"])
+def test_stiffness_out_of_all_proportion_is_told_in_one_line(
+    command: str, modulus: str, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    beam.write_text(BEAM.replace("E = 7e10", f"E = {modulus}"))
+    out = f"-o {tmp_path / 'out'}" if command == "campbell" else ""
+    status, _, err = southwell(f"{command} {beam} {out}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "check their units" in err

@@ -119,6 +119,11 @@ def test_impossible_ranges_are_refused(text: str) -> None:
 
 
 BAD = [
+    ("length = 6.0", "length = 1e5", ["blade.length: 100000.0", "<= 10000"]),
+    ("length = 6.0", "length = 1e300", ["blade.length: 1e+300", "slip in the exponent"]),
+    ('kind = "beam"', 'kind = "baem"', ["blade.kind: 'baem'", "did you mean beam?"]),
+    ("modes = 3", "modes = 101", ["compare.modes: 101", "<= 100"]),
+    ("modes = 3", 'modes = 3\nmotions = ["flap"]', ["compare.motions[0]: 'flap'", "did you mean flapwise?"]),
     ("[speeds]", "[speeds", ["not TOML", "line 19", "correct"]),
     ("length = 6.0", "lenght = 6.0", ["blade.lenght", "unknown key", "did you mean length?"]),
     ("modes = 3", "modes = 3\nmotion = 4", ["compare.motion", "did you mean motions?"]),

@@ -5,6 +5,9 @@ from pathlib import Path
 
 from ...core.blade import Blade
 
+LONGEST = 1e4
+"""No blade's length or hub's radius is more, m."""
+
 
 @dataclass(frozen=True)
 class Source:
