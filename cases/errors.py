@@ -34,8 +34,8 @@ def unsteady(blade: str, omega: float, error: Exception) -> CaseError:
             f"{blade}: speed: {omega:g} rad/s: stiffness and mass are out of all proportion: check their units"
         )
     if not omega:
-        return CaseError(
-            f"{blade}: at rest: its stiffness is not positive definite: values too far apart? check their units"
-        )
+        cause = "does nothing hold a hinge at rest? give speeds above 0; are values too far apart? check units"
+        return CaseError(f"{blade}: at rest: the stiffness is not positive definite: {cause}")
     what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
-    return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}: give lower speeds")
+    remedy = "hold the hinge, or give lower speeds" if "hinge" in what else "give lower speeds"
+    return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}: {remedy}")

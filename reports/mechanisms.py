@@ -23,6 +23,10 @@ def modes(found: Solution, title: str) -> Table:
     return out
 
 
+ROUNDING = 1e-14
+"""Less than this, in m or rad, is what rounding leaves of zero; ``--json`` has it."""
+
+
 def state(found: Solution) -> Table:
     """A row for each coordinate: its value in the steady state, and whether it is free to choose, follows, or is prescribed."""
     out = Table(box=box.SIMPLE_HEAD, title="steady state", title_justify="left", title_style="bold")
@@ -31,7 +35,8 @@ def state(found: Solution) -> Table:
     out.add_column("")
     out.add_column("in vibration")
     for name, value in found.steady.items():
-        out.add_row(name, f"{value:.7g}", "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
+        shown = f"{value:.7g}" if abs(value) > ROUNDING else "0"
+        out.add_row(name, shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
     return out
 
 

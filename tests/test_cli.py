@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -439,4 +440,18 @@ def test_stiffness_out_of_all_proportion_is_told_in_one_line(
     out = f"-o {tmp_path / 'out'}" if command == "campbell" else ""
     status, _, err = southwell(f"{command} {beam} {out}", capsys)
     assert (status, err.count("\n")) == (2, 1)
-    assert "check their units" in err
+    assert re.search(r"check (their )?units", err)
+
+
+@pytest.mark.parametrize(
+    ("speed", "told"), [("0", "give speeds above 0"), ("1", "hold the hinge"), ("0:2:1", "give speeds above 0")]
+)
+def test_a_hinge_that_nothing_holds_is_told(
+    speed: str, told: str, beam: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Lead and lag on a hinge at the rotor's axis: no restoring force at any speed."""
+    hinged = BEAM.replace("hub_radius = 0.1", "hub_radius = 0.0\nroot = { lag = 0.0 }")
+    beam.write_text(hinged)
+    status, _, err = southwell(f"modes {beam} --omega {speed}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert told in err

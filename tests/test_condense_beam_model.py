@@ -1,5 +1,6 @@
 """A finite element model of beams, one node a section: what `southwell condense` makes of it is known in closed form."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,10 @@ from southwell.cases.errors import CaseError
 
 EA, GJ, EI, MASS, SPAN, NODES = 1e9, 1e7, 2e7, 50.0, 8.0, 9
 
-FILE = """
-name = "bar"
-stiffness = "K.mtx"
-mass = "M.mtx"
-nodes = "nodes.csv"
-freedoms = [1, 2, 3, 4, 5, 6]
-sections = [0.0, 2.0, 4.0, 6.0, 8.0]
-"""
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+(FILE,) = (block for block in re.findall(r"^```toml\n(.*?)^```", README, re.M | re.S) if "stiffness =" in block)
+"""The example in the README."""
 
 
 def matrices() -> tuple[np.ndarray, np.ndarray]:

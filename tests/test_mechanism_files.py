@@ -253,6 +253,13 @@ def test_the_command_prints_everything(capsys) -> None:
     assert "213.8" not in out
 
 
+def test_what_rounding_leaves_of_zero_is_shown_as_zero(capsys) -> None:
+    _, out, _ = run(capsys, "mechanism", "pitch-link")
+    state = out[out.index("steady state") : out.index("redundant")]
+    assert "e-" not in state
+    assert re.search(r"flap\.rz\s+0\s+rad\s+independent", state)
+
+
 def test_json_is_what_the_library_gives(capsys) -> None:
     status, out, _ = run(capsys, "mechanism", HINGED, "--json")
     found, data = library.mechanism(HINGED).solve(), json.loads(out)
