@@ -104,7 +104,8 @@ def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> Non
     assert independent["worst, for its target"].startswith("✘ beam, odd, 10 rad/s: no answer: crashed")
     assert independent["largest known difference"].endswith("10 rad/s; cause: no coriolis: +1 %")
     assert (
-        printed["worst, for its target"] == "✔ +0.0900 % ± 0.0002 %: beam, author2000, chordwise 2, 10 rad/s; target 0.10 %"
+        printed["worst, for its target"]
+        == "✔ +0.0900 % ± 0.0002 %: beam, author2000, chordwise 2, 10 rad/s; target 0.10 %"
     )
     assert own["worst, for its target"].startswith("✔ +2e-12")
     assert own["worst, for its target"].endswith("target 1e-08")
