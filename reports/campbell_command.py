@@ -22,7 +22,7 @@ from ..core.modes import Modes
 from . import campbell_options as options
 from . import campbell_page, campbell_subjects, terminal
 from . import campbell_tables as tables
-from .cli import Elements, Whole
+from .arguments import Elements, Whole
 from .mounting import Mounting
 from .units import Units
 

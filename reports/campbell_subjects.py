@@ -8,7 +8,7 @@ from ..cases.errors import CaseError
 from ..cases.readers import Mount, own
 from ..cases.settings import settings
 from ..core.blade import Blade
-from .cli import select
+from .arguments import select
 from .units import BY_KEY, RPM, Units
 
 FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")

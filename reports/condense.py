@@ -15,7 +15,7 @@ from ..cases import condense_example, condensed, condensing
 from ..cases.condensed import Condensed
 from ..cases.errors import CaseError
 from . import campbell_options, condense_page
-from .cli import Whole
+from .arguments import Whole
 from .terminal import output
 from .units import RAD_S
 

@@ -16,7 +16,8 @@ from ..cases.gate import MOVED, Comparison, compare, nothing, within
 from ..cases.history import Entry
 from ..cases.results import Run
 from . import gate_text, junit, markdown, terminal
-from .history_command import RESULTS, finished, load
+from .arguments import RESULTS
+from .history_command import finished, load
 
 Flag = Annotated[bool, Parameter(negative=())]
 

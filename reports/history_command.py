@@ -14,8 +14,7 @@ from ..cases.errors import CaseError
 from ..cases.history import History
 from ..cases.results import Run
 from . import terminal
-
-RESULTS = "results.jsonl"
+from .arguments import RESULTS
 
 app = App(name="history", help="Keep what runs found, commit by commit.", result_action="return_value")
 

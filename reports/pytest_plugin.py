@@ -78,7 +78,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
     from ..cases.errors import CaseError
     from ..cases.yours import Yours
-    from .cli import select
+    from .arguments import select
 
     told = config.getoption("--southwell-target")
     try:

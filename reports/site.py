@@ -14,7 +14,7 @@ from ..cases.results import Run, Setting
 from ..cases.schema import Case
 from ..cases.settings import settings
 from ..references import codes as registry
-from . import cli, closed_forms_page, code_pages
+from . import arguments, cli, closed_forms_page, code_pages
 from .markdown import plain, table
 
 Pages = dict[str, str]
@@ -37,7 +37,7 @@ def pages(folder: Path) -> Pages:
     Args:
         folder: of a run's results; without results there, pages on codes say how to make them and no report is shown.
     """
-    path = folder / cli.RESULTS
+    path = folder / arguments.RESULTS
     run = results.read(path) if path.exists() else Run(())
     return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms_page.pages(), **report(folder)}
 

@@ -9,7 +9,7 @@ import pytest
 from southwell.cases import library
 from southwell.cases.errors import CaseError, FilesMissingError
 from southwell.core.blade import coupled, straight
-from southwell.reports import cli
+from southwell.reports import cli, verify_command
 
 FILES = "SOUTHWELL_BLADES"
 NAMES = ("iea-15", "nrel-5mw-beamdyn")
@@ -51,7 +51,7 @@ def test_asked_for_by_name_it_is_bad_input(monkeypatch: pytest.MonkeyPatch, caps
 
 def test_among_all_it_is_said_and_left_out(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.delenv(FILES, raising=False)
-    chosen = cli._all()
+    chosen = verify_command.everything()
     assert not set(NAMES) & set(chosen)
     assert "park-cantilever" in chosen
     assert [line.partition(": not run: ")[0] for line in capsys.readouterr().err.splitlines()] == [

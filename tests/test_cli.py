@@ -350,6 +350,17 @@ def test_cases_and_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(name in shown for name in names())
 
 
+def test_every_command_says_on_the_first_page_what_it_is_for(capsys: pytest.CaptureFixture[str]) -> None:
+    command = [sys.executable, "-m", "southwell", "--help"]  # a process of its own: nothing is loaded yet
+    shown = subprocess.run(
+        command, capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "160"}
+    ).stdout
+    lines = {words[0]: words[1:] for line in shown.splitlines() if (words := line.strip("│ ").split())}
+    names = [name for name in cli.app if not name.startswith("-")]
+    assert len(names) > 15
+    assert all(len(lines[name]) > 3 for name in names)
+
+
 @pytest.mark.parametrize("command", ["", "verify", "modes", "report", "cases", "codes"])
 def test_help_is_there(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = southwell(f"{command} --help", capsys)

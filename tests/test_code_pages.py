@@ -9,7 +9,7 @@ from southwell.cases import results
 from southwell.cases.results import Cell, Run, Verdict
 from southwell.references import codes
 from southwell.references.defects import DEFECTS
-from southwell.reports import cli, code_pages
+from southwell.reports import arguments, cli, code_pages
 
 
 def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode: int = 1, reason: str = "") -> Cell:
@@ -106,7 +106,7 @@ def test_a_reproducer_that_cannot_run_is_said_to() -> None:
 
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.append(tmp_path / cli.RESULTS, RUN.cells, run=RUN)
+    results.append(tmp_path / arguments.RESULTS, RUN.cells, run=RUN)
     with pytest.raises(SystemExit) as ended:
         cli.main(["codes", "--pages", str(tmp_path)])
     assert ended.value.code == 0

@@ -16,6 +16,7 @@ from southwell.cases import library, results
 from southwell.cases.settings import settings
 from southwell.references import codes
 from southwell.reports import cli, markdown, site
+from southwell.reports.arguments import RESULTS
 
 from . import samples
 
@@ -98,7 +99,7 @@ def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
         subprocess.run(["git", *git], cwd=tmp_path, check=True)
     run = samples.run()
     (tmp_path / "reports" / "out").mkdir(parents=True)
-    results.append(tmp_path / "reports" / "out" / cli.RESULTS, run.cells, run.levels, run)
+    results.append(tmp_path / "reports" / "out" / RESULTS, run.cells, run.levels, run)
     for text in blocks(page, "toml"):
         (tmp_path / f"{tomllib.loads(text)['name']}.toml").write_text(text, encoding="utf-8")
     for line in (line for block in blocks(page, "console") for line in block.splitlines()):

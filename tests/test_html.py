@@ -13,7 +13,7 @@ from urllib.parse import unquote
 import pytest
 
 from southwell.cases.results import Setting, append
-from southwell.reports import cli, html, markdown, summary
+from southwell.reports import arguments, html, markdown, summary
 
 from . import samples
 from .test_markdown import HOSTILE
@@ -47,7 +47,7 @@ class Page(HTMLParser):
 def folder(tmp_path: Path) -> Path:
     """A report's folder with results."""
     run = samples.run()
-    append(tmp_path / cli.RESULTS, run.cells, run.levels, run)
+    append(tmp_path / arguments.RESULTS, run.cells, run.levels, run)
     return tmp_path
 
 

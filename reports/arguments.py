@@ -1,0 +1,51 @@
+"""What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Annotated
+
+from cyclopts import Parameter, Token
+from cyclopts.validators import Number
+
+from ..cases import library
+from ..cases.errors import CaseError, nearest
+from ..cases.schema import Case
+
+PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
+
+RESULTS = "results.jsonl"
+
+
+def _whole(_: type, tokens: Sequence[Token]) -> int:
+    """A whole number as typed (Cyclopts' own conversion rounds 1.5)."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is not a whole number: give one, as in 10") from None
+
+
+Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
+"""Of one blade; more than the most are gigabytes and minutes, and change nothing."""
+
+Flag = Annotated[bool, Parameter(negative=())]
+
+
+class UsageError(ValueError):
+    """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
+
+
+def select(name: str) -> Case:
+    """A case by name or file, or with only one of its blades: ``park-blade/surrogate``.
+
+    Raises:
+        CaseError: if there is no such case or blade.
+    """
+    stem, _, blade = name.partition("/")
+    if name.endswith(".toml") or not blade:
+        return library.load(name)
+    case = library.load(stem)
+    kept = tuple(v for v in case.variants if v.name == name)
+    if not kept:
+        raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
+    return replace(case, variants=kept)
