@@ -73,7 +73,7 @@ def pdf(report: Path) -> Path:
         PdfError: if WeasyPrint, or the system's Pango that it needs, is not there.
     """
     try:
-        from weasyprint import HTML
+        from weasyprint import HTML  # pyright: ignore[reportMissingImports]
     except (ImportError, OSError) as error:
         raise PdfError(
             f"--pdf: WeasyPrint cannot be used ({error}): pip install 'southwell[pdf]', and the system's Pango; or print "
