@@ -131,7 +131,7 @@ def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple
         for turn in range(SWEEPS):
             for name, elements in runs:
                 say(f"{len(SWEEP)} speeds, round {turn + 1} of {SWEEPS}: {name}")
-                swept[name, elements].append(pools[name].submit(_swept, name, elements).result())
+                swept[name, elements].append(pools[name].submit(_swept, name, elements, SWEEP).result())
     finally:
         for pool in pools.values():
             pool.stop()
@@ -183,16 +183,16 @@ def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, t
     return seconds, tuple(found.frequencies[:6].tolist())
 
 
-def _swept(name: str, elements: int = ELEMENTS) -> float:
-    """Seconds for all speeds of the sweep, the blade new."""
+def _swept(name: str, elements: int, speeds: Sequence[float]) -> float:
+    """Seconds for all speeds, the blade new."""
     blade = library.load(CASE).variants[0].blade
     code = None if name == "core" else registry.code(name)
     begun = time.perf_counter()
     if code is None:
-        for _ in sweep(blade, SWEEP, elements, COUNT):
+        for _ in sweep(blade, speeds, elements, COUNT):
             pass
     else:
-        for omega in SWEEP:
+        for omega in speeds:
             code.solve(blade, omega, elements, COUNT)
     return time.perf_counter() - begun
 
