@@ -58,7 +58,7 @@ def differences(form: ClosedForm, omega: float) -> tuple[Complex, Array]:
     return taken, off
 
 
-def _values(mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> Complex:
+def oscillating(mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> Complex:
     """Core's λ: of a pair the one with Im λ ≥ 0, of a real pair the one that grows."""
     found = mb.solve(mechanism, guess).values
     tiny = 1e-9 * np.abs(found).max(initial=0.0)
@@ -67,19 +67,21 @@ def _values(mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -
 
 def _pendulum_solved(omega: float) -> Complex:
     if omega**2 * pendulums.LENGTH <= pendulums.G:
-        return _values(pendulums.pendulum(omega, held=True))
-    free = _values(pendulums.pendulum(omega, held=False), {"swing.rz": -1.0})
-    return np.append(_values(pendulums.pendulum(omega, held=True), {"swing.rz": -1.0}), free[np.argmax(np.abs(free))])
+        return oscillating(pendulums.pendulum(omega, held=True))
+    free = oscillating(pendulums.pendulum(omega, held=False), {"swing.rz": -1.0})
+    return np.append(
+        oscillating(pendulums.pendulum(omega, held=True), {"swing.rz": -1.0}), free[np.argmax(np.abs(free))]
+    )
 
 
 def _top_solved(precession: float) -> Complex:
-    found = _values(pendulums.top(precession), {"nutation.rz": pendulums.TILT})
+    found = oscillating(pendulums.top(precession), {"nutation.rz": pendulums.TILT})
     return found[[np.argmax(np.abs(found))]]
 
 
 def _parallelogram_solved(omega: float) -> Complex:
     theta = linkages.parallelogram_angle(omega) + 0.1  # a guess: core finds the angle
-    return _values(linkages.parallelogram(omega), {"A.rz": theta, "B.rz": -theta, "D.rz": theta})
+    return oscillating(linkages.parallelogram(omega), {"A.rz": theta, "B.rz": -theta, "D.rz": theta})
 
 
 FORMS: tuple[ClosedForm, ...] = (
@@ -95,7 +97,7 @@ FORMS: tuple[ClosedForm, ...] = (
         np.linspace(0.1, 9.9, 50),
         (np.sqrt(pendulums.KX / pendulums.MASS), np.sqrt(pendulums.KY / pendulums.MASS)),
         pendulums.turntable_values,
-        lambda omega: _values(pendulums.turntable(omega)),
+        lambda omega: oscillating(pendulums.turntable(omega)),
         1e-9,
     ),
     ClosedForm(
@@ -141,7 +143,7 @@ FORMS: tuple[ClosedForm, ...] = (
             np.sqrt((2 + np.sqrt(2)) * pendulums.G / pendulums.ROD),
         ),
         pendulums.double_pendulum_values,
-        lambda omega: _values(pendulums.double_pendulum(omega)),
+        lambda omega: oscillating(pendulums.double_pendulum(omega)),
         1e-9,
     ),
     ClosedForm(
@@ -156,7 +158,7 @@ FORMS: tuple[ClosedForm, ...] = (
         np.linspace(0.0, 10.0, 21),
         (),
         linkages.slider_crank_values,
-        lambda omega: _values(linkages.slider_crank(omega), {"guide.z": linkages.CRANK + linkages.CONNECTING}),
+        lambda omega: oscillating(linkages.slider_crank(omega), {"guide.z": linkages.CRANK + linkages.CONNECTING}),
         1e-9,
     ),
     ClosedForm(
@@ -186,7 +188,7 @@ FORMS: tuple[ClosedForm, ...] = (
         np.linspace(0.0, 1.5, 4),
         (),
         linkages.ring_values,
-        lambda omega: _values(linkages.ring(omega)),
+        lambda omega: oscillating(linkages.ring(omega)),
         1e-3,
     ),
 )

@@ -105,9 +105,9 @@ _RADIUS, _EI, _EA, _LINE = 1.0, 2.0, 2e5, 0.5
 ARCS = 16
 
 
-def ring(omega: float) -> mb.Mechanism:
+def ring(omega: float, arcs: int = ARCS) -> mb.Mechanism:
     """A thin ring of curved beams, free on a frame that turns about the ring's axis: a closed loop."""
-    angle, nine = np.linspace(0.0, 2 * np.pi / ARCS, 9), np.ones(9)
+    angle, nine = np.linspace(0.0, 2 * np.pi / arcs, 9), np.ones(9)
     arc = Blade(
         "arc",
         _RADIUS * angle,
@@ -118,16 +118,16 @@ def ring(omega: float) -> mb.Mechanism:
     )
     element = one(discretize(arc, 1).beams, 0)
     place = sp.pose(sp.rotation(2, np.array(np.pi / 2)), np.array([_RADIUS, 0.0, 0.0]))
-    names = [f"b{k}" for k in range(ARCS)]
+    names = [f"b{k}" for k in range(arcs)]
     return mb.Mechanism(
         (mb.Body("frame"), *map(mb.Body, names)),
         (
             mb.Joint("turn", "revolute", "ground", "frame"),
             mb.Joint("float", "free", "frame", "b0", place),
-            *(mb.Joint(f"j{k}", "elastic", names[k - 1], names[k], element.rest[0]) for k in range(1, ARCS)),
+            *(mb.Joint(f"j{k}", "elastic", names[k - 1], names[k], element.rest[0]) for k in range(1, arcs)),
         ),
         (mb.Motion("turn.rz", rate=omega),),
-        beams=tuple(mb.Beam(names[k], names[(k + 1) % ARCS], element) for k in range(ARCS)),
+        beams=tuple(mb.Beam(names[k], names[(k + 1) % arcs], element) for k in range(arcs)),
     )
 
 

@@ -2,13 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter, Token
 from cyclopts.validators import Number
 
-from ..cases import library
+from ..cases import library, results
 from ..cases.errors import CaseError, nearest
+from ..cases.results import Run
 from ..cases.schema import Case
 
 PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
@@ -49,3 +51,22 @@ def select(name: str) -> Case:
     if not kept:
         raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
     return replace(case, variants=kept)
+
+
+def finished(path: Path) -> Run:
+    """The run in a report's folder, or in its results file.
+
+    Raises:
+        CaseError: if there is none.
+    """
+    file = path / RESULTS if path.is_dir() else path
+    try:
+        run = results.read(file)
+    except OSError as error:
+        told = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
+        raise CaseError(f"{file}: {told}") from error
+    except ValueError as error:
+        raise CaseError(str(error)) from error
+    if not run.cells:
+        raise CaseError(f"{file}: no results in it: the run was cut short before its first; run `southwell verify`")
+    return run

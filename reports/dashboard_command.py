@@ -6,8 +6,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..cases.errors import CaseError
+from .arguments import finished
 from .dashboard.write import write
-from .history_command import finished, load
+from .history_command import load
 
 
 def command(

@@ -16,8 +16,8 @@ from ..cases.gate import MOVED, Comparison, compare, nothing, within
 from ..cases.history import Entry
 from ..cases.results import Run
 from . import gate_text, junit, markdown, terminal
-from .arguments import RESULTS
-from .history_command import finished, load
+from .arguments import RESULTS, finished
+from .history_command import load
 
 Flag = Annotated[bool, Parameter(negative=())]
 

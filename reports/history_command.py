@@ -9,12 +9,11 @@ from cyclopts import App, Parameter
 from rich import box
 from rich.table import Table
 
-from ..cases import history, results
+from ..cases import history
 from ..cases.errors import CaseError
 from ..cases.history import History
-from ..cases.results import Run
 from . import terminal
-from .arguments import RESULTS
+from .arguments import finished
 
 app = App(name="history", help="Keep what runs found, commit by commit.", result_action="return_value")
 
@@ -89,25 +88,6 @@ def load(file: Path) -> History:
     for number in found.torn:
         print(f"southwell: {file}: line {number}: cut short, left out", file=sys.stderr)
     return found
-
-
-def finished(path: Path) -> Run:
-    """The run in a report's folder, or in its results file.
-
-    Raises:
-        CaseError: if there is none.
-    """
-    file = path / RESULTS if path.is_dir() else path
-    try:
-        run = results.read(file)
-    except OSError as error:
-        told = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
-        raise CaseError(f"{file}: {told}") from error
-    except ValueError as error:
-        raise CaseError(str(error)) from error
-    if not run.cells:
-        raise CaseError(f"{file}: no results in it: the run was cut short before its first; run `southwell verify`")
-    return run
 
 
 def _checked_out() -> str:

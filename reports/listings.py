@@ -14,8 +14,7 @@ from ..references import codes as registry
 from ..references import elsewhere
 from ..references.elsewhere import ENVIRONMENTS
 from . import terminal
-from .arguments import PASSED, UsageError
-from .report_command import stored
+from .arguments import PASSED, RESULTS, UsageError, finished
 
 
 def cases() -> int:
@@ -55,7 +54,7 @@ def codes(*, pages: Path | None = None) -> int:
     if pages:
         from . import code_pages
 
-        print(code_pages.write(stored(pages), pages))
+        print(code_pages.write(finished(pages / RESULTS), pages))
         return PASSED
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("code", "title", "version", "shares with core", "leaves out"):

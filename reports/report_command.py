@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from ..cases import results
 from ..cases.results import Run
 from . import terminal
-from .arguments import PASSED, RESULTS, Flag, UsageError
+from .arguments import PASSED, RESULTS, Flag, UsageError, finished
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
@@ -20,7 +19,7 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     pdf
         Also report.pdf; needs the extra `pdf` (WeasyPrint).
     """
-    written = show(stored(folder), folder)
+    written = show(finished(folder / RESULTS), folder)
     if html or pdf:
         from . import html as page
 
@@ -32,23 +31,6 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
             except page.PdfError as error:
                 raise UsageError(str(error)) from error
     return PASSED
-
-
-def stored(folder: Path) -> Run:
-    """The results in a report's folder."""
-    path = folder / RESULTS
-    try:
-        run = results.read(path)
-    except FileNotFoundError:
-        raise UsageError(f"{path}: no such file: give a folder that `southwell verify --out` has written") from None
-    except OSError as error:
-        remedy = "give a folder that `southwell verify --out` has written"
-        raise UsageError(f"{path}: cannot be read ({error.strerror}): {remedy}") from error
-    except ValueError as error:
-        raise UsageError(str(error)) from error
-    if not run.cells:
-        raise UsageError(f"{path}: no results in it: the run was cut short before its first; run `southwell verify`")
-    return run
 
 
 def show(run: Run, folder: Path) -> Path:

@@ -96,7 +96,10 @@ def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, 
         ("modes park-cantilever --modes 0", "--modes"),
         ("modes park-cantilever wright-flapwise", "wright-flapwise"),
         ("modes yoo-shin-chordwise/delta-0 --omega 200", "200 rad/s"),
-        ("report no/such/folder", "no such file: give a folder that `southwell verify --out` has written"),
+        (
+            "report no/such/folder",
+            "No such file or directory): give a folder that `southwell verify --out` has written",
+        ),
         ("vrify", 'Unknown command "vrify"'),
     ],
 )

@@ -128,4 +128,4 @@ def test_a_folder_without_results_is_bad_input(tmp_path: Path, capsys: pytest.Ca
     with pytest.raises(SystemExit) as ended:
         cli.main(["codes", "--pages", str(tmp_path)])
     assert ended.value.code == 2
-    assert "no such file" in capsys.readouterr().err
+    assert "No such file" in capsys.readouterr().err

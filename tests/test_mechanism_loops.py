@@ -13,7 +13,7 @@ from southwell.core import linearize as lz
 from southwell.core import spatial as sp
 from southwell.core.kinematics import kinematics, poses
 from southwell.core.tree import compile_tree
-from southwell.tests.test_mechanisms import ring
+from southwell.references.linkages import ring
 
 G = 9.81
 
@@ -231,7 +231,7 @@ def test_motions_that_contradict_a_loop_are_refused() -> None:
 @pytest.mark.parametrize("elements", [12, 20])
 def test_a_slender_ring_that_does_not_quite_close_finds_its_shape(elements: int) -> None:
     """Stiff in tension, soft in bending: full Newton steps fail here. It ends round, but for the gap it started with."""
-    linear = lz.linearize(ring(elements, 1.5))
+    linear = lz.linearize(ring(1.5, elements))
     tree, state = linear.tree, linear.state
     hub = np.mean([x[:3, 3] for x in state.kinematics.poses[1:]], axis=0)
     radii = [np.linalg.norm(x[:3, 3] - hub) for x in state.kinematics.poses[1:]]

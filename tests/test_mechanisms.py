@@ -8,7 +8,7 @@ from southwell.core import beams as bm
 from southwell.core import dynamics, eigen
 from southwell.core import linearize as lz
 from southwell.core import spatial as sp
-from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.core.blade import uniform_blade
 from southwell.core.chain_mechanism import mechanism, one
 from southwell.core.discretize import discretize
 from southwell.core.joints import Joint, at
@@ -24,6 +24,8 @@ from southwell.core.mechanism import (
     inertia,
 )
 from southwell.core.tree import compile_tree
+from southwell.references.linkages import bar, ring, slider_crank
+from southwell.references.pendulums import turntable
 from southwell.tests.beams import PARK
 
 G = 9.81
@@ -92,20 +94,6 @@ def test_conical_pendulum_about_its_steady_cone(held: bool) -> None:
 # --- rotating tables -------------------------------------------------------------------------------------------------
 
 
-def table(omega: float, kx: float, ky: float, mass: float = 2.0) -> Mechanism:
-    """A mass on two springs on a turntable."""
-    return Mechanism(
-        (Body("table"), Body("slide"), Body("mass", inertia(mass))),
-        (
-            Joint("turn", "revolute", "ground", "table"),
-            Joint("x", "prismatic", "table", "slide", at(axis="x"), at(axis="x")),
-            Joint("y", "prismatic", "slide", "mass", at(axis="y"), at(axis="y")),
-        ),
-        (Motion("turn.rz", 0.0, omega),),
-        coordinate_springs=(CoordinateSpring("x.z", kx), CoordinateSpring("y.z", ky)),
-    )
-
-
 def test_mass_in_a_rotating_slot() -> None:
     """ω² = k/m − Ω²."""
     m, k, omega = 2.0, 50.0, 3.0
@@ -127,17 +115,17 @@ def test_both_branches_on_a_rotating_table(omega: float) -> None:
     kx, ky, m = 50.0, 65.0, 2.0
     a, b = kx / m - omega**2, ky / m - omega**2
     squares = np.sort(np.roots([1.0, -(a + b + 4 * omega**2), a * b]))
-    np.testing.assert_allclose(np.sort(frequencies(table(omega, kx, ky))), np.sqrt(squares), rtol=1e-9)
+    np.testing.assert_allclose(np.sort(frequencies(turntable(omega, kx, ky))), np.sqrt(squares), rtol=1e-9)
 
 
 def test_a_rotating_table_loses_stability_between_its_critical_speeds() -> None:
     """For √(kx/m) < Ω < √(ky/m) one branch grows without oscillating; on either side nothing grows."""
     kx, ky, m = 50.0, 98.0, 2.0
     for omega, stable in ((4.99, True), (5.01, False), (6.99, False), (7.01, True)):
-        found = lz.modes(lz.linearize(table(omega, kx, ky)))
+        found = lz.modes(lz.linearize(turntable(omega, kx, ky)))
         worst = getattr(found, "values", np.zeros(1)).real.max()
         assert (worst < 1e-6) == stable, omega
-    grows = damped(table(6.0, kx, ky)).values.real.max()
+    grows = damped(turntable(6.0, kx, ky)).values.real.max()
     a, b = kx / m - 36.0, ky / m - 36.0
     lam2 = np.roots([1.0, a + b + 4 * 36.0, a * b]).max()
     assert grows == pytest.approx(np.sqrt(lam2), rel=1e-9)
@@ -180,10 +168,6 @@ def test_nutation_of_a_symmetric_top(weight: float) -> None:
 # --- linkages --------------------------------------------------------------------------------------------------------
 
 A_, B_, C_, D_ = 1.0, 3.0, 2.0, 3.0
-
-
-def bar(name: str, length: float, mass: float) -> Body:
-    return Body(name, inertia(mass, np.array([0, mass * length**2 / 12, mass * length**2 / 12]), (length / 2, 0, 0)))
 
 
 def four_bar(cut: str = "C", order=(0, 1, 2, 3), table_rate: float = 0.0, turned=None) -> Mechanism:
@@ -306,17 +290,7 @@ def test_frequencies_do_not_depend_on_a_rigid_rotation(turning) -> None:
 def test_slider_crank_with_a_spring() -> None:
     """Crank along the line of centres: the slider stands still to first order, so ω² M = k, M of crank and rod alone."""
     r, rod, m_crank, m_rod, k = 0.5, 2.0, 3.0, 2.0, 40.0
-    m = Mechanism(
-        (bar("crank", r, m_crank), bar("rod", rod, m_rod), Body("slider", inertia(5.0))),
-        (
-            Joint("O", "revolute", "ground", "crank"),
-            Joint("P", "revolute", "crank", "rod", at(r)),
-            Joint("Q", "revolute", "rod", "slider", at(rod)),
-            Joint("guide", "prismatic", "ground", "slider", at(axis="x"), at(axis="x"), cut=True),
-        ),
-        coordinate_springs=(CoordinateSpring("O.rz", k),),
-    )
-    linear = lz.linearize(m, {"guide.z": r + rod})
+    linear = lz.linearize(slider_crank(0.0), {"guide.z": r + rod})
     # the rod turns by −r/rod θ, its inner end moves by r θ across, its outer end stays on the line
     effective = m_crank * r**2 / 3 + m_rod * r**2 / 3
     assert lz.modes(linear).frequencies[0] == pytest.approx(np.sqrt(k / effective), rel=1e-9)
@@ -337,37 +311,13 @@ def test_a_flat_four_bar_is_reported_singular() -> None:
 
 # --- elastic loops ---------------------------------------------------------------------------------------------------
 
-R, EI, EA, MU = 1.0, 2.0, 2e5, 0.5
-
-
-def ring(n: int, omega: float) -> Mechanism:
-    """A thin ring of n curved beams, free on a frame that turns about the ring's axis."""
-    angle = np.linspace(0.0, 2 * np.pi / n, 9)
-    nine = np.ones(9)
-    arc = Blade(
-        "arc",
-        R * angle,
-        section_stiffness(EA * nine, EI * nine, 10 * EI * nine, EI * nine),
-        section_mass(MU * nine),
-        np.zeros(9),
-        curve=R * np.stack([np.sin(angle), 1 - np.cos(angle), 0 * angle], axis=1),
-    )
-    element = one(discretize(arc, 1).beams, 0)
-    place = sp.pose(sp.rotation(2, np.array(np.pi / 2)), np.array([R, 0, 0]))
-    bodies = (Body("frame"), *(Body(f"b{k}") for k in range(n)))
-    beams = tuple(Beam(f"b{k}", f"b{(k + 1) % n}", element) for k in range(n))
-    joints = (
-        Joint("turn", "revolute", "ground", "frame"),
-        Joint("float", "free", "frame", "b0", place),
-        *(Joint(f"j{k}", "elastic", f"b{k - 1}", f"b{k}", element.rest[0]) for k in range(1, n)),
-    )
-    return Mechanism(bodies, joints, (Motion("turn.rz", 0.0, omega),), beams=beams)
+R, EI, MU = 1.0, 2.0, 0.5  # the ring's
 
 
 @pytest.mark.parametrize("omega", [0.0, 1.5], ids=["at rest", "spinning"])
 def test_closed_ring_of_beams(omega: float) -> None:
     """p = n [±(n²−1) √(Ω² + (n²+1) EI/(μR⁴)) − 2Ω]/(n²+1), in-plane, inextensional, seen turning (Carrier 1945)."""
-    linear = lz.linearize(ring(40, omega))
+    linear = lz.linearize(ring(omega, 40))
     found = lz.modes(linear)
     values = found.values.imag if isinstance(found, eigen.Damped) else found.frequencies
     for n in (2, 3):
