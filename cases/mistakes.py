@@ -8,7 +8,6 @@ two directions of the plane of rotation, nothing along the rotor's axis).
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -124,7 +123,7 @@ def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
 
 
 def _modes(body: Chain, p: Linear, shape: Shape, omega: float, count: int) -> Modes:
-    found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
+    found = lanczos(p.M, p.C, blocks.symmetric(p.K), count, p.strained)
     return Modes(omega, found.frequencies, solve.mode_shapes(body, shape, found.vectors), body.elements)
 
 

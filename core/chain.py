@@ -7,20 +7,21 @@ of node k are in its own axes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import beams as bm
-from . import blocks, inertia
+from . import blocks, inertia, rigid
 from . import spatial as sp
 from .blocks import Tridiagonal
+from .compiled import compiled
 from .discretize import Chain
 from .model import FULL, Model
+from .strained import Strained
 
 Array = NDArray[np.float64]
-Numbers = NDArray[Any]
 
 _STEPS = 40
 _BALANCED, _ROUNDING = 1e-10, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
@@ -48,7 +49,7 @@ class Linear:
     lever: Array
     held: Array
 
-    @property
+    @cached_property
     def K(self) -> Tridiagonal:
         """The whole stiffness."""
         on_b = np.swapaxes(self.lever, -1, -2) @ self.spring
@@ -58,6 +59,12 @@ class Linear:
         upper[:, :, -6:] -= self.spring[1:] @ self.lever[1:]
         lower[:, -6:] -= on_b[1:]
         return _hold(Tridiagonal(diagonal, upper, lower), self.held, 1.0)
+
+    @property
+    def strained(self) -> Strained:
+        """The whole stiffness, for products without loss of digits."""
+        held = self.held if self.held.size else np.zeros((6, 6))
+        return Strained(blocks.columns(self.rest), self.spring, self.lever, held)
 
 
 def spin(omega: float) -> Array:
@@ -88,35 +95,73 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
         gravity: (3,) free-fall acceleration in the hub's axes, turning with it.
         model: effects kept.
     """
-    nodes = shape.nodes
-    to_node = sp.adjoint(sp.inverse(nodes))
-    frame = to_node @ spin(omega)
-    fall = to_node @ np.concatenate([gravity, np.zeros(3)])
-    x = sp.inverse(nodes[:-1]) @ nodes[1:]
-    axes = to_node[:, :3, :3]
+    n, d = len(shape.nodes), 6 + chain.beams.inner
+    frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
+    x, lever = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
+    _place(np.ascontiguousarray(shape.nodes), omega, gravity, chain.force, frame, fall, axes, push, x, lever)
     p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
-    push = (axes @ chain.force[..., None])[..., 0]
-    g, C, K = inertia.carried(chain.lumps, frame, fall, follow=model.geometric, push=push)
-    d = 12 + chain.beams.inner
-    own = np.zeros((len(x), d, d))  # snapshot twists from the nodes' own
-    own[:, range(d), range(d)] = 1.0
-    own[:, 6:12, 6:12] = sp.adjoint(x)
-    back = np.swapaxes(own, -1, -2)
-    residual = (back @ p.residual[..., None])[..., 0]
-    r = np.concatenate([residual[:, 12:], g[1:] + residual[:, 6:12]], axis=-1)
-    r[:-1, -6:] += residual[1:, :6]
+    g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
+    inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
+    residual = np.empty((n - 1, d))
+    _balance(p.residual, lever, g, residual)
     if chain.held.size:
-        r[0, -6:] -= chain.held @ r[0, -6:]
-    coriolis = 1.0 if model.coriolis else 0.0
+        residual[0, -6:] -= chain.held @ residual[0, -6:]
+    moving = 1.0 if model.coriolis else 0.0
     return Linear(
-        r.ravel(),
-        _hold(blocks.from_elements(back @ p.M @ own, chain.lumps), chain.held, 0.0),
-        _hold(blocks.from_elements(coriolis * (back @ p.C @ own), coriolis * C), chain.held, 0.0),
-        blocks.from_elements(back @ p.rest @ own, K),
+        residual.ravel(),
+        _hold(blocks.from_elements(p.M, lever, chain.lumps), chain.held, 0.0),
+        _hold(blocks.from_elements(moving * p.C, lever, moving * C), chain.held, 0.0),
+        blocks.from_elements(p.rest, lever, K),
         p.spring,
-        own[:, 6:12, 6:12],
+        lever,
         chain.held,
     )
+
+
+@compiled
+def _place(
+    nodes: Array,
+    omega: float,
+    gravity: Array,
+    force: Array,
+    frame: Array,
+    fall: Array,
+    axes: Array,
+    push: Array,
+    x: Array,
+    lever: Array,
+) -> None:
+    """Of every node, in its own axes: twist of the hub's frame, free fall, load; the hub's axes; and what is relative to a."""
+    back, to_node = np.empty((4, 4)), np.empty((6, 6))
+    for k in range(len(nodes)):
+        rigid.inverse(nodes[k], back)
+        rigid.adjoint(back, to_node)
+        for i in range(6):
+            frame[k, i], fall[k, i] = omega * to_node[i, 5], 0.0
+        for i in range(3):
+            push[k, i] = 0.0
+            for j in range(3):
+                axes[k, i, j] = back[i, j]
+                fall[k, i] += back[i, j] * gravity[j]
+                push[k, i] += back[i, j] * force[k, j]
+        if k + 1 < len(nodes):
+            rigid.compose(back, nodes[k + 1], x[k])
+            rigid.adjoint(x[k], lever[k])
+
+
+@compiled
+def _balance(on_ends: Array, lever: Array, on_nodes: Array, out: Array) -> None:
+    """Forces (n, d) on β and nodes 1 … n in their own axes, from elements (n, d + 6), ordered a, b, β, and nodes (n+1, 6)."""
+    inner = out.shape[1] - 6
+    for k in range(len(out)):
+        for i in range(inner):
+            out[k, i] = on_ends[k, 12 + i]
+        for i in range(6):
+            out[k, inner + i] = on_nodes[k + 1, i]
+            for j in range(6):
+                out[k, inner + i] += lever[k, j, i] * on_ends[k, 6 + j]
+            if k > 0:
+                out[k - 1, inner + i] += on_ends[k, i]
 
 
 def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
@@ -130,25 +175,6 @@ def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
     diagonal[0, -6:, -6:] += unit * held
     upper[:1], lower[:1] = free @ upper[:1], lower[:1] @ free
     return Tridiagonal(diagonal, upper, lower)
-
-
-def stiffness_times(linear: Linear, x: Numbers) -> Numbers:
-    """K x (dn, m) of vectors (dn, m), by way of the elements' strains: no digits are lost however stiff and many they are."""
-    blocked = x.reshape(-1, linear.rest.block, x.shape[-1])
-    if linear.held.size:
-        kept = linear.held @ blocked[0, -6:]
-        blocked = blocked.copy()
-        blocked[0, -6:] -= kept
-    twist = blocked[:, -6:]
-    rho = linear.lever @ twist
-    rho[1:] -= twist[:-1]
-    wrench = linear.spring @ rho
-    out = blocks.times(blocks.rows(linear.rest), blocked.reshape(x.shape))
-    out[:, -6:] += np.swapaxes(linear.lever, -1, -2) @ wrench
-    out[:-1, -6:] -= wrench[1:]
-    if linear.held.size:
-        out[0, -6:] += kept - linear.held @ out[0, -6:]
-    return out.reshape(x.shape)
 
 
 @dataclass(frozen=True)
@@ -195,7 +221,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     for _ in range(_STEPS):
         p = linearize(chain, shape, omega, gravity)
         try:
-            step = -blocks.solve(p.K, p.residual).reshape(len(chain.nodes) - 1, -1)
+            step = _solution(p.K, -p.residual).reshape(len(chain.nodes) - 1, -1)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
         change = float(np.abs(step[:, -6:] / size).max())
@@ -212,10 +238,40 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     raise SteadyStateError("no convergence")
 
 
+def _solution(t: Tridiagonal, b: Array) -> Array:
+    x = b[None].copy()
+    blocks.solve(blocks.factor(t), x)
+    return x[0]
+
+
 def moved(shape: Shape, step: Array) -> Shape:
     """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
-    nodes = np.concatenate([shape.nodes[:1], shape.nodes[1:] @ sp.exp(step[:, -6:])])
+    nodes = shape.nodes.copy()
+    _move(step, nodes[1:])
     return Shape(nodes, shape.beta + step[:, :-6])
+
+
+@compiled
+def _move(step: Array, nodes: Array) -> None:
+    inner, here, change = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
+    for k in range(len(nodes)):
+        rigid.exp(step[k, inner:], change)
+        for i in range(4):
+            for j in range(4):
+                here[i, j] = nodes[k, i, j]
+        rigid.compose(here, change, nodes[k])
+
+
+@compiled
+def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
+    """Add to the steps (n, d) the weighted twists that bring nodes (n, 4, 4) from where they are to where others are."""
+    inner, back, between, twist = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4)), np.empty(6)
+    for k in range(len(now)):
+        rigid.inverse(now[k], back)
+        rigid.compose(back, other[k], between)
+        rigid.log(between, twist)
+        for i in range(6):
+            step[k, inner + i] += weight * twist[i]
 
 
 def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
@@ -228,12 +284,12 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
         return None
     x = np.array(list(latest))
     now = next(iter(latest.values()))
-    back = sp.inverse(now.nodes[1:])
-    step = np.zeros((len(back), now.beta.shape[1] + 6))
+    step = np.zeros((len(now.beta), now.beta.shape[1] + 6))
     for k, shape in enumerate(latest.values()):
         others = np.delete(x, k)
         weight = float(np.prod((omega**2 - others) / (x[k] - others)))
-        step += weight * np.concatenate([shape.beta - now.beta, sp.log(back @ shape.nodes[1:])], axis=1)
+        step[:, :-6] += weight * (shape.beta - now.beta)
+        _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
     return moved(now, step)
 
 
@@ -243,7 +299,7 @@ def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     residual = linearize(chain, rest(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
     elastic = linearize(bare, rest(bare), 0.0, np.zeros(3), still).K
-    step = np.concatenate([np.zeros((1, 6)), -blocks.solve(elastic, residual[:, -6:].ravel()).reshape(-1, 6)])
+    step = np.concatenate([np.zeros((1, 6)), _solution(elastic, -residual[:, -6:].ravel()).reshape(-1, 6)])
     x = chain.beams.rest
     rho = (sp.adjoint(x) @ step[1:, :, None])[..., 0] - step[:-1]
     loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))

@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 from . import spatial as sp
 from .beams import Pencil, on_ends
 from .beams import pencil as beam_pencil
-from .elements import strain_rate
+from .elements import response
 from .kinematics import Kinematics
 from .mechanism import MechanismError, Spring
 from .tree import Batch, Tree
@@ -177,7 +177,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     p = beam_pencil(batch.beams, x, beta, frame, fall)
     M, C, K = p.M, p.C, p.rest
     if batch.damping.any():
-        E = strain_rate(batch.beams.law, x, beta)
+        E = response(batch.beams.law, x, beta).rate[..., :6]
         d = np.swapaxes(E, -1, -2) @ batch.damping @ E
         C = C.copy()
         C[:, :12, :12] += on_ends(d, d)

@@ -7,7 +7,7 @@ lie on the imaginary axis to rounding, and M is never inverted: massless coordin
 """
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 import scipy.linalg
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Numbers = NDArray[Any]
 
 
 class UnstableError(ValueError):
@@ -57,8 +56,8 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
     order = np.argsort(-mu)
     x = scipy.linalg.solve_triangular(root.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
-    found = scaled(1.0 / mu[order], x, K @ x)
-    return Eigen(found.frequencies, scale[:, None] * found.vectors)
+    energy = np.sqrt(np.maximum(np.real((x.conj() * (K @ x)).sum(0)), 1e-300))
+    return Eigen(1.0 / mu[order], scale[:, None] * x / energy)
 
 
 @dataclass(frozen=True)
@@ -101,13 +100,6 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None) -> Damped:
     values, x = values[one_of_each], x[:, one_of_each]
     order = np.argsort(np.abs(values), kind="stable")[:count]
     return Damped(values[order], x[:, order])
-
-
-def scaled(frequencies: Array, x: Numbers, kx: Numbers) -> Eigen:
-    """The modes in ascending order, scaled to x*Kx = 1, from x and K x (n, m)."""
-    energy = np.sqrt(np.maximum(np.real((x.conj() * kx).sum(0)), 1e-300))
-    order = np.argsort(frequencies)
-    return Eigen(frequencies[order], (x / energy)[:, order])
 
 
 def unstable() -> UnstableError:

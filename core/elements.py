@@ -17,14 +17,17 @@ Two measures:
   body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import rigid
 from . import spatial as sp
+from .cardan import cardan, cardan_rate, cardan_rate_transpose_derivative
+from .compiled import apply, clear, compiled, invert, product, turned_apply, turned_product
 
 Array = NDArray[np.float64]
 Measure = Literal["corotational", "parent"]
@@ -70,7 +73,6 @@ def part(law: Law, at: slice) -> Law:
     return Law(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
 
 
-_NOT_AXIAL = np.diag([0.0, 1.0, 1.0, 1.0, 1.0, 1.0])  # G has all of the axial strain's part of Magnus' term, but β's
 _ARRAYS = ("rest", "shortening", "mean", "slope")
 
 
@@ -81,122 +83,226 @@ class Response:
     Attributes:
         strain: (n, 6) ε.
         rate: (n, 6, 12) E = ∂ε/∂(ρ, β).
-        curvature: from the force s (n, 6) conjugate to ε, and one (n, 6) conjugate to η = log X, the derivative (n, 12, 12)
-            with respect to (ρ, β) of what they make on them, both held: the geometric stiffness.
+        curvature: (n, 12, 12) from a force s conjugate to ε, and one conjugate to η = log X, the derivative with respect to
+            (ρ, β) of what they make on them, both held: the geometric stiffness.
     """
 
     strain: Array
     rate: Array
-    curvature: Callable[[Array, Array], Array]
+    curvature: Array
 
 
-def response(law: Law, x: Array, eta: Array, back: Array, beta: Array) -> Response:
-    """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6), and its derivatives.
-
-    ``eta`` (n, 6) is the poses' logarithm, and ``back`` (n, 6, 6) ``tangent_inverse(eta)``.
-    """
-    return (_corotational if law.measure == "corotational" else _from_parent)(law, x, eta, back, beta)
-
-
-def strain_rate(law: Law, x: Array, beta: Array) -> Array:
-    """E = ∂ε/∂ρ (n, 6, 6) alone; arguments as for ``response``, β (n, 0) if there is none."""
-    eta = sp.log(x)
-    return response(law, x, eta, sp.tangent_inverse(eta), inner(law, beta)).rate[..., :6]
-
-
-def inner(law: Law, beta: Array) -> Array:
-    """β (n, 6), zero where elements have none (n, 0)."""
-    return beta if beta.shape[1] else np.zeros((len(law.rest), 6))
-
-
-def _corotational(law: Law, x: Array, eta: Array, back: Array, beta: Array) -> Response:
-    delta = eta - law.eta
-    A, B, inner = law.mean, law.slope[..., :6], law.slope[..., 6:]
-    bow = (law.shortening @ delta[..., None])[..., 0]
-    across = sp.ad((A @ delta[..., None])[..., 0]) / 12.0
-    by_beta = -across @ inner  # of r, where (1 + ad(A δ) B_δ/12) ε = r
-    r = delta + (by_beta @ beta[..., None])[..., 0]
-    r[..., 0] += (delta * bow).sum(-1)
-    undo = np.linalg.inv(np.eye(6) + _NOT_AXIAL @ across @ B)
-    strain = (undo @ r[..., None])[..., 0]
-    slope, inner_slope = ((m @ v[..., None])[..., 0] for m, v in ((B, strain), (inner, beta)))
-    by_delta = np.eye(6) + (_NOT_AXIAL @ sp.ad(slope) + sp.ad(inner_slope)) @ A / 12.0
-    by_delta[..., 0, :] += 2.0 * bow
-    J = undo @ np.concatenate([by_delta, by_beta], axis=-1)
-
-    def curvature(s: Array, on_eta: Array) -> Array:
-        force = (np.swapaxes(undo, -1, -2) @ s[..., None])[..., 0]
-        conjugate = (np.swapaxes(J[..., :6], -1, -2) @ s[..., None])[..., 0] + on_eta
-        turned = -np.swapaxes(A, -1, -2) / 12.0
-        out = np.zeros((len(s), 12, 12))
-        out[:, :6] = turned @ (np.swapaxes(sp.cross(force @ _NOT_AXIAL), -1, -2) @ B @ J)
-        out[:, :6, 6:] += turned @ np.swapaxes(sp.cross(force), -1, -2) @ inner
-        out = out + np.swapaxes(out, -1, -2)
-        out[:, :6, :6] += 2.0 * force[..., :1, None] * law.shortening
-        out[:, :6] = np.swapaxes(back, -1, -2) @ out[:, :6]
-        out[:, :6, :6] += sp.tangent_inverse_transpose_derivative(eta, conjugate)
-        out[..., :6] = out[..., :6] @ back
-        return out
-
-    rate = J.copy()
-    rate[..., :6] = J[..., :6] @ back
-    return Response(strain, rate, curvature)
-
-
-def _from_parent(law: Law, x: Array, eta: Array, back: Array, beta: Array) -> Response:
-    y = sp.inverse(law.rest) @ x
-    strain = np.concatenate([y[..., :3, 3], _cardan(y[..., :3, :3])], axis=-1)
-    local = sp.adjoint(sp.inverse(law.rest))  # brings ρ to the rest frame
-    rate = np.zeros((*strain.shape, 6))
-    rate[..., :3, :3] = np.eye(3)
-    rate[..., :3, 3:] = -sp.skew(strain[..., :3])
-    rate[..., 3:, 3:] = _cardan_rate(strain[..., 3:])
-
-    def curvature(s: Array, on_eta: Array) -> Array:
-        turn = np.zeros((*s.shape, 6))
-        turn[..., 3:, :3] = -sp.skew(s[..., :3])
-        turn[..., 3:, 3:] = _cardan_rate_transpose_derivative(strain[..., 3:], s[..., 3:])
-        out = np.zeros((len(s), 12, 12))
-        out[:, :6, :6] = np.swapaxes(local, -1, -2) @ turn @ rate @ local
-        if on_eta.any():
-            out[:, :6, :6] += sp.tangent_inverse_transpose_derivative(eta, on_eta) @ back
-        return out
-
-    return Response(strain, np.concatenate([rate @ local, np.zeros_like(rate)], axis=-1), curvature)
-
-
-def _cardan(r: Array) -> Array:
-    """Angles of R = R_x(α) R_y(β) R_z(γ)."""
-    return np.stack(
-        [
-            np.arctan2(-r[..., 1, 2], r[..., 2, 2]),
-            np.arcsin(np.clip(r[..., 0, 2], -1.0, 1.0)),
-            np.arctan2(-r[..., 0, 1], r[..., 0, 0]),
-        ],
-        axis=-1,
+def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
+    """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6; or 0), and its derivatives; forces (n, 6), none: zero."""
+    n = len(x)
+    beta, force, conjugate = (
+        np.zeros((n, 6)) if v is None or not v.size else np.ascontiguousarray(v) for v in (beta, s, on_eta)
     )
-
-
-def _cardan_rate(angles: Array) -> Array:
-    """(α̇, β̇, γ̇) from the angular velocity in the fixed axes."""
-    sa, ca = np.sin(angles[..., 0]), np.cos(angles[..., 0])
-    sb, cb = np.sin(angles[..., 1]), np.cos(angles[..., 1])
-    out = np.zeros((*angles.shape, 3))
-    out[..., 0, 0] = 1.0
-    out[..., 0, 1], out[..., 0, 2] = sa * sb / cb, -ca * sb / cb
-    out[..., 1, 1], out[..., 1, 2] = ca, sa
-    out[..., 2, 1], out[..., 2, 2] = -sa / cb, ca / cb
+    out = Response(np.empty((n, 6)), np.empty((n, 6, 12)), np.empty((n, 12, 12)))
+    _respond(arrays(law), np.ascontiguousarray(x), beta, force, conjugate, out.strain, out.rate, out.curvature)
     return out
 
 
-def _cardan_rate_transpose_derivative(angles: Array, m: Array) -> Array:
-    """Derivative of ``_cardan_rate(θ)ᵀ m`` with respect to θ, m held."""
-    sa, ca = np.sin(angles[..., 0]), np.cos(angles[..., 0])
-    sb, cb = np.sin(angles[..., 1]), np.cos(angles[..., 1])
-    m0, m1, m2 = m[..., 0], m[..., 1], m[..., 2]
-    out = np.zeros((*angles.shape, 3))
-    lever = (m0 * sb - m2) / cb  # (Aᵀm)_y = sα lever + cα m1,  (Aᵀm)_z = −cα lever + sα m1
-    slope = (m0 - m2 * sb) / cb**2  # ∂lever/∂β
-    out[..., 1, 0], out[..., 2, 0] = ca * lever - sa * m1, sa * lever + ca * m1
-    out[..., 1, 1], out[..., 2, 1] = sa * slope, -ca * slope
-    return out
+class LawArrays(NamedTuple):
+    """A law for compiled code; ``corotational`` is its measure."""
+
+    corotational: bool
+    rest: Array
+    shortening: Array
+    mean: Array
+    slope: Array
+    eta: Array
+
+
+def arrays(law: Law) -> LawArrays:
+    """The law for compiled code."""
+    parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
+    return LawArrays(law.measure == "corotational", *parts)
+
+
+@compiled
+def _respond(
+    law: LawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
+) -> None:
+    eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
+    for k in range(len(x)):
+        rigid.log(x[k], eta)
+        rigid.tangent_inverse(eta, back)
+        strains(law, k, x[k], eta, back, beta[k], strain[k], rate[k], J, undo)
+        clear(curvature[k])
+        add_curvature(law, k, eta, back, J, undo, rate[k], strain[k], s[k], on_eta[k], curvature[k])
+
+
+@compiled
+def strains(
+    law: LawArrays,
+    k: int,
+    x: Array,
+    eta: Array,
+    back: Array,
+    beta: Array,
+    strain: Array,
+    rate: Array,
+    J: Array,
+    undo: Array,
+) -> None:
+    """ε (6,) and E (6, 12) of element ``k``, and J (6, 12) = ∂ε/∂(η, β) and (6, 6) (1 + ad(A δ) B_δ/12)⁻¹ for the curvature.
+
+    ``eta`` (6,) is the logarithm of its pose ``x`` (4, 4), and ``back`` (6, 6) = ``tangent_inverse(eta)``.
+    """
+    if law.corotational:
+        _corotational(law, k, eta, beta, strain, J, undo)
+        product(J, back, rate)
+        for i in range(6):
+            for j in range(6, 12):
+                rate[i, j] = J[i, j]
+    else:
+        _from_parent(law.rest[k], x, strain, rate)
+
+
+@compiled
+def add_curvature(
+    law: LawArrays,
+    k: int,
+    eta: Array,
+    back: Array,
+    J: Array,
+    undo: Array,
+    rate: Array,
+    strain: Array,
+    s: Array,
+    on_eta: Array,
+    out: Array,
+) -> None:
+    """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments from ``strains``."""
+    if law.corotational:
+        _corotational_curvature(law, k, eta, back, J, undo, s, on_eta, out)
+    else:
+        _parent_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)
+
+
+@compiled
+def _corotational(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
+    mean, slope = law.mean[k], law.slope[k]
+    delta, bow, r = np.empty(6), np.empty(6), np.empty(6)
+    for i in range(6):
+        delta[i] = eta[i] - law.eta[k, i]
+    apply(law.shortening[k], delta, bow)
+    apply(mean, delta, r)
+    across, by = np.empty((6, 6)), np.empty((6, 12))
+    rigid.ad(r, across)  # of A δ
+    product(across, slope, J)
+    matrix = np.empty((6, 6))
+    for i in range(6):  # (1 + ad(A δ) B_δ/12) ε = r
+        r[i] = delta[i]
+        for j in range(6):
+            by[i, 6 + j] = -J[i, 6 + j] / 12.0
+            r[i] += by[i, 6 + j] * beta[j]
+            matrix[i, j] = J[i, j] / 12.0 if i > 0 else 0.0  # G has all of the axial strain's part of this term, but β's
+        matrix[i, i] += 1.0
+    for i in range(6):
+        r[0] += delta[i] * bow[i]
+    for i in range(6):
+        for j in range(6):
+            undo[i, j] = matrix[i, j]
+    invert(undo, False)  # near the unit matrix
+    apply(undo, r, strain)
+    changes, inner_changes = np.zeros(6), np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            changes[i] += slope[i, j] * strain[j]
+            inner_changes[i] += slope[i, 6 + j] * beta[j]
+    rigid.ad(changes, across)
+    rigid.ad(inner_changes, matrix)
+    for i in range(6):
+        for j in range(6):
+            matrix[i, j] = (matrix[i, j] + (across[i, j] if i > 0 else 0.0)) / 12.0
+    product(matrix, mean, by)
+    for i in range(6):
+        by[i, i] += 1.0
+        by[0, i] += 2.0 * bow[i]
+    product(undo, by, J)
+
+
+@compiled
+def _corotational_curvature(
+    law: LawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
+) -> None:
+    mean, slope = law.mean[k], law.slope[k]
+    force, conjugate = np.empty(6), np.empty(6)
+    turned_apply(undo, s, force)
+    for i in range(6):
+        conjugate[i] = on_eta[i]
+        for j in range(6):
+            conjugate[i] += J[j, i] * s[j]
+    crossed, through, on_slope, half = np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12))
+    axial, force[0] = force[0], 0.0
+    rigid.cross(force, crossed)
+    turned_product(crossed, slope, through)
+    product(through, J, on_slope)
+    force[0] = axial
+    rigid.cross(force, crossed)
+    turned_product(crossed, slope, through)
+    for i in range(6):
+        for j in range(6, 12):
+            on_slope[i, j] += through[i, j]
+    turned_product(mean, on_slope, half)
+    both, left = np.empty((6, 12)), np.empty((6, 12))
+    for i in range(6):
+        for j in range(6):
+            both[i, j] = 2.0 * axial * law.shortening[k, i, j] - (half[i, j] + half[j, i]) / 12.0
+            both[i, 6 + j] = -half[i, 6 + j] / 12.0
+    turned_product(back, both, left)
+    product(left, back, both)
+    for i in range(6):
+        for j in range(6):
+            out[i, j] += both[i, j]
+            out[i, 6 + j] += left[i, 6 + j]
+            out[6 + j, i] += left[i, 6 + j]
+    _add_turned(eta, conjugate, back, out)
+
+
+@compiled
+def _add_turned(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
+    """Add what a force conjugate to η makes as its tangent turns, to the part of ρ."""
+    rigid_turn, part = np.empty((6, 6)), np.empty((6, 6))
+    rigid.tangent_inverse_transpose_derivative(eta, conjugate, rigid_turn)
+    product(rigid_turn, back, part)
+    for i in range(6):
+        for j in range(6):
+            out[i, j] += part[i, j]
+
+
+@compiled
+def _from_parent(rest: Array, x: Array, strain: Array, rate: Array) -> None:
+    y, back = np.empty((4, 4)), np.empty((4, 4))
+    rigid.inverse(rest, back)
+    rigid.compose(back, x, y)
+    angles, turn = np.empty(3), np.zeros((6, 6))
+    cardan(y, angles)
+    for i in range(3):
+        strain[i], strain[3 + i] = y[i, 3], angles[i]
+        turn[i, i] = 1.0
+    rigid.put_skew(-y[0, 3], -y[1, 3], -y[2, 3], 0, 3, turn)
+    cardan_rate(angles, 3, 3, turn)
+    local = np.empty((6, 6))
+    rigid.adjoint(back, local)  # brings ρ to the rest frame
+    clear(rate)
+    product(turn, local, rate)
+
+
+@compiled
+def _parent_curvature(
+    rest: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
+) -> None:
+    turn, inverse, local, work = np.zeros((6, 6)), np.empty((4, 4)), np.empty((6, 6)), np.empty((6, 12))
+    rigid.put_skew(-s[0], -s[1], -s[2], 3, 0, turn)
+    cardan_rate_transpose_derivative(strain[3:], s[3:], 3, 3, turn)
+    rigid.inverse(rest, inverse)
+    rigid.adjoint(inverse, local)
+    product(turn, rate, work)
+    turned_product(local, work, turn)
+    for i in range(6):
+        for j in range(6):
+            out[i, j] += turn[i, j]
+    _add_turned(eta, on_eta, back, out)

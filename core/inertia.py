@@ -12,33 +12,72 @@ components taken along with the body (Featherstone 2008, eq. 2.72, varied once).
 import numpy as np
 from numpy.typing import NDArray
 
+from . import rigid
 from . import spatial as sp
+from .compiled import apply, compiled, product
 
 Array = NDArray[np.float64]
 
 
-def carried(
-    mass: Array, frame: Array, gravity: Array, follow: bool = True, push: Array | None = None
-) -> tuple[Array, Array, Array]:
-    """Wrench g (n, 6), C and K (n, 6, 6) of inertias ``mass`` (n, 6, 6) carried at twist ``frame`` (n, 6).
+@compiled
+def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Array, K: Array) -> None:
+    """Wrench g (6,), C and K (6, 6) of one inertia (6, 6) carried at twist ``frame`` (6,), components following the body.
 
-    ``gravity`` (n, 6) is the acceleration of free fall as a twist (zero angular part), turning with the frame. With
-    ``follow`` false the wrench's components are held in the frame, not taken along as the body turns: what a model without
-    geometric stiffness does. ``push`` (n, 3) are steady forces at the bodies' origins, fixed in the rotating frame.
+    ``turn`` is the ``ad`` of ``frame``, and ``fall`` (6,) the acceleration of free fall as a twist (zero angular part), turning
+    with the frame. All may be given in any axes and about any origin, if all are in the same.
     """
-    turn = sp.ad(frame)
-    momentum = (mass @ frame[..., None])[..., 0]
-    x = sp.cross(momentum)
-    mt = mass @ turn
-    g = -(np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0] - (mass @ gravity[..., None])[..., 0]
-    K = -np.swapaxes(turn, -1, -2) @ mt - x @ turn - mass @ sp.ad(gravity)
-    if push is not None:
-        g[..., :3] -= push
-        K[..., :3, 3:] -= sp.skew(push)
+    mt, rest, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    apply(mass, frame, momentum)
+    rigid.cross(momentum, rest)
+    product(mass, turn, mt)
+    for i in range(6):
+        g[i] = 0.0
+        for j in range(6):
+            g[i] -= turn[j, i] * momentum[j] + mass[i, j] * fall[j]
+            rest[i, j] += mt[j, i]
+            C[i, j] = mt[i, j] - rest[i, j]
+    product(rest, turn, K)
+    for i in range(6):
+        for j in range(6):
+            K[i, j] = -K[i, j]
+        # M fall×, whose angular part is zero
+        K[i, 3] -= mass[i, 1] * fall[2] - mass[i, 2] * fall[1]
+        K[i, 4] -= mass[i, 2] * fall[0] - mass[i, 0] * fall[2]
+        K[i, 5] -= mass[i, 0] * fall[1] - mass[i, 1] * fall[0]
+
+
+@compiled
+def hold_components(g: Array, push: Array, follow: bool, K: Array) -> None:
+    """Take steady forces ``push`` (3,) at the body's origin, fixed in the rotating frame, into g and K, in the body's axes.
+
+    Without ``follow`` the components of all of g are held in the frame, not taken along as the body turns: what a model without
+    geometric stiffness does.
+    """
+    for i in range(3):
+        g[i] -= push[i]
+    turn = np.empty((3, 3))
+    rigid.put_skew(push[0], push[1], push[2], 0, 0, turn)
+    for i in range(3):
+        for j in range(3):
+            K[i, 3 + j] -= turn[i, j]
     if not follow:
-        K[..., :3, 3:] -= sp.skew(g[..., :3])
-        K[..., 3:, 3:] -= sp.skew(g[..., 3:])
-    return g, mt - np.swapaxes(mt, -1, -2) - x, K
+        for part in range(0, 6, 3):
+            rigid.put_skew(g[part], g[part + 1], g[part + 2], 0, 0, turn)
+            for i in range(3):
+                for j in range(3):
+                    K[part + i, 3 + j] -= turn[i, j]
+
+
+@compiled
+def carried(
+    mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g: Array, C: Array, K: Array
+) -> None:
+    """``carry`` and ``hold_components`` for n bodies, each in its own axes: g (n, 6), C and K (n, 6, 6)."""
+    turn = np.empty((6, 6))
+    for k in range(len(mass)):
+        rigid.ad(frame[k], turn)
+        carry(mass[k], frame[k], turn, fall[k], g[k], C[k], K[k])
+        hold_components(g[k], push[k], follow, K[k])
 
 
 def moved(mass: Array, x: Array) -> Array:

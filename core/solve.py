@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Iterable, Iterator
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,7 +97,7 @@ def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravi
         state = balance(body, omega, gravity, model, chain.extrapolate(known, omega))
         p = state.linear
         try:
-            found = lanczos(blocks.symmetric(p.M), p.C, blocks.symmetric(p.K), count, partial(chain.stiffness_times, p))
+            found = lanczos(p.M, p.C, blocks.symmetric(p.K), count, p.strained)
         except (UnstableError, ArithmeticError) as error:  # not positive definite, or too nearly not
             loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
             raise UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
@@ -122,19 +121,17 @@ def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shap
 def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
     nodes, e = shape.nodes, body.samples.element
-    x = sp.inverse(nodes[:-1]) @ nodes[1:]
-    m = vectors.shape[1]
-    parts = vectors.reshape(len(x), -1, m)
-    beta, inner = (
-        (np.zeros((len(x), 6, m)), np.zeros((len(x), 6))) if parts.shape[1] == 6 else (parts[:, :6], shape.beta)
-    )
-    eta = sp.log(x)
-    zeta, slope = bm.place(body.beams, body.samples, eta, sp.tangent_inverse(eta), inner)
-    position = sp.exp(zeta)[:, :3, 3]
-    twist = np.concatenate([np.zeros((1, 6, m)), parts[:, -6:]])
-    a = twist[:-1][e]
-    rho = sp.adjoint(x)[e] @ twist[1:][e] - a
-    moved = a + sp.tangent(zeta) @ slope @ np.concatenate([rho, beta[e]], axis=1)
-    velocity = moved[:, :3] - sp.skew(position) @ moved[:, 3:]
-    turn = nodes[:-1, :3, :3][e]
-    return np.concatenate([turn @ velocity, (turn @ moved[:, 3:])[:, :1]], axis=1).transpose(2, 0, 1)
+    first, last = nodes[e], nodes[e + 1]
+    x = sp.inverse(first) @ last
+    inner, d, m = shape.beta.shape[1], shape.beta.shape[1] + 6, vectors.shape[1]
+    beta = shape.beta[e] if inner else np.zeros((len(e), 6))
+    zeta, slope = bm.place(body.beams, body.samples, sp.log(x), beta)
+    moved = sp.tangent(zeta) @ slope  # from (ρ, β)
+    lever = sp.adjoint(x)
+    on = np.concatenate([np.eye(6) - moved[..., :6], moved[..., :6] @ lever, moved[..., 6:]], axis=-1)  # from (ξ_a, ξ_b, β)
+    read = np.concatenate([on[:, :3] - sp.skew(sp.exp(zeta)[:, :3, 3]) @ on[:, 3:], on[:, 3:]], axis=1)
+    turn = first[:, :3, :3]
+    read = np.concatenate([turn @ read[:, :3], (turn @ read[:, 3:])[:, :1]], axis=1)
+    parts = np.concatenate([np.zeros((d, m)), vectors]).reshape(-1, d, m)  # the clamped node too
+    twists = np.concatenate([parts[e, -6:], parts[e + 1, -6:], parts[e + 1, :-6]], axis=1)
+    return (read[..., : 12 + inner] @ twists).transpose(2, 0, 1)

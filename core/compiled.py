@@ -1,0 +1,122 @@
+"""Compiled loops, and the products of small matrices they are made of.
+
+What runs for every element at every speed is compiled by numba at its first call and kept on disk for later processes, in a
+folder named after the sources of all such functions: where one of them changes, none is taken from before.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+import numpy as np
+from numba.core import config
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+F = TypeVar("F", bound=Callable[..., Any])
+
+_HERE = Path(__file__).parent
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+
+
+@cache
+def _folder() -> str:
+    """Beside the sources if that may be written to, else the user's cache, else a temporary folder."""
+    sources = [p.read_bytes() for p in sorted(_HERE.glob("*.py"))]
+    name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
+    user = os.environ.get("SOUTHWELL_CACHE") or Path.home() / ".cache" / "southwell"
+    for place in (_HERE / "__pycache__", Path(user), Path(tempfile.gettempdir()) / "southwell"):
+        try:
+            (place / name).mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(place / name, os.W_OK):
+            return str(place / name)
+    raise OSError(f"{_HERE}: no folder to keep compiled code in: set SOUTHWELL_CACHE to one that may be written to")
+
+
+def compiled(f: F) -> F:
+    """``f`` as machine code: arrays must be C-contiguous; a zero division gives inf or nan, as numpy's does."""
+    before = config.CACHE_DIR  # type: ignore[attr-defined]
+    config.CACHE_DIR = _folder()  # type: ignore[attr-defined]
+    try:
+        return cast(F, numba.njit(f, cache=True, **_HOW))
+    finally:
+        config.CACHE_DIR = before  # type: ignore[attr-defined]
+
+
+def inlined(f: F) -> F:
+    """``f`` written out where compiled code calls it: for a few lines called very often."""
+    return cast(F, numba.njit(f, inline="always", **_HOW))
+
+
+@compiled
+def clear(out: Array) -> None:
+    """out = 0, of a matrix."""
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            out[i, j] = 0.0
+
+
+@compiled
+def product(a: Array, b: Array, out: Array) -> None:
+    """out = a b, of a (m, 6) and b (6, n), as far as the columns of ``out`` and b go; more columns of a are left out."""
+    for i in range(a.shape[0]):
+        a0, a1, a2, a3, a4, a5 = a[i, 0], a[i, 1], a[i, 2], a[i, 3], a[i, 4], a[i, 5]
+        for j in range(min(b.shape[1], out.shape[1])):
+            out[i, j] = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+
+
+@compiled
+def turned_product(a: Array, b: Array, out: Array) -> None:
+    """out = aᵀ b, of a (6, m) and b (6, n), as far as the columns of ``out`` and b go."""
+    for i in range(a.shape[1]):
+        a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
+        for j in range(min(b.shape[1], out.shape[1])):
+            out[i, j] = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+
+
+@compiled
+def apply(a: Array, v: Array, out: Array) -> None:
+    """out = a v, of a (m, 6) and v (6,)."""
+    for i in range(a.shape[0]):
+        out[i] = a[i, 0] * v[0] + a[i, 1] * v[1] + a[i, 2] * v[2] + a[i, 3] * v[3] + a[i, 4] * v[4] + a[i, 5] * v[5]
+
+
+@compiled
+def turned_apply(a: Array, v: Array, out: Array) -> None:
+    """out = aᵀ v, of a (6, n) and v (6,)."""
+    for j in range(a.shape[1]):
+        out[j] = a[0, j] * v[0] + a[1, j] * v[1] + a[2, j] * v[2] + a[3, j] * v[3] + a[4, j] * v[4] + a[5, j] * v[5]
+
+
+@compiled
+def congruence(a: Array, m: Array, work: Array, out: Array) -> None:
+    """out = aᵀ m a, of a (6, n) and m (6, 6); ``work`` is as large as ``a``."""
+    product(m, a, work)
+    turned_product(a, work, out)
+
+
+@compiled
+def invert(a: Array, positive: bool) -> bool:
+    """Invert a small matrix in place by Gauss and Jordan without pivoting; whether no pivot is zero, or none below if told."""
+    d = len(a)
+    for p in range(d):
+        pivot = a[p, p]
+        if not (pivot > 0.0 if positive else abs(pivot) > 0.0) or not np.isfinite(pivot):
+            return False
+        a[p, p] = 1.0
+        for j in range(d):
+            a[p, j] /= pivot
+        for i in range(d):
+            if i != p:
+                factor = a[i, p]
+                a[i, p] = 0.0
+                for j in range(d):
+                    a[i, j] -= factor * a[p, j]
+    return True
