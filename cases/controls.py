@@ -13,10 +13,10 @@ from typing import Literal
 import numpy as np
 
 from ..core.blade import Blade
-from ..core.chain import SteadyStateError
 from ..core.eigen import UnstableError
 from ..core.model import FULL
 from ..core.modes import Modes
+from ..core.steady import SteadyStateError
 from .mistakes import MISTAKES, Mistake, Solve
 from .own import START, qualifying
 from .pairing import aligned, families, pair, weights

@@ -5,8 +5,8 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from ..core.chain import SteadyStateError
 from ..core.eigen import UnstableError
+from ..core.steady import SteadyStateError
 
 NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError)
 """What the solver raises where there is no steady state to vibrate about, or its numbers are out of all proportion."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..core import blocks, chain, solve
+from ..core import chain, solve
 from ..core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
 from ..core.blocks import Tridiagonal
 from ..core.chain import Linear, Shape
@@ -20,6 +20,7 @@ from ..core.elements import Measure
 from ..core.lanczos import lanczos
 from ..core.model import Model
 from ..core.modes import Modes
+from ..core.samples import mode_shapes
 
 OFFSET = 0.25
 """How far the reference axis is shifted, as a part of the radius of gyration √(EI_z/EA) in the middle of the span."""
@@ -123,8 +124,8 @@ def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
 
 
 def _modes(body: Chain, p: Linear, shape: Shape, omega: float, count: int) -> Modes:
-    found = lanczos(p.M, p.C, blocks.symmetric(p.K), count, p.strained)
-    return Modes(omega, found.frequencies, solve.mode_shapes(body, shape, found.vectors), body.elements)
+    found = lanczos(p, count)
+    return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
 
 
 LUMPED: tuple[Mass, Measure] = ("half_end", "parent")

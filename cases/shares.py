@@ -20,13 +20,13 @@ from dataclasses import replace
 import numpy as np
 
 from ..core.blade import AXIAL, SHEAR_Y, SHEAR_Z, Blade
-from ..core.chain import SteadyStateError
 from ..core.discretize import Mass
 from ..core.eigen import UnstableError
 from ..core.elements import Measure
 from ..core.model import FULL, Model
 from ..core.modes import Modes
 from ..core.solve import modes
+from ..core.steady import SteadyStateError
 from .controls import changed
 from .results import Cell, Share
 from .schema import Case, Variant

@@ -48,134 +48,152 @@ def from_elements(on_ends: Array, lever: Array, on_nodes: Array) -> Tridiagonal:
 @compiled
 def _gather(on_ends: Array, lever: Array, on_nodes: Array, diagonal: Array, upper: Array, lower: Array) -> None:
     n, d = diagonal.shape[:2]
-    right, own = np.empty((d + 6, d + 6)), np.empty((d + 6, d + 6))
-    place = np.empty(d, dtype=np.intp)  # β, then b
-    for i in range(d):
-        place[i] = 12 + i if i < d - 6 else i + 12 - d
+    inner = d - 6
+    own = np.empty((d + 6, d + 6))
     for k in range(n):
         for i in range(d + 6):
             for j in range(d + 6):
-                right[i, j] = on_ends[k, i, j] if j < 6 or j >= 12 else 0.0
+                own[i, j] = on_ends[k, i, j]
+        for i in range(d + 6):
+            for j in range(6):
+                own[i, 6 + j] = 0.0
             for m in range(6):
                 for j in range(6):
-                    right[i, 6 + j] += on_ends[k, i, 6 + m] * lever[k, m, j]
-        for i in range(d + 6):
-            for j in range(d + 6):
-                own[i, j] = right[i, j] if i < 6 or i >= 12 else 0.0
-        for m in range(6):
+                    own[i, 6 + j] += on_ends[k, i, 6 + m] * lever[k, m, j]
+        for j in range(d + 6):
+            b0, b1, b2, b3, b4, b5 = own[6, j], own[7, j], own[8, j], own[9, j], own[10, j], own[11, j]
             for i in range(6):
-                for j in range(d + 6):
-                    own[6 + i, j] += lever[k, m, i] * right[6 + m, j]
-        for i in range(d):
-            for j in range(d):
-                diagonal[k, i, j] = own[place[i], place[j]]
-        for i in range(6):
+                low = lever[k, 0, i] * b0 + lever[k, 1, i] * b1 + lever[k, 2, i] * b2
+                own[6 + i, j] = low + lever[k, 3, i] * b3 + lever[k, 4, i] * b4 + lever[k, 5, i] * b5
+        for i in range(6):  # β first, then b
             for j in range(6):
-                diagonal[k, d - 6 + i, d - 6 + j] += on_nodes[k + 1, i, j]
-                if k > 0:
-                    diagonal[k - 1, d - 6 + i, d - 6 + j] += own[i, j]
-            if k > 0:
-                for j in range(d):
-                    upper[k - 1, i, j] = own[i, place[j]]
-                    lower[k - 1, j, i] = own[place[j], i]
+                diagonal[k, inner + i, inner + j] = own[6 + i, 6 + j] + on_nodes[k + 1, i, j]
+            for j in range(inner):
+                diagonal[k, inner + i, j], diagonal[k, j, inner + i] = own[6 + i, 12 + j], own[12 + j, 6 + i]
+        for i in range(inner):
+            for j in range(inner):
+                diagonal[k, i, j] = own[12 + i, 12 + j]
+        if k > 0:
+            for i in range(6):
+                for j in range(6):
+                    diagonal[k - 1, inner + i, inner + j] += own[i, j]
+                    upper[k - 1, i, inner + j], lower[k - 1, inner + j, i] = own[i, 6 + j], own[6 + j, i]
+                for j in range(inner):
+                    upper[k - 1, i, j], lower[k - 1, j, i] = own[i, 12 + j], own[12 + j, i]
 
 
-def columns(*matrices: Tridiagonal) -> Array:
-    """(n, 6 + 2d, rows) the rows of each block, of all matrices below each other, transposed, for ``times``.
+class Turned(NamedTuple):
+    """A matrix with every block transposed: (n, d, d) on the diagonal, (n−1, 6, d) below it and (n−1, d, 6) above it."""
 
-    They go over the last six of the block before, the block itself, and the next.
-    """
-    n, d = len(matrices[0].diagonal), matrices[0].block
-    out = np.zeros((n, 6 + 2 * d, d * len(matrices)))
-    for k, t in enumerate(matrices):
-        _put_columns(t.diagonal, t.upper, t.lower, d * k, out)
+    diagonal: Array
+    lower: Array
+    upper: Array
+
+
+def turned(t: Tridiagonal) -> Turned:
+    """The matrix as compiled products want it."""
+    out = Turned(*(np.empty(np.swapaxes(part, -1, -2).shape) for part in (t.diagonal, t.lower, t.upper)))
+    for part, there in zip((t.diagonal, t.lower, t.upper), out, strict=True):
+        _turn(part, there)
     return out
 
 
 @compiled
-def _put_columns(diagonal: Array, upper: Array, lower: Array, first: int, out: Array) -> None:
-    n, d = diagonal.shape[:2]
-    for k in range(n):
-        for r in range(d):
-            for j in range(d):
-                out[k, 6 + j, first + r] = diagonal[k, r, j]
-            for j in range(6 if k > 0 else 0):
-                out[k, j, first + r] = lower[k - 1, r, j]
-        for r in range(6 if k < n - 1 else 0):
-            for j in range(d):
-                out[k, 6 + d + j, first + d - 6 + r] = upper[k, r, j]
+def _turn(part: Array, out: Array) -> None:
+    for k in range(part.shape[0]):
+        for i in range(part.shape[1]):
+            for j in range(part.shape[2]):
+                out[k, j, i] = part[k, i, j]
 
 
 @compiled
-def times(columns: Array, x: Array, out: Array) -> None:
-    """The matrices, as of ``columns``, times vectors x (k, dn): block after block, all matrices' rows in each (k, rows n)."""
-    n, width, rows = columns.shape
-    d, size = (width - 6) // 2, x.shape[1]
-    spare = np.empty(out.shape[1])
-    for v in range(0, len(x), 2):  # two at a time
-        p, q = x[v], x[min(v + 1, len(x) - 1)]
-        p_out, q_out = out[v], out[v + 1] if v + 1 < len(x) else spare
-        for i in range(n):
-            first = rows * i
-            for r in range(rows):
-                p_out[first + r], q_out[first + r] = 0.0, 0.0
-            for j in range(0, width, 6):
-                at = d * i - 6 + j
-                if 0 <= at < size:
-                    p0, p1, p2, p3, p4, p5 = p[at], p[at + 1], p[at + 2], p[at + 3], p[at + 4], p[at + 5]
-                    q0, q1, q2, q3, q4, q5 = q[at], q[at + 1], q[at + 2], q[at + 3], q[at + 4], q[at + 5]
-                    for r in range(rows):
-                        c0, c1, c2 = columns[i, j, r], columns[i, j + 1, r], columns[i, j + 2, r]
-                        c3, c4, c5 = columns[i, j + 3, r], columns[i, j + 4, r], columns[i, j + 5, r]
-                        p_out[first + r] += c0 * p0 + c1 * p1 + c2 * p2 + c3 * p3 + c4 * p4 + c5 * p5
-                        q_out[first + r] += c0 * q0 + c1 * q1 + c2 * q2 + c3 * q3 + c4 * q4 + c5 * q5
+def times(t: Turned, x: Array, out: Array) -> None:
+    """The matrix times the vectors that the rows of x (k, dn or more) begin with, to where those of ``out`` begin."""
+    n, d = t.diagonal.shape[:2]
+    spare = np.empty(n * d)
+    for i in range(n):
+        at = d * i
+        for v in range(0, len(x), 2):  # two at a time
+            p, q = x[v], x[min(v + 1, len(x) - 1)]
+            p_out, q_out = out[v], out[v + 1] if v + 1 < len(x) else spare
+            for r in range(at, at + d):
+                p_out[r], q_out[r] = 0.0, 0.0
+            if i > 0:
+                _add_two(t.lower, i - 1, 0, p, q, at - 6, p_out, q_out, at)
+            for j in range(0, d, 6):
+                _add_two(t.diagonal, i, j, p, q, at + j, p_out, q_out, at)
+            for j in range(0, d if i < n - 1 else 0, 6):
+                _add_two(t.upper, i, j, p, q, at + d + j, p_out, q_out, at + d - 6)
+
+
+@inlined
+def _add_two(
+    turned: Array, k: int, j: int, p: Array, q: Array, first: int, p_out: Array, q_out: Array, at: int
+) -> None:
+    """Add the transpose of rows j … j + 5 of block k times p[first …] and q[first …]."""
+    p0, p1, p2, p3, p4, p5 = p[first], p[first + 1], p[first + 2], p[first + 3], p[first + 4], p[first + 5]
+    q0, q1, q2, q3, q4, q5 = q[first], q[first + 1], q[first + 2], q[first + 3], q[first + 4], q[first + 5]
+    for r in range(turned.shape[2]):
+        t0, t1, t2 = turned[k, j, r], turned[k, j + 1, r], turned[k, j + 2, r]
+        t3, t4, t5 = turned[k, j + 3, r], turned[k, j + 4, r], turned[k, j + 5, r]
+        p_out[at + r] += t0 * p0 + t1 * p1 + t2 * p2 + t3 * p3 + t4 * p4 + t5 * p5
+        q_out[at + r] += t0 * q0 + t1 * q1 + t2 * q2 + t3 * q3 + t4 * q4 + t5 * q5
 
 
 def dense(t: Tridiagonal) -> Array:
     """The full matrix."""
     out = np.empty((t.size, t.size))
-    times(columns(t), np.eye(t.size), out)
+    times(turned(t), np.eye(t.size), out)
     return out.T
 
 
 class Factor(NamedTuple):
-    """Block LU factors: (n, d, d) inverses of the pivots and the blocks below (n−1, 6, d) and above (n−1, d, 6), all transposed."""
+    """Block LU factors, every block transposed.
+
+    Attributes:
+        pivots: (n, d, d) inverses of the diagonal blocks, less what was eliminated.
+        lower, upper: (n−1, 6, d) and (n−1, d, 6) the blocks below and above.
+        positive: whether all pivots are: of a symmetric matrix, whether it is positive definite.
+    """
 
     pivots: Array
     lower: Array
     upper: Array
+    positive: bool
 
 
-def factor(t: Tridiagonal, positive: bool = False) -> Factor:
+def factor(t: Tridiagonal) -> Factor:
     """Factor a matrix that needs no pivoting: one that is, or is nearly, symmetric positive definite.
 
     Raises:
-        numpy.linalg.LinAlgError: if it is singular, or not ``positive`` definite though it has to be.
+        numpy.linalg.LinAlgError: if it is singular.
     """
-    turned = (np.ascontiguousarray(np.swapaxes(part, -1, -2)) for part in (t.diagonal, t.lower, t.upper))
-    f = Factor(*turned)
-    if not _eliminate(f, positive):
-        raise np.linalg.LinAlgError("singular" if not positive else "not positive definite")
-    return f
+    pivots, lower, upper = turned(t)
+    kind = _eliminate(pivots, lower, upper)
+    if kind == 0:
+        raise np.linalg.LinAlgError("singular")
+    return Factor(pivots, lower, upper, kind == 2)
 
 
 @compiled
-def _eliminate(f: Factor, positive: bool) -> bool:
-    n, d = f.pivots.shape[:2]
-    between, less = np.empty((6, 6)), np.empty((6, 12))
+def _eliminate(pivots: Array, lower: Array, upper: Array) -> int:
+    """As ``invert``, of all pivots."""
+    n, d = pivots.shape[:2]
+    between, less, kind = np.empty((6, 6)), np.empty((6, d)), 2
     for k in range(n):
         if k > 0:  # less the block below times the last six of the pivot's inverse times the block above
             for i in range(6):
                 for j in range(6):
-                    between[i, j] = f.pivots[k - 1, d - 6 + i, d - 6 + j]
-            product(between, f.lower[k - 1], less)
+                    between[i, j] = pivots[k - 1, d - 6 + i, d - 6 + j]
+            product(between, lower[k - 1], less)
             for i in range(d):
                 for m in range(6):
                     for j in range(d):
-                        f.pivots[k, i, j] -= f.upper[k - 1, i, m] * less[m, j]
-        if not invert(f.pivots[k], positive):
-            return False
-    return True
+                        pivots[k, i, j] -= upper[k - 1, i, m] * less[m, j]
+        kind = min(kind, invert(pivots[k]))
+        if kind == 0:
+            break
+    return kind
 
 
 @compiled
@@ -202,6 +220,13 @@ def solve(f: Factor, x: Array) -> None:
             _add(f.pivots, k, d - 6, 1.0, here, 0, p, at)
 
 
+def solution(f: Factor, b: Array) -> Array:
+    """The solution (dn,) for one right-hand side."""
+    x = b[None].copy()
+    solve(f, x)
+    return x[0]
+
+
 @inlined
 def _add(turned: Array, k: int, j: int, sign: float, x: Array, first: int, out: Array, at: int) -> None:
     """Add ± the transpose of rows j … j + 5 of block k times x[first …] to out[at …]."""
@@ -216,13 +241,6 @@ def _add(turned: Array, k: int, j: int, sign: float, x: Array, first: int, out: 
             + turned[k, j + 4, r] * x4
             + turned[k, j + 5, r] * x5
         )
-
-
-def symmetric(t: Tridiagonal) -> Tridiagonal:
-    """The symmetric part."""
-    turned = np.swapaxes(t.diagonal, -1, -2)
-    off = 0.5 * (t.upper + np.swapaxes(t.lower, -1, -2))
-    return Tridiagonal(0.5 * (t.diagonal + turned), off, np.swapaxes(off, -1, -2))
 
 
 def asymmetry(t: Tridiagonal, sign: int = 1) -> float:

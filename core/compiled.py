@@ -6,6 +6,7 @@ folder named after the sources of all such functions: where one of them changes,
 
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable
 from functools import cache
@@ -25,25 +26,33 @@ _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
 @cache
-def _folder() -> str:
-    """Beside the sources if that may be written to, else the user's cache, else a temporary folder."""
+def _folder() -> Path:
+    """Beside the sources if that may be written to, else in the user's cache, else a temporary folder."""
     sources = [p.read_bytes() for p in sorted(_HERE.glob("*.py"))]
     name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
     user = os.environ.get("SOUTHWELL_CACHE") or Path.home() / ".cache" / "southwell"
     for place in (_HERE / "__pycache__", Path(user), Path(tempfile.gettempdir()) / "southwell"):
+        folder = place / name
         try:
-            (place / name).mkdir(parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
         except OSError:
             continue
-        if os.access(place / name, os.W_OK):
-            return str(place / name)
+        if os.access(folder, os.W_OK):
+            for old in set(place.glob("compiled-*")) - {folder}:
+                shutil.rmtree(old, ignore_errors=True)
+            return folder
     raise OSError(f"{_HERE}: no folder to keep compiled code in: set SOUTHWELL_CACHE to one that may be written to")
+
+
+def ready() -> bool:
+    """Whether anything was compiled before; else the first solution takes half a minute longer."""
+    return any(_folder().rglob("*.nbi"))
 
 
 def compiled(f: F) -> F:
     """``f`` as machine code: arrays must be C-contiguous; a zero division gives inf or nan, as numpy's does."""
     before = config.CACHE_DIR  # type: ignore[attr-defined]
-    config.CACHE_DIR = _folder()  # type: ignore[attr-defined]
+    config.CACHE_DIR = str(_folder())  # type: ignore[attr-defined]
     try:
         return cast(F, numba.njit(f, cache=True, **_HOW))
     finally:
@@ -103,13 +112,18 @@ def congruence(a: Array, m: Array, work: Array, out: Array) -> None:
 
 
 @compiled
-def invert(a: Array, positive: bool) -> bool:
-    """Invert a small matrix in place by Gauss and Jordan without pivoting; whether no pivot is zero, or none below if told."""
-    d = len(a)
+def invert(a: Array) -> int:
+    """Invert a small matrix in place by Gauss and Jordan, without pivoting.
+
+    Returns 2 if all pivots are positive, 1 if not all are, and 0, the work undone, if one is zero or not finite.
+    """
+    d, kind = len(a), 2
     for p in range(d):
         pivot = a[p, p]
-        if not (pivot > 0.0 if positive else abs(pivot) > 0.0) or not np.isfinite(pivot):
-            return False
+        if pivot == 0.0 or not np.isfinite(pivot):
+            return 0
+        if pivot < 0.0:
+            kind = 1
         a[p, p] = 1.0
         for j in range(d):
             a[p, j] /= pivot
@@ -119,4 +133,4 @@ def invert(a: Array, positive: bool) -> bool:
                 a[i, p] = 0.0
                 for j in range(d):
                     a[i, j] -= factor * a[p, j]
-    return True
+    return kind

@@ -14,6 +14,7 @@ from .blade import Blade, clamped, mass_at
 from .elements import Law, Measure, even, joined
 from .inertia import moved
 from .modes import STATIONS
+from .sections import Segments
 
 Array = NDArray[Any]
 Mass = Literal["consistent", "half_end"]
@@ -76,7 +77,8 @@ def discretize(
             f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
         )
     s = np.linspace(0.0, blade.length, elements + 1)
-    seg = sections.integrate(blade, s)
+    at = STATIONS * blade.length
+    seg = sections.integrate(blade, s, at)
     nodes = sections.frames(blade, s)
     rest = sp.inverse(nodes[:-1]) @ nodes[1:]
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
@@ -102,7 +104,7 @@ def discretize(
             preload=np.zeros((elements, 6)),
             inner_preload=np.zeros((elements, 6)),
         ),
-        samples=_samples(blade, s, nodes, rest),
+        samples=_samples(blade, seg, at, nodes, rest),
         scale=blade.length,
         force=force,
     )
@@ -151,31 +153,31 @@ def _at(blade: Blade, values: Array, s: Array) -> Array:
 
 def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
     """(n+1, 3): each node carries the load on the halves of its neighbouring elements."""
-    middle = 0.5 * (nodes[1:] + nodes[:-1])
-    seg = sections.integrate(blade, nodes, middle)
+    node, s, weight = _halves(blade, nodes)
     out = np.zeros((len(nodes), 3))
-    np.add.at(out, seg.element + (seg.s > middle[seg.element]), seg.weight[:, None] * _at(blade, load, seg.s))
+    np.add.at(out, node, weight[:, None] * _at(blade, load, s))
     return out
 
 
 def _half_end(blade: Blade, nodes: Array) -> Array:
     """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
-    middle = 0.5 * (nodes[1:] + nodes[:-1])
-    seg = sections.integrate(blade, nodes, middle)
-    node = seg.element + (seg.s > middle[seg.element])
-    turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, seg.s)
+    node, s, weight = _halves(blade, nodes)
+    turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
     turn[:, :3, 3] = 0.0
     lumps = np.zeros((len(nodes), 6, 6))
-    np.add.at(lumps, node, seg.weight[:, None, None] * moved(mass_at(blade, seg.s), turn))
+    np.add.at(lumps, node, weight[:, None, None] * moved(mass_at(blade, s), turn))
     return lumps
 
 
-def _samples(blade: Blade, nodes_s: Array, nodes: Array, rest: Array) -> Points:
-    at = STATIONS * blade.length
-    seg = sections.integrate(blade, nodes_s, at)
-    k = np.searchsorted(seg.break_s, at[:-1] - 1e-9 * blade.length)
-    element = np.append(seg.break_element[k], len(rest) - 1)
-    shape = np.concatenate([seg.break_shape[k], np.eye(6)[None]])
-    bubble = np.concatenate([seg.break_bubble[k], np.zeros((1, 6, 6))])
-    pose = sp.inverse(nodes[:-1])[element] @ sections.frames(blade, at)
-    return bm.riding(rest, element, pose, shape, bubble, np.zeros((len(at), 6, 6)))
+def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]:
+    """Of Gauss points in the elements' halves: the nearest node, the arc length and the weight (q,)."""
+    middle = 0.5 * (nodes[1:] + nodes[:-1])
+    points = sections.quadrature(blade, nodes, middle)
+    node = points.element[:, None] + (points.s > middle[points.element][:, None])
+    return node.ravel(), points.s.ravel(), points.weight.ravel()
+
+
+def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, rest: Array) -> Points:
+    e = seg.at_element
+    pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
+    return bm.riding(rest, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))

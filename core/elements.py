@@ -19,15 +19,15 @@ Two measures:
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import rigid
+from . import corotational, parent, rigid
 from . import spatial as sp
-from .cardan import cardan, cardan_rate, cardan_rate_transpose_derivative
-from .compiled import apply, clear, compiled, invert, product, turned_apply, turned_product
+from .compiled import clear, compiled, product
+from .corotational import LawArrays
 
 Array = NDArray[np.float64]
 Measure = Literal["corotational", "parent"]
@@ -103,17 +103,6 @@ def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Ar
     return out
 
 
-class LawArrays(NamedTuple):
-    """A law for compiled code; ``corotational`` is its measure."""
-
-    corotational: bool
-    rest: Array
-    shortening: Array
-    mean: Array
-    slope: Array
-    eta: Array
-
-
 def arrays(law: Law) -> LawArrays:
     """The law for compiled code."""
     parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
@@ -151,13 +140,13 @@ def strains(
     ``eta`` (6,) is the logarithm of its pose ``x`` (4, 4), and ``back`` (6, 6) = ``tangent_inverse(eta)``.
     """
     if law.corotational:
-        _corotational(law, k, eta, beta, strain, J, undo)
+        corotational.strains(law, k, eta, beta, strain, J, undo)
         product(J, back, rate)
         for i in range(6):
             for j in range(6, 12):
                 rate[i, j] = J[i, j]
     else:
-        _from_parent(law.rest[k], x, strain, rate)
+        parent.strains(law.rest[k], x, strain, rate)
 
 
 @compiled
@@ -176,133 +165,6 @@ def add_curvature(
 ) -> None:
     """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments from ``strains``."""
     if law.corotational:
-        _corotational_curvature(law, k, eta, back, J, undo, s, on_eta, out)
+        corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
     else:
-        _parent_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)
-
-
-@compiled
-def _corotational(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
-    mean, slope = law.mean[k], law.slope[k]
-    delta, bow, r = np.empty(6), np.empty(6), np.empty(6)
-    for i in range(6):
-        delta[i] = eta[i] - law.eta[k, i]
-    apply(law.shortening[k], delta, bow)
-    apply(mean, delta, r)
-    across, by = np.empty((6, 6)), np.empty((6, 12))
-    rigid.ad(r, across)  # of A δ
-    product(across, slope, J)
-    matrix = np.empty((6, 6))
-    for i in range(6):  # (1 + ad(A δ) B_δ/12) ε = r
-        r[i] = delta[i]
-        for j in range(6):
-            by[i, 6 + j] = -J[i, 6 + j] / 12.0
-            r[i] += by[i, 6 + j] * beta[j]
-            matrix[i, j] = J[i, j] / 12.0 if i > 0 else 0.0  # G has all of the axial strain's part of this term, but β's
-        matrix[i, i] += 1.0
-    for i in range(6):
-        r[0] += delta[i] * bow[i]
-    for i in range(6):
-        for j in range(6):
-            undo[i, j] = matrix[i, j]
-    invert(undo, False)  # near the unit matrix
-    apply(undo, r, strain)
-    changes, inner_changes = np.zeros(6), np.zeros(6)
-    for i in range(6):
-        for j in range(6):
-            changes[i] += slope[i, j] * strain[j]
-            inner_changes[i] += slope[i, 6 + j] * beta[j]
-    rigid.ad(changes, across)
-    rigid.ad(inner_changes, matrix)
-    for i in range(6):
-        for j in range(6):
-            matrix[i, j] = (matrix[i, j] + (across[i, j] if i > 0 else 0.0)) / 12.0
-    product(matrix, mean, by)
-    for i in range(6):
-        by[i, i] += 1.0
-        by[0, i] += 2.0 * bow[i]
-    product(undo, by, J)
-
-
-@compiled
-def _corotational_curvature(
-    law: LawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
-) -> None:
-    mean, slope = law.mean[k], law.slope[k]
-    force, conjugate = np.empty(6), np.empty(6)
-    turned_apply(undo, s, force)
-    for i in range(6):
-        conjugate[i] = on_eta[i]
-        for j in range(6):
-            conjugate[i] += J[j, i] * s[j]
-    crossed, through, on_slope, half = np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12))
-    axial, force[0] = force[0], 0.0
-    rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
-    product(through, J, on_slope)
-    force[0] = axial
-    rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
-    for i in range(6):
-        for j in range(6, 12):
-            on_slope[i, j] += through[i, j]
-    turned_product(mean, on_slope, half)
-    both, left = np.empty((6, 12)), np.empty((6, 12))
-    for i in range(6):
-        for j in range(6):
-            both[i, j] = 2.0 * axial * law.shortening[k, i, j] - (half[i, j] + half[j, i]) / 12.0
-            both[i, 6 + j] = -half[i, 6 + j] / 12.0
-    turned_product(back, both, left)
-    product(left, back, both)
-    for i in range(6):
-        for j in range(6):
-            out[i, j] += both[i, j]
-            out[i, 6 + j] += left[i, 6 + j]
-            out[6 + j, i] += left[i, 6 + j]
-    _add_turned(eta, conjugate, back, out)
-
-
-@compiled
-def _add_turned(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
-    """Add what a force conjugate to η makes as its tangent turns, to the part of ρ."""
-    rigid_turn, part = np.empty((6, 6)), np.empty((6, 6))
-    rigid.tangent_inverse_transpose_derivative(eta, conjugate, rigid_turn)
-    product(rigid_turn, back, part)
-    for i in range(6):
-        for j in range(6):
-            out[i, j] += part[i, j]
-
-
-@compiled
-def _from_parent(rest: Array, x: Array, strain: Array, rate: Array) -> None:
-    y, back = np.empty((4, 4)), np.empty((4, 4))
-    rigid.inverse(rest, back)
-    rigid.compose(back, x, y)
-    angles, turn = np.empty(3), np.zeros((6, 6))
-    cardan(y, angles)
-    for i in range(3):
-        strain[i], strain[3 + i] = y[i, 3], angles[i]
-        turn[i, i] = 1.0
-    rigid.put_skew(-y[0, 3], -y[1, 3], -y[2, 3], 0, 3, turn)
-    cardan_rate(angles, 3, 3, turn)
-    local = np.empty((6, 6))
-    rigid.adjoint(back, local)  # brings ρ to the rest frame
-    clear(rate)
-    product(turn, local, rate)
-
-
-@compiled
-def _parent_curvature(
-    rest: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
-) -> None:
-    turn, inverse, local, work = np.zeros((6, 6)), np.empty((4, 4)), np.empty((6, 6)), np.empty((6, 12))
-    rigid.put_skew(-s[0], -s[1], -s[2], 3, 0, turn)
-    cardan_rate_transpose_derivative(strain[3:], s[3:], 3, 3, turn)
-    rigid.inverse(rest, inverse)
-    rigid.adjoint(inverse, local)
-    product(turn, rate, work)
-    turned_product(local, work, turn)
-    for i in range(6):
-        for j in range(6):
-            out[i, j] += turn[i, j]
-    _add_turned(eta, on_eta, back, out)
+        parent.add_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)

@@ -69,9 +69,7 @@ def hold_components(g: Array, push: Array, follow: bool, K: Array) -> None:
 
 
 @compiled
-def carried(
-    mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g: Array, C: Array, K: Array
-) -> None:
+def carried(mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g: Array, C: Array, K: Array) -> None:
     """``carry`` and ``hold_components`` for n bodies, each in its own axes: g (n, 6), C and K (n, 6, 6)."""
     turn = np.empty((6, 6))
     for k in range(len(mass)):

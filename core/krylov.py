@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import blocks, strained
-from .blocks import Factor
+from .blocks import Factor, Turned
 from .compiled import compiled
 from .strained import Strained
 
@@ -19,35 +19,53 @@ class Operator(NamedTuple):
     """A⁻¹S of A = diag(K, M) and S = [[C, M], [−M, 0]].
 
     Attributes:
-        moving, mass, stiff: C and M, M, and K, as of ``blocks.columns``.
         factor: of K.
         exact: K, to refine solutions with, and for products where that is needed.
         refinements: how often; 0: not needed.
     """
 
-    moving: Array
-    mass: Array
-    stiff: Array
+    M: Turned
+    C: Turned
+    K: Turned
     factor: Factor
     exact: Strained
     refinements: int
 
 
 @compiled
+def noise(factor: Factor, exact: Strained, M: Turned, v: Array) -> float:
+    """Relative error of a solution with K, in the norm of its energy: of M x of the first of the rows v (k, 2n)."""
+    n = v.shape[1] // 2
+    force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
+    blocks.times(M, v[:1], force)
+    for i in range(n):
+        x[0, i] = force[0, i]
+    blocks.solve(factor, x)
+    strained.times(exact, x, back)
+    for i in range(n):
+        more[0, i] = back[0, i] = force[0, i] - back[0, i]
+    blocks.solve(factor, more)
+    left = whole = 0.0
+    for i in range(n):
+        left += back[0, i] * more[0, i]
+        whole += force[0, i] * x[0, i]
+    return np.sqrt(abs(left / whole))
+
+
+@compiled
 def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     """w = A⁻¹S v, A w = S v, and M y (k, n), of rows v (k, 2n)."""
     k, n = len(v), v.shape[1] // 2
-    d = a.mass.shape[2]
-    x, heavy, both = v[:, :n].copy(), np.empty((k, n)), np.empty((k, 2 * n))
-    blocks.times(a.moving, x, both)
-    blocks.times(a.mass, v[:, n:].copy(), heavy)
     here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
+    heavy, both = np.empty((k, n)), np.empty((2 * k, n))
+    blocks.times(a.C, v, here)
+    blocks.times(a.M, v.reshape((2 * k, n)), both)  # x and y in turn
     for m in range(k):
-        for i in range(0, n, d):
-            for r in range(i, i + d):
-                here[m, r] = both[m, i + r] + heavy[m, r]  # C x + M y
-                force[m, r], force[m, n + r] = here[m, r], -both[m, i + d + r]
-                w[m, n + r] = -x[m, r]
+        for i in range(n):
+            heavy[m, i] = both[2 * m + 1, i]
+            here[m, i] += heavy[m, i]  # C x + M y
+            force[m, i], force[m, n + i] = here[m, i], -both[2 * m, i]
+            w[m, n + i] = -v[m, i]
     blocks.solve(a.factor, here)
     for _ in range(a.refinements):
         strained.times(a.exact, here, more)
@@ -68,14 +86,18 @@ def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
 def _dual(a: Operator, w: Array, heavy: Array) -> Array:
     """A w, of rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
-    x, force, out = w[:, :n].copy(), np.empty((k, n)), np.empty(w.shape)
+    out = np.empty(w.shape)
     if a.refinements:
+        x, force = w[:, :n].copy(), np.empty((k, n))
         strained.times(a.exact, x, force)
+        for m in range(k):
+            for i in range(n):
+                out[m, i] = force[m, i]
     else:
-        blocks.times(a.stiff, x, force)
+        blocks.times(a.K, w, out)
     for m in range(k):
         for i in range(n):
-            out[m, i], out[m, n + i] = force[m, i], heavy[m, i]
+            out[m, n + i] = heavy[m, i]
     return out
 
 
@@ -98,9 +120,9 @@ def extend(
     """
     n = w.shape[1] // 2
     heavy = np.empty((len(w), n))  # M y of w
-    blocks.times(a.mass, w[:, n:].copy(), heavy)
+    blocks.times(a.M, w[:, n:].copy(), heavy)
     of_last = np.empty((size - before, n))  # M y of the last step's vectors
-    blocks.times(a.mass, basis[before:size, n:].copy(), of_last)
+    blocks.times(a.M, basis[before:size, n:].copy(), of_last)
     while True:
         gram, largest = _against(a, w, heavy, basis, projected, size, before)
         value, turn = _axes(gram)
@@ -144,7 +166,7 @@ def _against(
     n = heavy.shape[1]
     for turn in range(_PASSES):
         if turn > 0:
-            blocks.times(a.mass, w[:, n:].copy(), heavy)
+            blocks.times(a.M, w[:, n:].copy(), heavy)
         dual = _dual(a, w, heavy)
         overlap = np.dot(basis[:size], dual.T)
         _take(w, overlap, basis[:size])
@@ -199,15 +221,14 @@ def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
 def quotients(a: Operator, x: Array) -> Array:
     """(3, m) of complex vectors x (m, 2, n), real and imaginary parts: x*Kx, x*Mx, and ½ i x*Cx, which is real."""
     m, _, n = x.shape
-    d = a.mass.shape[2]
     out = np.zeros((3, m))
-    stiff, moving = np.empty((2, n)), np.empty((2, 2 * n))
+    stiff, moving, heavy = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
     for v in range(m):
         strained.times(a.exact, x[v], stiff)
-        blocks.times(a.moving, x[v], moving)
-        for i in range(0, n, d):
-            for r in range(i, i + d):
-                out[0, v] += x[v, 0, r] * stiff[0, r] + x[v, 1, r] * stiff[1, r]
-                out[1, v] += x[v, 0, r] * moving[0, i + d + r] + x[v, 1, r] * moving[1, i + d + r]
-                out[2, v] += 0.5 * (x[v, 1, r] * moving[0, i + r] - x[v, 0, r] * moving[1, i + r])
+        blocks.times(a.C, x[v], moving)
+        blocks.times(a.M, x[v], heavy)
+        for i in range(n):
+            out[0, v] += x[v, 0, i] * stiff[0, i] + x[v, 1, i] * stiff[1, i]
+            out[1, v] += x[v, 0, i] * heavy[0, i] + x[v, 1, i] * heavy[1, i]
+            out[2, v] += 0.5 * (x[v, 1, i] * moving[0, i] - x[v, 0, i] * moving[1, i])
     return out

@@ -10,41 +10,43 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
-from . import blocks, eigen, strained
-from .blocks import Factor, Tridiagonal
+from . import blocks, eigen
+from .chain import Linear
 from .eigen import Eigen
-from .krylov import Operator, extend, forward, hermitian, quotients
-from .strained import Strained
+from .krylov import Operator, extend, forward, hermitian, noise, quotients
 
 Array = NDArray[np.float64]
 
-_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
+_TOLERANCE = 1e-8  # of the vectors, relative; frequencies have its square
 _SOLVED, _REFINEMENTS = 1e-8, 4  # relative error of a solution with K that is let be, and the most steps to get there
-_FIRST, _EVERY = 26, 12  # when to look whether the modes are there
+_FIRST, _EVERY = 24, 12  # when to look whether the modes are there
 
 
-def lanczos(M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int, exact: Strained) -> Eigen:
-    """The ``count`` lowest modes of a chain.
+def lanczos(p: Linear, count: int) -> Eigen:
+    """The ``count`` lowest modes of a chain about a state where K is symmetric.
 
-    ``exact`` gives K x to full accuracy where the assembled K loses digits to cancellation, as it does with many elements:
-    solutions are refined with it as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh
-    quotient, ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
+    The assembled K loses digits to cancellation, as it does with many elements: solutions are refined, by way of the strains,
+    as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh quotient,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
 
     Raises:
         UnstableError: if K is not positive definite.
         ArithmeticError: if the basis is full before the modes are there.
     """
     try:
-        factor = blocks.factor(K, positive=True)
+        factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
-    n = K.size
-    moving, mass, stiff = blocks.columns(C, M), blocks.columns(M), blocks.columns(K)
+    if not factor.positive:
+        raise eigen.unstable()
+    n, exact = p.K.size, p.strained
+    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
-    a = Operator(moving, mass, stiff, factor, exact, _refinements(factor, exact, _times(mass, w[:1, :n])))
-    for _ in range(2):  # smooth
-        w, _, _ = forward(a, w)
+    refinements = _refinements(noise(factor, exact, M, w))
+    a = Operator(M, C, K, factor, exact, refinements)
+    w, _, _ = forward(a, w)  # smooth
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
     size, before, look = 0, 0, 3 * count + _FIRST
@@ -53,9 +55,8 @@ def lanczos(M: Tridiagonal, C: Tridiagonal, K: Tridiagonal, count: int, exact: S
         if not size:
             raise ArithmeticError("stiffness and mass are out of all proportion: check their units")
         look = size + _EVERY
-        mu, z = np.linalg.eigh(hermitian(projected, size))
-        order = np.argsort(-mu)[: min(count, size // 2)]
-        mu, z = mu[order], z[:, order]
+        wanted = min(count, size // 2)
+        mu, z = eigh(hermitian(projected, size), subset_by_index=[size - wanted, size - 1], check_finite=False)
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _TOLERANCE).all():
@@ -85,27 +86,9 @@ def _start(size: int) -> Array:
     return np.random.default_rng(1921).normal(size=(2, size))
 
 
-def _refinements(factor: Factor, exact: Strained, force: Array) -> int:
-    """How many steps of iterative refinement bring a solution to the accuracy wanted, in the norm of its energy."""
-    x = force.copy()
-    blocks.solve(factor, x)
-    left = force - _stiffness(exact, x)
-    rest = left.copy()
-    blocks.solve(factor, rest)
-    noise = float(np.sqrt(np.abs((left * rest).sum() / (force * x).sum())))
+def _refinements(noise: float) -> int:
+    """How many steps of iterative refinement bring a solution to the accuracy wanted."""
     for steps in range(_REFINEMENTS):
         if noise ** (steps + 1) < _SOLVED:
             return steps
     return _REFINEMENTS
-
-
-def _stiffness(K: Strained, x: Array) -> Array:
-    out = np.empty(x.shape)
-    strained.times(K, np.ascontiguousarray(x), out)
-    return out
-
-
-def _times(columns: Array, x: Array) -> Array:
-    out = np.empty(x.shape)
-    blocks.times(columns, np.ascontiguousarray(x), out)
-    return out

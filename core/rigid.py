@@ -171,9 +171,7 @@ def _function(table: Array, twist: Array, out: Array) -> None:
     beta, beta1, _ = _sums(table[1], z)
     d_alpha, d_beta = 2.0 * s * alpha1, 2.0 * s * beta1
     put_skew(alpha * w[0], alpha * w[1], alpha * w[2], 0, 0, out)
-    put_skew(
-        alpha * v[0] + d_alpha * w[0], alpha * v[1] + d_alpha * w[1], alpha * v[2] + d_alpha * w[2], 0, 3, out
-    )
+    put_skew(alpha * v[0] + d_alpha * w[0], alpha * v[1] + d_alpha * w[1], alpha * v[2] + d_alpha * w[2], 0, 3, out)
     for i in range(3):
         for j in range(3):
             out[i, j] += beta * w[i] * w[j]
@@ -212,9 +210,7 @@ def _transpose_derivative(table: Array, twist: Array, wrench: Array, out: Array)
     dp = v[0] * f[0] + v[1] * f[1] + v[2] * f[2] + w[0] * h[0] + w[1] * h[1] + w[2] * h[2]
     clear(out)
     put_skew(alpha * f[0], alpha * f[1], alpha * f[2], 0, 3, out)
-    put_skew(
-        d_alpha * f[0] + alpha * h[0], d_alpha * f[1] + alpha * h[1], d_alpha * f[2] + alpha * h[2], 3, 3, out
-    )
+    put_skew(d_alpha * f[0] + alpha * h[0], d_alpha * f[1] + alpha * h[1], d_alpha * f[2] + alpha * h[2], 3, 3, out)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         u = w[j] * f[k] - w[k] * f[j]

@@ -74,14 +74,13 @@ class Segments:
         pose: (q, 4, 4) rest pose in the frame of the element's first node.
         flexibility: (n, 6, 6) f(b) of each element.
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
-        break_s: (m,) all ends of quadrature intervals that begin in an element.
-        break_element, break_shape: (m,), (m, 6, 6) the same at those.
-        bubble, break_bubble: (q, 6, 6), (m, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit
-            stiffness; a load that moves nothing has a zero column.
+        bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
+            moves nothing has a zero column.
+        at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the arc lengths asked for.
         shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
             across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
             tells.
-        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``. These three are empty where ``breaks`` were given.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
     """
 
     element: Index
@@ -90,25 +89,50 @@ class Segments:
     pose: Array
     flexibility: Array
     shape: Array
-    break_s: Array
-    break_element: Index
-    break_shape: Array
     bubble: Array
-    break_bubble: Array
+    at_element: Index
+    at_shape: Array
+    at_bubble: Array
     shortening: Array
     mean: Array
     slope: Array
 
 
-def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segments:
-    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
+@dataclass(frozen=True)
+class Quadrature:
+    """Gauss points between the nodes.
+
+    Attributes:
+        start, length: (i,) arc length where each interval begins, and its length, m; none of them has a station inside.
+        element: (i,) which element it lies in.
+        s, weight: (i, ``GAUSS``) arc length and weight of its points, m.
+    """
+
+    start: Array
+    length: Array
+    element: Index
+    s: Array
+    weight: Array
+
+
+def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadrature:
+    """Gauss points between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
     ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
-    keep = np.append(True, np.diff(ends) > 1e-12 * blade.length)
-    ends = ends[keep]
-    c, b, a = collocation(GAUSS)
+    ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
+    c, b, _ = collocation(GAUSS)
     h = np.diff(ends)
     element = np.searchsorted(nodes, ends[:-1] + 0.5 * h, side="right") - 1
-    s = ends[:-1, None] + h[:, None] * c
+    return Quadrature(ends[:-1], h, element, ends[:-1, None] + h[:, None] * c, h[:, None] * b)
+
+
+def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
+    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,)."""
+    points = quadrature(blade, nodes)
+    h, element, s = points.length, points.element, points.s
+    _, b, a = collocation(GAUSS)
+    at = np.zeros(0) if at is None else at
+    interval = np.clip(np.searchsorted(points.start, at, side="right") - 1, 0, None)
+    until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
     first = frames(blade, nodes[:-1])
     pose = sp.inverse(first)[element][:, None] @ frames(blade, s.ravel()).reshape(*s.shape, 4, 4)
     lever = sp.adjoint(pose)
@@ -126,61 +150,49 @@ def integrate(blade: Blade, nodes: Array, breaks: Array | None = None) -> Segmen
         return np.add.reduceat(over(b[None], values)[:, 0], start, axis=0)
 
     def running(values: Array) -> tuple[Array, Array, Array]:
-        """Integral from the element's start to its Gauss points and to the intervals' starts, and over all of it."""
+        """Integral from the element's start to its Gauss points and to the points ``at``, and over all of it."""
         parts = over(b[None], values)[:, 0]
         begun = np.cumsum(parts, axis=0) - parts
         begun -= begun[start][element]
-        return begun[:, None] + over(a, values), begun, np.add.reduceat(parts, start, axis=0)
+        there = begun[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
+        return begun[:, None] + over(a, values), there, np.add.reduceat(parts, start, axis=0)
 
-    within, before, flexibility = running(turn)
+    within, there, flexibility = running(turn)
     stiffness = np.linalg.inv(flexibility)
-    q = np.repeat(element, GAUSS)
-    shape, break_shape = within.reshape(-1, 6, 6) @ stiffness[q], before @ stiffness[element]
+    q, at_element = np.repeat(element, GAUSS), element[interval]
+    shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], there @ stiffness[at_element]
     size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
     load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
     inside, _, total = running(load)
     carried = total[element][:, None] - inside  # beyond each point
-    loose, loose_break, tip = running(turn @ carried)
+    loose, there, tip = running(turn @ carried)
     bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
-    break_bubble = loose_break - break_shape @ tip[element]
+    at_bubble = there - at_shape @ tip[at_element]
     work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
     unit = _unit_stiffness(work)
-    uneven = (np.zeros((0, 6, 6)), np.zeros((0, 6, 6)), np.zeros((0, 6, 12)))
-    if breaks is None:
-        local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
-        static = local @ stiffness[element][:, None]
-        loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
-        last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
-        length = np.diff(nodes)[element][:, None, None]
-        part = (s - nodes[element][:, None])[..., None] / length
-        uneven = tuple(
-            whole(v)
-            for v in _uneven(
-                pose,
-                part,
-                length,
-                last[element][:, None],
-                shape.reshape(turn.shape),
-                turn @ stiffness[element][:, None],
-                static,
-                loaded,
-            )
-        )
+    local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
+    static = local @ stiffness[element][:, None]
+    loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
+    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
+    length = np.diff(nodes)[element][:, None, None]
+    part = (s - nodes[element][:, None])[..., None] / length
+    rate = turn @ stiffness[element][:, None]
+    uneven = _uneven(pose, part, length, last[element][:, None], shape.reshape(turn.shape), rate, static, loaded)
+    shortening, mean, slope = (whole(v) for v in uneven)
     return Segments(
         element=q,
         s=s.ravel(),
-        weight=(h[:, None] * b).ravel(),
+        weight=points.weight.ravel(),
         pose=pose.reshape(-1, 4, 4),
         flexibility=flexibility,
         shape=shape,
-        break_s=ends[:-1],
-        break_element=element,
-        break_shape=break_shape,
         bubble=bubble @ unit[q],
-        break_bubble=break_bubble @ unit[element],
-        shortening=uneven[0],
-        mean=uneven[1],
-        slope=uneven[2],
+        at_element=at_element,
+        at_shape=at_shape,
+        at_bubble=at_bubble @ unit[at_element],
+        shortening=shortening,
+        mean=mean,
+        slope=slope,
     )
 
 
@@ -230,7 +242,14 @@ def collocation(n: int) -> tuple[Array, Array, Array]:
     """Gauss points c and weights b on [0, 1], and the matrix ∫₀^{c_q} ℓ_j of their Lagrange polynomials."""
     x, w = np.polynomial.legendre.leggauss(n)
     c = 0.5 * (x + 1.0)
-    powers = np.arange(n)
-    vandermonde = c[:, None] ** powers
-    integrals = c[:, None] ** (powers + 1) / (powers + 1)
-    return c, 0.5 * w, integrals @ np.linalg.inv(vandermonde)
+    return c, 0.5 * w, _up_to(c, c)
+
+
+def partial_weights(n: int, x: Array) -> Array:
+    """(m, n) weights of Gauss's n points on [0, 1] for the integrals from 0 to x (m,)."""
+    return _up_to(collocation(n)[0], x)
+
+
+def _up_to(c: Array, x: Array) -> Array:
+    powers = np.arange(len(c))
+    return (x[:, None] ** (powers + 1) / (powers + 1)) @ np.linalg.inv(c[:, None] ** powers)

@@ -6,17 +6,17 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from . import beams as bm
-from . import blocks, chain
-from . import spatial as sp
+from . import chain, steady
 from .blade import Blade, without_rotary_inertia
-from .chain import Shape, Steady
+from .chain import Shape
 from .discretize import Chain, Mass, discretize
 from .eigen import UnstableError
 from .elements import Measure
 from .lanczos import lanczos
 from .model import FULL, Model
 from .modes import Modes
+from .samples import mode_shapes
+from .steady import Steady
 
 Array = NDArray[np.float64]
 
@@ -94,44 +94,24 @@ def _along(body: Chain, omegas: Iterable[float], count: int, model: Model, gravi
         if not np.isfinite(omega):
             raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
         begun = time.perf_counter()
-        state = balance(body, omega, gravity, model, chain.extrapolate(known, omega))
-        p = state.linear
+        state = balance(body, omega, gravity, model, steady.extrapolate(known, omega))
         try:
-            found = lanczos(p.M, p.C, blocks.symmetric(p.K), count, p.strained)
+            found = lanczos(state.linear, count)
         except (UnstableError, ArithmeticError) as error:  # not positive definite, or too nearly not
             loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
             raise UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
         shapes = mode_shapes(body, state.shape, found.vectors)
         yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
-        known = [*known[-chain.ORDER :], (omega, state.shape)]
+        known = [*known[-steady.ORDER :], (omega, state.shape)]
 
 
 def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shape | None = None) -> Steady:
     """The steady state that the model has, and the pencil about it."""
     if model.geometric and model.prestretch:
-        state = chain.steady(body, omega, gravity, guess)
+        state = steady.steady(body, omega, gravity, guess)
         return (
             state if model == FULL else Steady(state.shape, chain.linearize(body, state.shape, omega, gravity, model))
         )
     still = chain.rest(body)
-    loaded = chain.prestress_at_rest(body, omega, gravity) if model.geometric else body
+    loaded = steady.prestress_at_rest(body, omega, gravity) if model.geometric else body
     return Steady(still, chain.linearize(loaded, still, omega, gravity, model))
-
-
-def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
-    nodes, e = shape.nodes, body.samples.element
-    first, last = nodes[e], nodes[e + 1]
-    x = sp.inverse(first) @ last
-    inner, d, m = shape.beta.shape[1], shape.beta.shape[1] + 6, vectors.shape[1]
-    beta = shape.beta[e] if inner else np.zeros((len(e), 6))
-    zeta, slope = bm.place(body.beams, body.samples, sp.log(x), beta)
-    moved = sp.tangent(zeta) @ slope  # from (ρ, β)
-    lever = sp.adjoint(x)
-    on = np.concatenate([np.eye(6) - moved[..., :6], moved[..., :6] @ lever, moved[..., 6:]], axis=-1)  # from (ξ_a, ξ_b, β)
-    read = np.concatenate([on[:, :3] - sp.skew(sp.exp(zeta)[:, :3, 3]) @ on[:, 3:], on[:, 3:]], axis=1)
-    turn = first[:, :3, :3]
-    read = np.concatenate([turn @ read[:, :3], (turn @ read[:, 3:])[:, :1]], axis=1)
-    parts = np.concatenate([np.zeros((d, m)), vectors]).reshape(-1, d, m)  # the clamped node too
-    twists = np.concatenate([parts[e, -6:], parts[e + 1, -6:], parts[e + 1, :-6]], axis=1)
-    return (read[..., : 12 + inner] @ twists).transpose(2, 0, 1)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import blocks
+from .blocks import Turned
 from .compiled import apply, compiled
 
 Array = NDArray[np.float64]
@@ -15,12 +16,12 @@ class Strained(NamedTuple):
     """K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
 
     Attributes:
-        rest: the part on its own, as of ``blocks.columns``.
+        rest: the part on its own, for products.
         spring, lever: (n, 6, 6), see ``chain.Linear``.
         held: (6, 6) projector of node 1's twist; zero if nothing is held.
     """
 
-    rest: Array
+    rest: Turned
     spring: Array
     lever: Array
     held: Array
@@ -29,7 +30,7 @@ class Strained(NamedTuple):
 @compiled
 def times(K: Strained, x: Array, out: Array) -> None:
     """out = K x of vectors (k, dn)."""
-    n, _, d = K.rest.shape
+    n, d = K.rest.diagonal.shape[:2]
     rho, kept = np.empty(6), np.empty(6)
     free = x.copy()
     for v in range(len(x)):

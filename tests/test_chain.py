@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from southwell.core import blocks, chain, eigen
+from southwell.core import blocks, eigen, steady
 from southwell.core import linearize as lz
 from southwell.core import spatial as sp
 from southwell.core.blade import without_rotary_inertia
@@ -99,8 +99,8 @@ def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
 def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
     body, n = discretize(curved(), 5), 5
-    steady = chain.steady(body, 1.5, np.zeros(3))
-    shape, cartesian = steady.shape, steady.linear
+    state = steady.steady(body, 1.5, np.zeros(3))
+    shape, cartesian = state.shape, state.linear
     dense = lz.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
@@ -149,7 +149,7 @@ def test_no_coriolis_in_the_flapwise_plane_but_much_chordwise() -> None:
 def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
     """EA u″ + μ Ω² (x + u) = 0 has no bounded solution past Ω L √(μ/EA) = π/2: here γ = 35 π = 109.96."""
     modes(yoo_shin(0.0), 109.0, 20, 2)
-    with pytest.raises((chain.SteadyStateError, eigen.UnstableError), match=r"speed"):
+    with pytest.raises((steady.SteadyStateError, eigen.UnstableError), match=r"speed"):
         modes(yoo_shin(0.0), 112.0, 20, 2)
 
 
@@ -174,7 +174,7 @@ def test_unprestressed_chain_needs_no_newton() -> None:
     body = discretize(PARK, 4)
     state = balance(body, 10.0, np.zeros(3), Model(prestretch=False))
     np.testing.assert_array_equal(state.shape.nodes, body.nodes)
-    tension = chain.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
+    tension = steady.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
     assert np.abs(state.linear.residual).max() < 1e-8 * tension
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from southwell.core import chain
+from southwell.core import steady
 from southwell.core.blade import Blade, BladeError, uniform_blade, without_rotary_inertia
 from southwell.core.discretize import discretize
 from southwell.core.eigen import UnstableError
@@ -113,7 +113,7 @@ def test_a_uniform_load_bends_the_cantilever_as_it_should() -> None:
     """q L⁴ / 8 EI at the tip, small."""
     q = 1e-3
     body = discretize(PARK, 8, load=np.array(2 * [[0.0, 0.0, q]]))
-    tip = chain.steady(body, 0.0, np.zeros(3)).shape.nodes[-1, 2, 3]
+    tip = steady.steady(body, 0.0, np.zeros(3)).shape.nodes[-1, 2, 3]
     assert tip == pytest.approx(q * PARK.length**4 / (8 * PARK.stiffness[0, 4, 4]), rel=1e-8)
 
 

@@ -11,10 +11,10 @@ from ...cases.pairing import aligned, families, weights
 from ...cases.results import Cell
 from ...core import sections
 from ...core.blade import Blade
-from ...core.chain import SteadyStateError
 from ...core.eigen import UnstableError
 from ...core.modes import STATIONS, Modes
 from ...core.solve import modes
+from ...core.steady import SteadyStateError
 from ..units import Units
 
 ELEMENTS, COUNT = 40, 6
