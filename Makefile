@@ -49,6 +49,7 @@ $(INSTALLED): pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'
 	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
+	$(BIN)/southwell modes park-cantilever > /dev/null # compiles the solver's loops, once
 	touch $@
 
 clean:

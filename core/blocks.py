@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .compiled import compiled, inlined, invert, product
 
 Array = NDArray[np.float64]
+Six = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -106,38 +107,47 @@ def _turn(part: Array, out: Array) -> None:
                 out[k, j, i] = part[k, i, j]
 
 
+_ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@inlined
+def _more(
+    turned: Array, k: int, row: int, column: int, x: Array, v: int, w: int, at: int, count: int, a: Six, b: Six
+) -> tuple[Six, Six]:
+    """a and b plus the transpose of a part (count, 6) of block k times x[v, at …] and x[w, at …]."""
+    a0, a1, a2, a3, a4, a5 = a
+    b0, b1, b2, b3, b4, b5 = b
+    for j in range(count):
+        p, q = x[v, at + j], x[w, at + j]
+        t0, t1, t2 = turned[k, row + j, column], turned[k, row + j, column + 1], turned[k, row + j, column + 2]
+        t3, t4, t5 = turned[k, row + j, column + 3], turned[k, row + j, column + 4], turned[k, row + j, column + 5]
+        a0, a1, a2, a3, a4, a5 = a0 + t0 * p, a1 + t1 * p, a2 + t2 * p, a3 + t3 * p, a4 + t4 * p, a5 + t5 * p
+        b0, b1, b2, b3, b4, b5 = b0 + t0 * q, b1 + t1 * q, b2 + t2 * q, b3 + t3 * q, b4 + t4 * q, b5 + t5 * q
+    return (a0, a1, a2, a3, a4, a5), (b0, b1, b2, b3, b4, b5)
+
+
+@inlined
+def _put(a: Six, out: Array, v: int, at: int) -> None:
+    out[v, at], out[v, at + 1], out[v, at + 2], out[v, at + 3], out[v, at + 4], out[v, at + 5] = a
+
+
 @compiled
 def times(t: Turned, x: Array, out: Array) -> None:
     """The matrix times the vectors that the rows of x (k, dn or more) begin with, to where those of ``out`` begin."""
     n, d = t.diagonal.shape[:2]
-    spare = np.empty(n * d)
     for i in range(n):
         at = d * i
-        for v in range(0, len(x), 2):  # two at a time
-            p, q = x[v], x[min(v + 1, len(x) - 1)]
-            p_out, q_out = out[v], out[v + 1] if v + 1 < len(x) else spare
-            for r in range(at, at + d):
-                p_out[r], q_out[r] = 0.0, 0.0
-            if i > 0:
-                _add_two(t.lower, i - 1, 0, p, q, at - 6, p_out, q_out, at)
-            for j in range(0, d, 6):
-                _add_two(t.diagonal, i, j, p, q, at + j, p_out, q_out, at)
-            for j in range(0, d if i < n - 1 else 0, 6):
-                _add_two(t.upper, i, j, p, q, at + d + j, p_out, q_out, at + d - 6)
-
-
-@inlined
-def _add_two(
-    turned: Array, k: int, j: int, p: Array, q: Array, first: int, p_out: Array, q_out: Array, at: int
-) -> None:
-    """Add the transpose of rows j … j + 5 of block k times p[first …] and q[first …]."""
-    p0, p1, p2, p3, p4, p5 = p[first], p[first + 1], p[first + 2], p[first + 3], p[first + 4], p[first + 5]
-    q0, q1, q2, q3, q4, q5 = q[first], q[first + 1], q[first + 2], q[first + 3], q[first + 4], q[first + 5]
-    for r in range(turned.shape[2]):
-        t0, t1, t2 = turned[k, j, r], turned[k, j + 1, r], turned[k, j + 2, r]
-        t3, t4, t5 = turned[k, j + 3, r], turned[k, j + 4, r], turned[k, j + 5, r]
-        p_out[at + r] += t0 * p0 + t1 * p1 + t2 * p2 + t3 * p3 + t4 * p4 + t5 * p5
-        q_out[at + r] += t0 * q0 + t1 * q1 + t2 * q2 + t3 * q3 + t4 * q4 + t5 * q5
+        for v in range(0, len(x), 2):  # two at a time; the last one of an odd number with itself
+            w = min(v + 1, len(x) - 1)
+            for h in range(0, d, 6):
+                a, b = _ZERO, _ZERO
+                if i > 0:
+                    a, b = _more(t.lower, i - 1, 0, h, x, v, w, at - 6, 6, a, b)
+                a, b = _more(t.diagonal, i, 0, h, x, v, w, at, d, a, b)
+                if i < n - 1 and h == d - 6:
+                    a, b = _more(t.upper, i, 0, 0, x, v, w, at + d, d, a, b)
+                _put(a, out, v, at + h)
+                _put(b, out, w, at + h)
 
 
 def dense(t: Tridiagonal) -> Array:
@@ -200,24 +210,33 @@ def _eliminate(pivots: Array, lower: Array, upper: Array) -> int:
 def solve(f: Factor, x: Array) -> None:
     """Replace right-hand sides (k, dn) by the solutions."""
     n, d = f.pivots.shape[:2]
-    here = np.empty(d)
-    for v in range(len(x)):
-        p = x[v]
+    here = np.empty((2, d))
+    for v in range(0, len(x), 2):  # as in ``times``
+        w = min(v + 1, len(x) - 1)
         for k in range(n):
             at = d * k
+            for h in range(0, d, 6):
+                a, b = _ZERO, _ZERO
+                if k > 0:
+                    a, b = _more(f.lower, k - 1, 0, h, x, v, w, at - 6, 6, a, b)
+                _put(a, here, 0, h)
+                _put(b, here, 1, h)
             for r in range(d):
-                here[r], p[at + r] = p[at + r], 0.0
-            if k > 0:
-                _add(f.lower, k - 1, 0, -1.0, p, at - 6, here, 0)
-            for j in range(0, d, 6):
-                _add(f.pivots, k, j, 1.0, here, j, p, at)
+                here[0, r], here[1, r] = x[v, at + r] - here[0, r], x[w, at + r] - here[1, r]
+            for h in range(0, d, 6):
+                a, b = _more(f.pivots, k, 0, h, here, 0, 1, 0, d, _ZERO, _ZERO)
+                _put(a, x, v, at + h)
+                _put(b, x, w, at + h)
         for k in range(n - 2, -1, -1):
             at = d * k
-            for r in range(6):
-                here[r] = 0.0
-            for j in range(0, d, 6):
-                _add(f.upper, k, j, -1.0, p, at + d + j, here, 0)
-            _add(f.pivots, k, d - 6, 1.0, here, 0, p, at)
+            a, b = _more(f.upper, k, 0, 0, x, v, w, at + d, d, _ZERO, _ZERO)
+            _put(a, here, 0, 0)
+            _put(b, here, 1, 0)
+            for r in range(d):
+                p, q = x[v, at + r], x[w, at + r]
+                for j in range(6):
+                    p, q = p - f.pivots[k, d - 6 + j, r] * here[0, j], q - f.pivots[k, d - 6 + j, r] * here[1, j]
+                x[v, at + r], x[w, at + r] = p, q
 
 
 def solution(f: Factor, b: Array) -> Array:
@@ -225,22 +244,6 @@ def solution(f: Factor, b: Array) -> Array:
     x = b[None].copy()
     solve(f, x)
     return x[0]
-
-
-@inlined
-def _add(turned: Array, k: int, j: int, sign: float, x: Array, first: int, out: Array, at: int) -> None:
-    """Add ± the transpose of rows j … j + 5 of block k times x[first …] to out[at …]."""
-    x0, x1, x2 = sign * x[first], sign * x[first + 1], sign * x[first + 2]
-    x3, x4, x5 = sign * x[first + 3], sign * x[first + 4], sign * x[first + 5]
-    for r in range(turned.shape[2]):
-        out[at + r] += (
-            turned[k, j, r] * x0
-            + turned[k, j + 1, r] * x1
-            + turned[k, j + 2, r] * x2
-            + turned[k, j + 3, r] * x3
-            + turned[k, j + 4, r] * x4
-            + turned[k, j + 5, r] * x5
-        )
 
 
 def asymmetry(t: Tridiagonal, sign: int = 1) -> float:

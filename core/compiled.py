@@ -44,11 +44,6 @@ def _folder() -> Path:
     raise OSError(f"{_HERE}: no folder to keep compiled code in: set SOUTHWELL_CACHE to one that may be written to")
 
 
-def ready() -> bool:
-    """Whether anything was compiled before; else the first solution takes half a minute longer."""
-    return any(_folder().rglob("*.nbi"))
-
-
 def compiled(f: F) -> F:
     """``f`` as machine code: arrays must be C-contiguous; a zero division gives inf or nan, as numpy's does."""
     before = config.CACHE_DIR  # type: ignore[attr-defined]

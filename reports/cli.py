@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
+from numba.core import event
 from threadpoolctl import threadpool_limits
 
 from ..cases.errors import CaseError
@@ -42,10 +43,26 @@ app.command(f"{__package__}.gate_command:command", name="gate")
 app.command(f"{__package__}.dashboard_command:command", name="dashboard")
 
 
+class _FirstUse(event.Listener):
+    """Says at a terminal why nothing happens, where code is compiled."""
+
+    told = False
+
+    def on_start(self, event: event.Event) -> None:
+        """Once."""
+        if not _FirstUse.told and sys.stderr.isatty():
+            print("southwell: compiling the solver's loops, once: about half a minute", file=sys.stderr)
+        _FirstUse.told = True
+
+    def on_end(self, event: event.Event) -> None:
+        """Nothing."""
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status."""
     if "" not in sys.path:
         sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
+    event.register("numba:compile", _FirstUse())
     try:
         if (sys.argv[1:] if arguments is None else list(arguments)) in ([], *([flag] for flag in app.help_flags)):
             app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
