@@ -105,6 +105,6 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None) -> Damped:
 def unstable() -> UnstableError:
     """What to raise where a Cholesky factorisation of K fails."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: the centrifugal force outgrows it, or its units are "
-        "wrong"
+        "the stiffness about the steady state is not positive definite: the centrifugal force outgrows it, or the blade is far "
+        "too soft: check units"
     )
