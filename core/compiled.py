@@ -38,8 +38,9 @@ def _folder() -> Path:
         except OSError:
             continue
         if os.access(folder, os.W_OK):
-            for old in set(place.glob("compiled-*")) - {folder}:
-                shutil.rmtree(old, ignore_errors=True)
+            if place.parent == _HERE:  # elsewhere another installation may have its own
+                for old in set(place.glob("compiled-*")) - {folder}:
+                    shutil.rmtree(old, ignore_errors=True)
             return folder
     raise OSError(f"{_HERE}: no folder to keep compiled code in: set SOUTHWELL_CACHE to one that may be written to")
 
