@@ -178,7 +178,7 @@ def pencil(
         beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
-        model: the effects kept (``geometric`` and ``coriolis`` matter here).
+        model: the effects kept (``geometric`` matters here).
         axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
 
     Raises:

@@ -244,11 +244,3 @@ def solution(f: Factor, b: Array) -> Array:
     x = b[None].copy()
     solve(f, x)
     return x[0]
-
-
-def asymmetry(t: Tridiagonal, sign: int = 1) -> float:
-    """Largest entry of t − sign·tᵀ relative to t's largest: 0 for a symmetric (+1) or skew (−1) matrix."""
-    scale = max(np.abs(t.diagonal).max(), 1e-300)
-    a = np.abs(t.diagonal - sign * np.swapaxes(t.diagonal, -1, -2)).max()
-    b = np.abs(t.upper - sign * np.swapaxes(t.lower, -1, -2)).max(initial=0.0)
-    return float(max(a, b) / scale)

@@ -61,11 +61,6 @@ class Linear:
         return Strained(blocks.turned(self.rest), self.spring, self.lever, held)
 
 
-def spin(omega: float) -> Array:
-    """The hub's twist (6,) at rotor speed ``omega`` about z."""
-    return np.array([0.0, 0.0, 0.0, 0.0, 0.0, omega])
-
-
 @dataclass(frozen=True)
 class Shape:
     """Where a chain is: node poses (n+1, 4, 4) in the hub's axes and the elements' internal coordinates β (n, 6 or 0)."""

@@ -35,21 +35,16 @@ def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: A
     across, by = np.empty((6, 6)), np.empty((6, 12))
     rigid.ad(r, across)  # of A δ
     product(across, slope, J)
-    matrix = np.empty((6, 6))
     for i in range(6):  # (1 + ad(A δ) B_δ/12) ε = r
         r[i] = delta[i]
         for j in range(6):
             by[i, 6 + j] = -J[i, 6 + j] / 12.0
             r[i] += by[i, 6 + j] * beta[j]
-            matrix[i, j] = (
-                J[i, j] / 12.0 if i > 0 else 0.0
-            )  # G has all of the axial strain's part of this term, but β's
-        matrix[i, i] += 1.0
-    for i in range(6):
-        r[0] += delta[i] * bow[i]
-    for i in range(6):
-        for j in range(6):
-            undo[i, j] = matrix[i, j]
+            undo[i, j] = J[i, j] / 12.0
+        undo[i, i] += 1.0
+    for j in range(6):  # G has all of the axial strain's part of Magnus' term, but β's
+        undo[0, j] = 1.0 if j == 0 else 0.0
+        r[0] += delta[j] * bow[j]
     invert(undo)  # near the unit matrix
     apply(undo, r, strain)
     changes, inner_changes = np.zeros(6), np.zeros(6)
@@ -57,12 +52,13 @@ def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: A
         for j in range(6):
             changes[i] += slope[i, j] * strain[j]
             inner_changes[i] += slope[i, 6 + j] * beta[j]
+    inner_across = np.empty((6, 6))
     rigid.ad(changes, across)
-    rigid.ad(inner_changes, matrix)
+    rigid.ad(inner_changes, inner_across)
     for i in range(6):
         for j in range(6):
-            matrix[i, j] = (matrix[i, j] + (across[i, j] if i > 0 else 0.0)) / 12.0
-    product(matrix, mean, by)
+            across[i, j] = (inner_across[i, j] + (across[i, j] if i > 0 else 0.0)) / 12.0
+    product(across, mean, by)
     for i in range(6):
         by[i, i] += 1.0
         by[0, i] += 2.0 * bow[i]

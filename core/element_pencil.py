@@ -162,15 +162,8 @@ def _add_inertia(
         change[i] = eta[i] - beams.law.eta[k, i]
     for p in range(per):
         point, at = per * k + p, slice(6 * p, 6 * p + 6)
-        shape, bubble, slope = beams.shape[point], beams.bubble[point], slopes[at]
-        for i in range(6):
-            zeta[i] = beams.rest[point, i]
-            for j in range(6):
-                zeta[i] += shape[i, j] * change[j] + bubble[i, j] * beta[j]
-                slope[i, 6 + j] = bubble[i, j]
-        product(shape, back, slope)
-        rigid.tangent(zeta, T)
-        product(T, slope, H)
+        shape, slope = beams.shape[point], slopes[at]
+        ride(beams.rest[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
         rigid.inverse(from_point, pose)
         rigid.adjoint(pose, to_point)
@@ -187,7 +180,7 @@ def _add_inertia(
             sums.f[i] += g[i]
             for j in range(12):
                 sums.f[6 + j] += H[i, j] * g[i]
-        _ride(H, U[at])
+        _put_twist(H, U[at])
         product(M, U[at], MU[at])
         product(C, U[at], CU[at])
         product(K, U[at], KU[at])
@@ -212,7 +205,35 @@ def _add_inertia(
 
 
 @compiled
-def _ride(H: Array, out: Array) -> None:
+def ride(
+    rest: Array,
+    shape: Array,
+    bubble: Array,
+    change: Array,
+    back: Array,
+    beta: Array,
+    zeta: Array,
+    slope: Array,
+    T: Array,
+    H: Array,
+) -> None:
+    """Where a point of ``beams.Points`` is in a's frame, and how it moves with (ρ, β).
+
+    From η − η₀ (6,), ``back`` (6, 6) = ``tangent_inverse(η)`` and β (6,): ζ (6,), its slope (6, 12), ``tangent(ζ)`` (6, 6), and
+    H (6, 12), the product of these two.
+    """
+    for i in range(6):
+        zeta[i] = rest[i]
+        for j in range(6):
+            zeta[i] += shape[i, j] * change[j] + bubble[i, j] * beta[j]
+            slope[i, 6 + j] = bubble[i, j]
+    product(shape, back, slope)
+    rigid.tangent(zeta, T)
+    product(T, slope, H)
+
+
+@compiled
+def _put_twist(H: Array, out: Array) -> None:
     """(1, H) (6, 18): a point's twist from (ξ_a, ρ, β)."""
     for i in range(6):
         for j in range(6):

@@ -19,9 +19,9 @@ from .krylov import Operator, extend, forward, hermitian, noise, quotients
 
 Array = NDArray[np.float64]
 
-_TOLERANCE = 1e-8  # of the vectors, relative; frequencies have its square
+_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
 _SOLVED, _REFINEMENTS = 1e-8, 4  # relative error of a solution with K that is let be, and the most steps to get there
-_FIRST, _EVERY = 24, 12  # when to look whether the modes are there
+_FIRST, _EVERY = 26, 12  # when to look whether the modes are there
 
 
 def lanczos(p: Linear, count: int) -> Eigen:

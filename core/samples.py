@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import rigid
-from .beams import Points
 from .chain import Shape
-from .compiled import compiled, product
+from .compiled import compiled
 from .discretize import Chain
+from .element_pencil import ride
 
 Array = NDArray[np.float64]
 
@@ -16,16 +16,14 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
     e, d, m = body.samples.element, shape.beta.shape[1] + 6, vectors.shape[1]
     read = np.empty((len(e), 4, d + 6))
-    _readings(*_arrays(body.samples), shape.nodes, shape.beta, body.beams.law.eta, read)
+    p = body.samples
+    beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
+    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, beta, body.beams.law.eta, read)
     own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
     first = own[e - 1, -6:]
     first[e == 0] = 0.0  # the clamped node
     found = read @ np.concatenate([first, own[e, -6:], own[e, :-6]], axis=1)  # of (ξ_a, ξ_b, β)
     return found.view(np.complex128).transpose(2, 0, 1)
-
-
-def _arrays(points: Points) -> tuple[NDArray[np.intp], Array, Array, Array]:
-    return points.element, points.rest, points.shape, points.bubble
 
 
 @compiled
@@ -49,7 +47,7 @@ def _readings(
         np.empty((6, 12)),
         np.empty((6, 12)),
     )
-    moved, inner = np.empty((6, 18)), beta.shape[1]
+    moved = np.empty((6, 18))
     for q in range(len(element)):
         e = element[q]
         rigid.inverse(nodes[e], back)
@@ -59,16 +57,7 @@ def _readings(
         rigid.adjoint(x, lever)
         for i in range(6):
             change[i] = eta[i] - eta_at_rest[e, i]
-        for i in range(6):
-            zeta[i] = rest[q, i]
-            for j in range(6):
-                zeta[i] += shape[q, i, j] * change[j]
-                slope[i, 6 + j] = bubble[q, i, j]
-            for j in range(inner):
-                zeta[i] += bubble[q, i, j] * beta[e, j]
-        product(shape[q], inverse, slope)
-        rigid.tangent(zeta, T)
-        product(T, slope, H)
+        ride(rest[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
         rigid.exp(zeta, position)
         for i in range(6):  # the twist in a's axes, at a
             for j in range(6):
@@ -77,7 +66,7 @@ def _readings(
                 moved[i, 12 + j] = H[i, 6 + j]
                 for k in range(6):
                     moved[i, 6 + j] += H[i, k] * lever[k, j]
-        for j in range(12 + inner):
+        for j in range(out.shape[2]):
             for i in range(3):  # velocity of the point: v + w × p
                 k, m = (i + 1) % 3, (i + 2) % 3
                 moved[i, j] += moved[3 + k, j] * position[m, 3] - moved[3 + m, j] * position[k, 3]

@@ -107,22 +107,11 @@ def tangent_inverse(twist: Array) -> Array:
     return _each(_tangent_inverse, (6, 6), twist)
 
 
-def tangent_transpose_derivative(twist: Array, wrench: Array) -> Array:
-    """(..., 6, 6): derivative of ``tangent(ζ)ᵀ f`` with respect to ζ, f held."""
-    return _each(_tangent_transpose_derivative, (6, 6), twist, wrench)
-
-
-def tangent_inverse_transpose_derivative(twist: Array, wrench: Array) -> Array:
-    """(..., 6, 6): derivative of ``tangent_inverse(ζ)ᵀ f`` with respect to ζ, f held."""
-    return _each(_tangent_inverse_transpose_derivative, (6, 6), twist, wrench)
-
-
-def _each(loop: Callable[..., None], shape: tuple[int, ...], *given: Array) -> Array:
+def _each(loop: Callable[[Array, Array], None], shape: tuple[int, ...], given: Array) -> Array:
     """What ``loop`` puts into (k, *shape) from the k items of ``given``, as many leading axes as they have."""
-    item = (4, 4) if given[0].shape[-1] == 4 else (6,)
-    leading = given[0].shape[: given[0].ndim - len(item)]
-    out = np.empty((*leading, *shape))
-    loop(*(np.ascontiguousarray(v, dtype=float).reshape(-1, *item) for v in given), out.reshape(-1, *shape))
+    item = (4, 4) if given.shape[-1] == 4 else (6,)
+    out = np.empty((*given.shape[: given.ndim - len(item)], *shape))
+    loop(np.ascontiguousarray(given, dtype=float).reshape(-1, *item), out.reshape(-1, *shape))
     return out
 
 
@@ -148,15 +137,3 @@ def _tangent(twists: Array, out: Array) -> None:
 def _tangent_inverse(twists: Array, out: Array) -> None:
     for k in range(len(twists)):
         rigid.tangent_inverse(twists[k], out[k])
-
-
-@compiled
-def _tangent_transpose_derivative(twists: Array, wrenches: Array, out: Array) -> None:
-    for k in range(len(twists)):
-        rigid.tangent_transpose_derivative(twists[k], wrenches[k], out[k])
-
-
-@compiled
-def _tangent_inverse_transpose_derivative(twists: Array, wrenches: Array, out: Array) -> None:
-    for k in range(len(twists)):
-        rigid.tangent_inverse_transpose_derivative(twists[k], wrenches[k], out[k])
