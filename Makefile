@@ -36,7 +36,7 @@ condense: $(INSTALLED)
 
 # from the results of the last make verify and make bench
 readme: $(INSTALLED)
-	$(BIN)/python -m southwell.reports.readme reports/out/results.jsonl
+	$(BIN)/python -m southwell.reports.site.readme reports/out/results.jsonl
 
 # into build/site, with the results of the last make verify if there are any; as a module: the script would take the
 # command southwell, which lies beside it, for the package

@@ -2,7 +2,7 @@
 
 from .core import multibody
 from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
-from .core.model import Model
+from .core.effects import Model
 from .core.modes import Modes
 from .core.solve import modes
 

@@ -1,5 +1,5 @@
 """``python -m southwell`` is the command line."""
 
-from .reports.cli import main
+from .reports.cli.app import main
 
 main()

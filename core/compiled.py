@@ -28,7 +28,7 @@ _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 @cache
 def _folder() -> Path:
     """Beside the sources if that may be written to, else in the user's cache, else a temporary folder."""
-    sources = [p.read_bytes() for p in sorted(_HERE.glob("*.py"))]
+    sources = [p.read_bytes() for p in sorted(_HERE.rglob("*.py"))]
     name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
     user = os.environ.get("SOUTHWELL_CACHE") or Path.home() / ".cache" / "southwell"
     for place in (_HERE / "__pycache__", Path(user), Path(tempfile.gettempdir()) / "southwell"):

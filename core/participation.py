@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from . import spatial as sp
 from .blade import Blade, mass_at
+from .element.sections import frames, root
 from .modes import STATIONS, Modes
-from .sections import frames, root
+from .space import spatial as sp
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

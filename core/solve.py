@@ -6,17 +6,17 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from . import chain, steady
 from .blade import Blade, without_rotary_inertia
-from .chain import Shape
-from .discretize import Chain, Mass, discretize
+from .chain import pencil, steady
+from .chain.lanczos import lanczos
+from .chain.mode_shapes import mode_shapes
+from .chain.pencil import Shape
+from .chain.steady import Steady
+from .effects import FULL, Model
 from .eigen import UnstableError
-from .elements import Measure
-from .lanczos import lanczos
-from .model import FULL, Model
+from .element.discretize import Chain, Mass, discretize
+from .element.measures import Measure
 from .modes import Modes
-from .samples import mode_shapes
-from .steady import Steady
 
 Array = NDArray[np.float64]
 
@@ -110,8 +110,8 @@ def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shap
     if model.geometric and model.prestretch:
         state = steady.steady(body, omega, gravity, guess)
         return (
-            state if model == FULL else Steady(state.shape, chain.linearize(body, state.shape, omega, gravity, model))
+            state if model == FULL else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, model))
         )
-    still = chain.rest(body)
+    still = pencil.rest(body)
     loaded = steady.prestress_at_rest(body, omega, gravity) if model.geometric else body
-    return Steady(still, chain.linearize(loaded, still, omega, gravity, model))
+    return Steady(still, pencil.linearize(loaded, still, omega, gravity, model))

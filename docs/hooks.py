@@ -11,7 +11,7 @@ from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
-from southwell.reports import site
+from southwell.reports.site import pages
 
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.S)
 NUMBER = re.compile(r"\\tag\{(.*?)\}")
@@ -26,8 +26,8 @@ made: dict[str, str] = {}
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Make the pages, and put them into the nav under the index of their folder."""
     made.clear()
-    made.update(site.pages(RUN))
-    last = [{"The last run": site.REPORT}] if site.REPORT in made else []
+    made.update(pages.pages(RUN))
+    last = [{"The last run": pages.REPORT}] if pages.REPORT in made else []
     config.nav = [*(_extended(entry) for entry in config.nav or []), *last]
     return config
 

@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..elsewhere import ENVIRONMENTS
+from ..isolated import ENVIRONMENTS
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from ...core.model import Model
+from ...core.effects import Model
 
 Family = Literal["chordwise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]

@@ -5,14 +5,15 @@ import re
 from dataclasses import asdict
 from typing import Any
 
-from ...cases.controls import Outcome, outcomes
-from ...cases.results import Cell, Run
-from ...references import codes as registry
-from ...references.codes import UnknownCodeError
-from .. import code_pages, controls, evidence, summary, witnesses
-from ..figures import core_lines
-from ..summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
-from ..units import BY_KEY, Units
+from ...cases.judge.results import Cell, Run
+from ...cases.verify.controls import Outcome, outcomes
+from ...references.protocol import registry as registry
+from ...references.protocol.registry import UnknownCodeError
+from ..shared import summary
+from ..shared.summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
+from ..shared.units import BY_KEY, Units
+from ..verification import code_pages, controls, evidence, witnesses
+from ..verification.figures import core_lines
 from .moving import moving
 
 LONGEST = 80

@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from ...cases import library
-from ...cases.errors import CaseError
-from ...cases.pairing import aligned, families, weights
-from ...cases.results import Cell
-from ...core import sections
+from ...cases.input import library
+from ...cases.input.errors import CaseError
+from ...cases.judge.pairing import aligned, families, weights
+from ...cases.judge.results import Cell
 from ...core.blade import Blade
+from ...core.chain.steady import SteadyStateError
 from ...core.eigen import UnstableError
+from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.solve import modes
-from ...core.steady import SteadyStateError
-from ..units import Units
+from ..shared.units import Units
 
 ELEMENTS, COUNT = 40, 6
 

@@ -9,9 +9,9 @@ from itertools import pairwise
 from math import inf
 from typing import Any
 
-from ...cases.gate import MOVED
-from ...cases.history import Entry, History, Key
-from ..summary import GRAVEST_FIRST
+from ...cases.regression.gate import MOVED
+from ...cases.regression.history import Entry, History, Key
+from ..shared.summary import GRAVEST_FIRST
 from .data import verdicts
 from .steps import frequency_steps, timing_steps
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...cases.gate import MOVED
+from ...cases.regression.gate import MOVED
 
 BEFORE, AFTER = 4, 3
 """Runs on either side that a step of a timing needs."""

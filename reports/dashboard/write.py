@@ -8,9 +8,9 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ...cases.history import History
-from ...cases.results import Run
-from .. import summary
+from ...cases.judge.results import Run
+from ...cases.regression.history import History
+from ..shared import summary
 from . import data
 from .past import of_history
 

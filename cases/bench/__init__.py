@@ -1,0 +1,1 @@
+"""What a frequency costs: core and the other codes side by side."""

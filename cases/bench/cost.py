@@ -1,0 +1,226 @@
+"""What a frequency costs: core and the other codes on one cantilever, side by side, and core as the elements multiply.
+
+Every code has a process of its own with one thread of linear algebra; in each round the processes work one after another, so
+that whatever else the machine does falls on all of them alike. Figures are medians over the rounds, and what is compared are
+their ratios.
+"""
+
+import resource
+import statistics
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from ...core.solve import modes, sweep
+from ...references.protocol import registry as registry
+from ...references.protocol.interface import CodeError
+from ..input import library
+from ..verify.pool import Pool
+
+CASE = "park-cantilever"
+OMEGA = 10.0
+SWEEP = tuple(float(v) for v in np.linspace(0.0, 30.0, 31))
+ELEMENTS, COUNT = 50, 10
+CODES = ("pinocchio", "exudyn-ancf", "exudyn-tree", "scikit-fem", "pybmodes")
+SIZES = (50, 500, 5000)
+ROUNDS, SWEEPS = 7, 3
+EXACT = "exact-beam"
+
+
+@dataclass(frozen=True)
+class Timing:
+    """One code's cost at ``ELEMENTS`` elements; seconds, medians over the rounds.
+
+    Attributes:
+        code: its name; ``core`` is the in-house solver.
+        version: empty for one that was not run.
+        single: one speed, from the blade to the modes.
+        sweep: all of ``SWEEP``, likewise.
+        spread: largest over smallest of the single speeds' times.
+        error: largest relative difference of the six lowest frequencies from the exact beam's, at one speed.
+        equal: what core needs to be as accurate; none of core itself, nor where ``ELEMENTS`` are too few.
+        note: why it was not run.
+    """
+
+    code: str
+    version: str
+    single: float | None = None
+    sweep: float | None = None
+    spread: float | None = None
+    error: float | None = None
+    equal: "Equal | None" = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Equal:
+    """Core with the fewest elements whose error is no larger than a code's; seconds as in ``Timing``."""
+
+    elements: int
+    single: float
+    sweep: float
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Core's cost at one speed: seconds (median), and the memory its process came to beyond that of one element, bytes."""
+
+    elements: int
+    seconds: float
+    memory: int
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Everything measured in one run; the settings are this module's constants."""
+
+    timings: tuple[Timing, ...]
+    growth: tuple[Growth, ...]
+    versions: dict[str, str]
+
+
+def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
+    """Measure; ``say`` is told what is being done.
+
+    Raises:
+        UnknownCodeError: a name that no code has.
+    """
+    exact = _answer(EXACT, OMEGA, registry.code(EXACT).levels[-1])[1]
+    return Bench(
+        _side_by_side(say, names, exact), _growth(say), {"python": sys.version.split()[0], "numpy": np.__version__}
+    )
+
+
+def write(path: Path, found: Bench) -> None:
+    """Keep what was measured, as JSON."""
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(found)) + b"\n")
+
+
+def read(path: Path) -> Bench:
+    """What ``write`` kept.
+
+    Raises:
+        msgspec.DecodeError: if the file is not such a one.
+    """
+    return msgspec.json.decode(path.read_bytes(), type=Bench)
+
+
+def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple[float, ...]) -> tuple[Timing, ...]:
+    versions = {name: _version(name) for name in names if name in registry.names()}
+    found = ["core", *(name for name, version in versions.items() if version)]
+    pools = {name: Pool(1) for name in found}
+    runs = [(name, ELEMENTS) for name in found]
+    try:
+        error: dict[str, float] = {}
+        for name in found:  # which loads its libraries too
+            say(f"accuracy: {name}")
+            error[name] = _error(pools[name].submit(_answer, name, OMEGA).result()[1], exact)
+        enough = {name: _enough(pools["core"], error[name], exact) for name in found[1:]}
+        runs += [("core", n) for n in sorted({n for n in enough.values() if n} - {ELEMENTS})]
+        single: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
+        swept: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
+        for turn in range(ROUNDS):
+            for name, elements in runs:
+                say(f"one speed, round {turn + 1} of {ROUNDS}: {name}")
+                single[name, elements].append(pools[name].submit(_answer, name, OMEGA, elements).result()[0])
+        for turn in range(SWEEPS):
+            for name, elements in runs:
+                say(f"{len(SWEEP)} speeds, round {turn + 1} of {SWEEPS}: {name}")
+                swept[name, elements].append(pools[name].submit(_swept, name, elements, SWEEP).result())
+    finally:
+        for pool in pools.values():
+            pool.stop()
+    one, all_ = ({run: statistics.median(seconds) for run, seconds in times.items()} for times in (single, swept))
+    measured = {
+        name: Timing(
+            name,
+            versions.get(name) or "",
+            one[name, ELEMENTS],
+            all_[name, ELEMENTS],
+            max(single[name, ELEMENTS]) / min(single[name, ELEMENTS]),
+            error[name],
+            Equal(n, one["core", n], all_["core", n]) if (n := enough.get(name)) else None,
+        )
+        for name in found
+    }
+    return tuple(measured.get(name) or Timing(name, "", note=_hint(name)) for name in ("core", *names))
+
+
+def _enough(pool: Pool, error: float, exact: tuple[float, ...]) -> int | None:
+    """The fewest elements, up to ``ELEMENTS``, with which core's error is no larger."""
+    for n in range(2, ELEMENTS + 1):
+        if _error(pool.submit(_answer, "core", OMEGA, n).result()[1], exact) <= error:
+            return n
+    return None
+
+
+def _error(frequencies: tuple[float, ...], exact: tuple[float, ...]) -> float:
+    return max(abs(a / b - 1.0) for a, b in zip(frequencies[: len(exact)], exact, strict=True))
+
+
+def _version(name: str) -> str | None:
+    return registry.code(name).version()
+
+
+def _hint(name: str) -> str:
+    return registry.code(name).hint if name in registry.names() else "not among the codes known here"
+
+
+def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, tuple[float, ...]]:
+    """Seconds, and the six lowest frequencies (rad/s)."""
+    blade = library.load(CASE).variants[0].blade
+    code = None if name == "core" else registry.code(name)
+    begun = time.perf_counter()
+    found = code.solve(blade, omega, elements, COUNT) if code else modes(blade, omega, elements, COUNT)
+    seconds = time.perf_counter() - begun
+    if len(found.frequencies) < 6:
+        raise CodeError(f"{name}: {len(found.frequencies)} modes found of {COUNT} asked for")
+    return seconds, tuple(found.frequencies[:6].tolist())
+
+
+def _swept(name: str, elements: int, speeds: Sequence[float]) -> float:
+    """Seconds for all speeds, the blade new."""
+    blade = library.load(CASE).variants[0].blade
+    code = None if name == "core" else registry.code(name)
+    begun = time.perf_counter()
+    if code is None:
+        for _ in sweep(blade, speeds, elements, COUNT):
+            pass
+    else:
+        for omega in speeds:
+            code.solve(blade, omega, elements, COUNT)
+    return time.perf_counter() - begun
+
+
+def _growth(say: Callable[[str], None]) -> tuple[Growth, ...]:
+    out = []
+    for elements in SIZES:
+        say(f"core, {elements} elements")
+        pool = Pool(1)  # a new process: its peak of memory is this size's
+        try:
+            out.append(pool.submit(_grown, elements).result())
+        finally:
+            pool.stop()
+    return tuple(out)
+
+
+def _grown(elements: int) -> Growth:
+    blade = library.load(CASE).variants[0].blade
+    modes(blade, OMEGA, 1, COUNT)
+    before = _peak()
+    seconds = []
+    for _ in range(3):
+        begun = time.perf_counter()
+        modes(blade, OMEGA, elements, COUNT)
+        seconds.append(time.perf_counter() - begun)
+    return Growth(elements, statistics.median(seconds), _peak() - before)
+
+
+def _peak() -> int:
+    """The most memory this process has had, bytes."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)

@@ -1,0 +1,1 @@
+"""The Campbell diagram of a blade: modes tracked along rotor speed, margins and encounters."""

@@ -1,0 +1,157 @@
+"""Where two modes meet along speed: they cross, or they veer apart and exchange their shapes.
+
+Tracks that swap places cross. Tracks that come close without swapping veer if their shapes turn into each other on the way
+past; near the closest point the squares of the frequencies behave as those of two coupled oscillators, the square of their
+difference as a parabola over Ω² (Leissa 1974; Perkins and Mote 1986, J. Sound Vib. 106).
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..judge.pairing import Array, mac
+from .tracking import Tracks
+
+Index = NDArray[np.intp]
+
+EXCHANGED = 0.1
+"""Less exchange of shape than this between two modes that come close is no veering: they pass without knowing each other."""
+
+PAST = 3.0
+"""How many times the smallest gap apart two modes have passed each other: they have then turned by 71° of the 90°."""
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Two tracks that cross or veer.
+
+    Attributes:
+        kind: ``crossing`` or ``veering``.
+        tracks: the two, the lower before first.
+        omega: rad/s, where they cross or are closest.
+        frequency: rad/s, their mean there.
+        gap: rad/s: of a veering the smallest distance; of a crossing what a gap, if there is one, is narrower than.
+        exchanged: share of the shapes that has changed places from ``window[0]`` to ``window[1]``, 0 to 1.
+        window: rad/s, between which speeds they pass each other.
+        whole: whether they have passed each other within the speeds solved.
+        before, after: (2, 4) shares of kinetic energy of the two (``core.participation``) at the window's ends.
+    """
+
+    kind: Literal["crossing", "veering"]
+    tracks: tuple[int, int]
+    omega: float
+    frequency: float
+    gap: float
+    exchanged: float
+    window: tuple[float, float]
+    whole: bool
+    before: Array
+    after: Array
+
+
+def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter, ...]:
+    """All of them, in the order of speed; ``shares`` (n, t, 4) are the tracks' at each speed."""
+    found = []
+    for i in range(tracks.count):
+        for j in range(i + 1, tracks.count):
+            both = np.flatnonzero((tracks.place[:, i] >= 0) & (tracks.place[:, j] >= 0))
+            for run in np.split(both, np.flatnonzero(np.diff(both) > 1) + 1):
+                found += _of_pair(tracks, shares, weight, i, j, run)
+    return tuple(sorted(found, key=lambda e: (e.omega, e.frequency)))
+
+
+def _of_pair(tracks: Tracks, shares: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
+    if len(k) < 2:
+        return []
+    x = tracks.omega[k] ** 2
+    squares = tracks.frequencies[k][:, [i, j]] ** 2
+    d = squares[:, 1] - squares[:, 0]
+    above = tracks.place[k, j] > tracks.place[k, i]
+    swaps = np.flatnonzero(above[1:] != above[:-1])
+    found = []
+    for a in swaps:
+        at = x[a] - d[a] * (x[a + 1] - x[a]) / (d[a + 1] - d[a]) if d[a + 1] != d[a] else x[a]
+        where = float(np.sqrt(np.clip(at, x[a], x[a + 1])))
+        square = float(np.interp(at, x, squares.mean(1)))
+        gap = float(tracks.bound[k[a + 1], i, j])
+        pair = (i, j) if above[a] else (j, i)
+        found.append(_encounter("crossing", tracks, shares, weight, pair, where, square, gap, (k[a], k[a + 1]), True))
+    size = np.abs(d)
+    ends = [0, *(swaps + 1).tolist(), len(k)]  # between crossings
+    for first, last in pairwise(ends):
+        found += _veerings(
+            tracks, shares, weight, (i, j), k[first:last], x[first:last], size[first:last], squares[first:last]
+        )
+    return found
+
+
+def _veerings(
+    tracks: Tracks, shares: Array, weight: Array, pair: tuple[int, int], k: Index, x: Array, size: Array, squares: Array
+) -> list[Encounter]:
+    """Interior minima of the distance at which shapes are exchanged; ``size`` is of the squares of the frequencies."""
+    found = []
+    inside = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:])) + 1
+    for m in inside.tolist():
+        at, smallest = _closest(x[m - 1 : m + 2], size[m - 1 : m + 2])
+        a, left = _passed(size, m, -1, smallest)
+        b, right = _passed(size, m, 1, smallest)
+        square = float(np.interp(at, x, squares.mean(1)))
+        gap = float(smallest / (2.0 * np.sqrt(square)))
+        order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
+        window = (int(k[a]), int(k[b]))
+        e = _encounter(
+            "veering", tracks, shares, weight, order, float(np.sqrt(at)), square, gap, window, left and right
+        )
+        if e.exchanged >= EXCHANGED:
+            found.append(e)
+    return found
+
+
+def _closest(x: Array, size: Array) -> tuple[float, float]:
+    """Place and value of the least ``size`` by the parabola through its squares at three points."""
+    middle, scale = x[1], x[2] - x[0]
+    c2, c1, c0 = np.polyfit((x - middle) / scale, size**2, 2)
+    at = float(np.clip(middle - 0.5 * c1 / c2 * scale, x[0], x[2])) if c2 > 0 else float(middle)
+    least = c0 - 0.25 * c1**2 / c2 if c2 > 0 else size[1] ** 2
+    return at, float(np.sqrt(least)) if least > 0 else float(size[1])
+
+
+def _passed(size: Array, m: int, step: int, smallest: float) -> tuple[int, bool]:
+    """The first index from ``m`` on at which the two are past each other; else the farthest before they close in again."""
+    k = m
+    while 0 <= k + step < len(size) and size[k] < PAST * smallest and size[k + step] >= size[k]:
+        k += step
+    return k, bool(size[k] >= PAST * smallest)
+
+
+def _encounter(
+    kind: Literal["crossing", "veering"],
+    tracks: Tracks,
+    shares: Array,
+    weight: Array,
+    pair: tuple[int, int],
+    omega: float,
+    square: float,
+    gap: float,
+    window: tuple[int, int],
+    whole: bool,
+) -> Encounter:
+    a, b = window
+    two = list(pair)
+    table = mac(tracks.shapes[a, two], tracks.shapes[b, two], weight)
+    swapped = table[0, 1] + table[1, 0]
+    return Encounter(
+        kind=kind,
+        tracks=pair,
+        omega=omega,
+        frequency=float(np.sqrt(square)),
+        gap=gap,
+        exchanged=float(swapped / max(table.sum(), 1e-300)),
+        window=(float(tracks.omega[a]), float(tracks.omega[b])),
+        whole=whole,
+        before=shares[a, two],
+        after=shares[b, two],
+    )

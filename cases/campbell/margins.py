@@ -1,0 +1,159 @@
+"""How far modes keep from n per revolution, where they meet it, and how they follow Southwell's law.
+
+A margin is ``ω / (n Ω) − 1``: the natural frequency's distance from the exciting one, in parts of the exciting one. The
+guideline that Park et al. (2010) cite only asks for the two to be apart; how far apart is for the user to say. Park et al.
+reckon with 10 %.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from ..judge.pairing import Array
+from .tracking import Tracks
+
+Range = tuple[float, float]
+"""Lowest and highest speed at which the rotor runs, rad/s."""
+
+
+@dataclass(frozen=True)
+class Southwell:
+    """``ω² = ω₀² + φ Ω²`` (Southwell and Gough 1921) by least squares over the speeds asked for.
+
+    Attributes:
+        rest: ω₀, rad/s.
+        coefficient: φ.
+        residual: largest deviation of the fitted frequency, relative.
+    """
+
+    rest: float
+    coefficient: float
+    residual: float
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """A track meets n per revolution.
+
+    Attributes:
+        track: its place.
+        per_rev: n.
+        omega: rad/s, of the rotor.
+        frequency: rad/s.
+        apart: the speed's distance from the operating range, in parts of the range's nearer end; negative below, 0 inside;
+            None without an operating range.
+    """
+
+    track: int
+    per_rev: int
+    omega: float
+    frequency: float
+    apart: float | None
+
+
+@dataclass(frozen=True)
+class Margin:
+    """How far a track keeps from n per revolution over the operating range; each relative to n Ω, positive above it.
+
+    Attributes:
+        track: its place.
+        per_rev: n.
+        low, high: at the range's ends.
+        least: the smallest within; 0 if they meet.
+        omega: where that is, rad/s.
+        kept: whether it is as large as wanted.
+    """
+
+    track: int
+    per_rev: int
+    low: float
+    high: float
+    least: float
+    omega: float
+    kept: bool
+
+
+@dataclass(frozen=True)
+class Line:
+    """One track as a function of speed: monotone cubics through its squares over Ω²."""
+
+    squares: Array
+    values: Array
+
+    @property
+    def first(self) -> float:
+        """Its first speed, rad/s."""
+        return float(np.sqrt(self.squares[0]))
+
+    @property
+    def last(self) -> float:
+        """Its last speed, rad/s."""
+        return float(np.sqrt(self.squares[-1]))
+
+    def at(self, omega: float) -> float:
+        """Frequency, rad/s."""
+        return float(np.sqrt(PchipInterpolator(self.squares, self.values)(omega**2)))
+
+    def meets(self, n: int) -> Array:
+        """Rotor speeds at which the frequency is n per revolution."""
+        found = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
+        return np.sqrt(np.unique(found[np.isfinite(found) & (found > 0)]))
+
+
+def line_of(tracks: Tracks, t: int) -> Line | None:
+    """A track as a line; None if it is there at fewer than two speeds."""
+    k = np.flatnonzero(tracks.place[:, t] >= 0)
+    return Line(tracks.omega[k] ** 2, tracks.frequencies[k, t] ** 2) if len(k) > 1 else None
+
+
+def southwell(tracks: Tracks, t: int) -> Southwell | None:
+    """The fit of one track; None if it is there at fewer than three of the speeds asked for."""
+    k = np.flatnonzero(tracks.asked & (tracks.place[:, t] >= 0))
+    if len(k) < 3:
+        return None
+    omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
+    (rest, slope), *_ = np.linalg.lstsq(np.stack([np.ones(len(k)), omega**2], axis=1), frequency**2, rcond=None)
+    fitted = np.sqrt(np.maximum(rest + slope * omega**2, 0.0))
+    residual = float(np.abs(fitted / frequency - 1.0).max())
+    return Southwell(float(np.sqrt(max(rest, 0.0))), float(slope), residual)
+
+
+def resonances(lines: Sequence[Line | None], per_rev: Sequence[int], operating: Range | None) -> tuple[Resonance, ...]:
+    """Where each line meets each n per revolution, by speed."""
+    found = []
+    for t, line in enumerate(lines):
+        for n in per_rev if line else ():
+            for omega in line.meets(n) if line else ():
+                found.append(Resonance(t, n, float(omega), n * float(omega), _apart(float(omega), operating)))
+    return tuple(sorted(found, key=lambda r: (r.omega, r.per_rev)))
+
+
+def _apart(omega: float, operating: Range | None) -> float | None:
+    if operating is None:
+        return None
+    low, high = operating
+    return omega / low - 1.0 if omega < low else max(omega / high - 1.0, 0.0) if high else float("inf")
+
+
+def margins(
+    lines: Sequence[Line | None], per_rev: Sequence[int], operating: Range | None, wanted: float
+) -> tuple[Margin, ...]:
+    """Of each line that lasts over the operating range, with each n per revolution; ``wanted`` is the least to be kept."""
+    if operating is None:
+        return ()
+    low, high = operating
+    out = []
+    for t, line in enumerate(lines):
+        if line is None or line.first > low * (1 + 1e-9) or line.last < high * (1 - 1e-9):
+            continue  # a track that does not last over the range has no margin over it
+        for n in per_rev:
+            at = np.unique([max(low, 1e-9 * high), *[o for o in np.sqrt(line.squares) if low < o < high], high])
+            values = np.array([line.at(min(max(o, line.first), line.last)) / (n * o) - 1.0 for o in at])
+            inside = [o for o in line.meets(n) if low <= o <= high]
+            k = int(np.abs(values).argmin())
+            least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
+            kept = bool(abs(least) >= wanted)
+            out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, kept))
+    return tuple(out)

@@ -1,0 +1,43 @@
+"""What loads a blade steadily besides its rotation, before it is linearised: gravity at one azimuth, and any given load."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...core.blade import Blade
+from ..input.blades import read_table
+from ..input.errors import CaseError
+from ..judge.pairing import Array
+
+STANDARD_GRAVITY = 9.80665
+"""m/s²."""
+
+
+def gravity(azimuth: float, tilt: float = 0.0) -> Array:
+    """Gravity (3,) in the hub's axes, m/s², for ``core.solve.modes``.
+
+    A real blade meets it once a revolution; this is the blade as it hangs while it passes ``azimuth``.
+
+    Args:
+        azimuth: rad, from the blade pointing up, in the direction of rotation.
+        tilt: rad, of the rotor's axis: how far +z points above the horizontal.
+    """
+    up = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), np.sin(tilt)])
+    return -STANDARD_GRAVITY * up
+
+
+LOAD = ("fraction [-]", "fx [N/m]", "fy [N/m]", "fz [N/m]")
+"""Columns of a load's table: where along the blade, and force per length in the hub's axes, turning with them."""
+
+
+def load(path: Path, blade: Blade) -> Array:
+    """A steady load (n, 3) at the blade's stations, N/m, linear between the rows of a CSV file with the columns ``LOAD``.
+
+    Raises:
+        CaseError: a file that is missing or malformed, or that does not cover the blade in order.
+    """
+    table = read_table(path, LOAD)
+    at = table[LOAD[0]]
+    if at[0] != 0.0 or at[-1] != 1.0 or (np.diff(at) <= 0).any():
+        raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows ascend from the root, 0, to the tip, 1")
+    return np.stack([np.interp(blade.stations / blade.length, at, table[name]) for name in LOAD[1:]], axis=-1)

@@ -1,0 +1,1 @@
+"""Mechanisms whose eigenvalues are known in closed form, compared with core."""

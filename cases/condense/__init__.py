@@ -1,0 +1,1 @@
+"""Condensation tasks: the files of ``southwell condense`` and the worked example."""

@@ -1,0 +1,115 @@
+"""A compressed model: its segments and where its root is; kept as JSON, and its modes with names."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.condense.compressed import chain_from_segments, chain_modes
+from ...core.condense.segments import Segment
+from ...core.modes import STATIONS, Modes
+from ...core.participation import families, numbered
+from ..input.errors import NO_STATE, CaseError, unsteady
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A blade as rigid bodies and complex stiffness elements.
+
+    Attributes:
+        name: of the blade.
+        root: (4, 4) pose of the first frame, clamped to the hub, in the hub's axes.
+        segments: from the root to the tip.
+    """
+
+    name: str
+    root: Array
+    segments: list[Segment]
+
+
+def modes(blade: Condensed, omega: float, count: int) -> Modes:
+    """The lowest modes at ``omega`` rad/s.
+
+    Raises:
+        CaseError: no stable steady state at this speed.
+    """
+    try:
+        return chain_modes(chain_from_segments(blade.segments, blade.root), omega, count)
+    except NO_STATE as error:
+        raise unsteady(blade.name, omega, error) from error
+
+
+def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
+    """Each mode's family and its ordinal in it, by the shares of kinetic energy; see ``core.participation``.
+
+    Bodies move as the samples beside them do, sections' frames taken as parallel to the hub's.
+    """
+    ends = np.append(0.0, np.cumsum([np.linalg.norm(s.rest[:3, 3]) for s in segments]))
+    at = 0.5 * (ends[:-1] + ends[1:]) / ends[-1]
+    k = np.clip(np.searchsorted(STATIONS, at) - 1, 0, len(STATIONS) - 2)
+    t = ((at - STATIONS[k]) / (STATIONS[k + 1] - STATIONS[k]))[:, None]
+    sample = found.shapes[:, k] * (1 - t) + found.shapes[:, k + 1] * t
+    mass, centre, tensor = (np.array(v) for v in zip(*(body(s) for s in segments), strict=True))
+    lever = np.cross([1.0, 0.0, 0.0], centre)
+    energy = mass[:, None] * np.abs(sample[..., :3] + sample[..., 3:] * lever) ** 2
+    turning = tensor[:, :1, 0] * np.abs(sample[..., 3:]) ** 2
+    shares = np.concatenate([energy[..., [2, 1]], turning, energy[..., :1]], axis=2).sum(axis=1)
+    return numbered(families(shares / shares.sum(axis=1, keepdims=True)))
+
+
+def body(s: Segment) -> tuple[float, Array, Array]:
+    """A segment's mass, its centre (3,) in frame a, and its moments of inertia (3, 3) about the centre."""
+    mass = float(s.inertia[0, 0])
+    first = s.inertia[3:, :3] / mass  # skew(centre)
+    centre = np.array([first[2, 1], first[0, 2], first[1, 0]])
+    return mass, centre, s.inertia[3:, 3:] - mass * first @ first.T
+
+
+def write(path: Path, blade: Condensed) -> None:
+    """Keep a compressed model as JSON, matrices row by row, SI."""
+    pieces = [{key: value.tolist() for key, value in vars(s).items()} for s in blade.segments]
+    told = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(told)) + b"\n")
+
+
+class _Piece(msgspec.Struct, forbid_unknown_fields=True):
+    rest: list[list[float]]
+    stiffness: list[list[float]]
+    inertia: list[list[float]]
+    ride: list[list[float]]
+
+
+class _Kept(msgspec.Struct, forbid_unknown_fields=True):
+    name: str
+    root: list[list[float]]
+    segments: list[_Piece]
+
+
+def read(path: Path) -> Condensed:
+    """What ``write`` kept.
+
+    Raises:
+        CaseError: no such file, not such a one, or a matrix of the wrong size.
+    """
+    try:
+        kept = msgspec.json.decode(path.read_bytes(), type=_Kept)
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file: correct the path") from None
+    except msgspec.DecodeError as error:
+        raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
+    sizes = {"rest": 4, "stiffness": 6, "inertia": 6, "ride": 6}
+    pieces = []
+    for k, piece in enumerate(kept.segments):
+        found = {field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()}
+        pieces.append(Segment(**found))
+    return Condensed(kept.name, _square(path, "root", kept.root, 4), pieces)
+
+
+def _square(path: Path, field: str, rows: list[list[float]], n: int) -> Array:
+    if {len(rows), *(len(row) for row in rows)} != {n}:
+        raise CaseError(f"{path}: {field}: not {n} × {n}: was the file changed? condense again")
+    return np.array(rows)

@@ -1,0 +1,229 @@
+"""A blade's exported matrices, as a TOML file names them, condensed to rigid bodies and complex stiffness elements."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as ss
+from numpy.typing import NDArray
+
+from ...core.condense import condensation, ties
+from ...core.condense.segments import Segment, segment_from_matrix
+from ...core.condense.ties import CondensationError, FiniteElements, Tie
+from ...core.multibody.mechanism import inertia
+from ...core.space import spatial as sp
+from ..input.errors import CaseError
+from ..input.toml import convert, document, finite
+from .condensed import Condensed
+from .models import METRES, Whole, read
+from .schema import At, Axis, Body, CondenseFile, Piece
+
+Array = NDArray[np.float64]
+
+NEAR = ties.ON_SECTION
+
+
+@dataclass(frozen=True)
+class Condensation:
+    """What came of a file.
+
+    Attributes:
+        told: what it says.
+        blade: the compressed model.
+        freedoms: of the finite element models.
+        resisted: the largest part of the forces in a model that one of its rigid motions leaves unbalanced.
+    """
+
+    told: CondenseFile
+    blade: Condensed
+    freedoms: int
+    resisted: float
+
+
+def condense(path: Path) -> Condensation:
+    """What a file says, and the compressed model that comes of it.
+
+    Raises:
+        CaseError: naming the file and field at fault.
+    """
+    data = document(path)
+    finite(data, str(path))
+    told = convert(data, CondenseFile, str(path))
+    if told.segments and len(told.segments) != len(told.sections) - 1:
+        raise CaseError(
+            f"{path}: segments: {len(told.segments)} for {len(told.sections)} sections: one between each two: "
+            f"give {len(told.sections) - 1}"
+        )
+    if told.segments and (told.stiffness is not None or told.mass is not None):
+        raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one a segment")
+    frames = _frames(path, told)
+    try:
+        models, pieces = _apart(path, told, frames) if told.segments else _in_place(path, told, frames)
+    except CondensationError as error:
+        raise CaseError(f"{path}: {error}") from error
+    blade = Condensed(told.name, _root(path, told, frames[0]), pieces)
+    return Condensation(told, blade, sum(len(m.model.directions) for m in models), max(m.resisted for m in models))
+
+
+def _in_place(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
+    whole = read(path, "", told, told, told.units)
+    if whole.mass is None:
+        raise CaseError(f"{path}: mass: missing: name the file of a mass matrix: without it nothing vibrates")
+    tied = [_tie(told, whole, frames, k) for k in range(len(frames))]
+    return [whole], condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
+
+
+def _apart(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
+    models, out = [], []
+    for k, piece in enumerate(told.segments):
+        field = f"segments[{k}]."
+        whole = read(path, field, piece, told, told.units)
+        a, b = (_tie(told, whole, frames, i) for i in (k, k + 1))
+        models.append(whole)
+        out.append(_one(path, field, told, piece, whole, a, b))
+    return models, out
+
+
+def _one(path: Path, field: str, told: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:
+    """A segment from its own model; of one without nodes between its ends, or of given mass, as ``segment_from_matrix``."""
+    name = f"{a.name} to {b.name}"
+    tied = np.union1d(a.freedoms, b.freedoms)
+    if piece.body is not None:
+        if whole.mass is not None:
+            raise CaseError(f"{path}: {field}body: the mass is given twice, as a matrix too: give one of them")
+        J = _body(path, field, piece.body, METRES[told.units], a.frame)
+    elif whole.mass is None:
+        raise CaseError(f"{path}: {field}mass: missing: name the file of a mass matrix, or give body")
+    elif len(tied) < len(whole.model.directions):
+        return condensation.segment(whole.model, a, b)
+    else:
+        R = ties.motion(whole.model.points, whole.model.directions, a.frame)
+        J = R.T @ (whole.mass @ R)
+    return segment_from_matrix(condensation.condense(whole.model, (a, b)).stiffness, ties.seen(a, b), J, name)
+
+
+def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Array:
+    """Inertia (6, 6) of a body given in the model's axes, about ``frame`` and in its axes."""
+    kilograms = 1.0 / metres
+    sizes = [np.size(row) for row in body.moments]
+    if sizes not in ([1, 1, 1], [3, 3, 3]):
+        raise CaseError(f"{path}: {field}body.moments: {body.moments}: neither three numbers nor three rows of three")
+    moments = np.array(body.moments, float) * kilograms * metres**2
+    principal = np.linalg.eigvalsh(moments if moments.ndim == 2 else np.diag(moments))
+    if principal[0] <= 0 or 2 * principal[2] > (1 + 1e-6) * principal.sum():
+        raise CaseError(
+            f"{path}: {field}body.moments: {body.moments}: no body has these, each being positive and at most the sum of the "
+            "other two: about the centre, in the file's units?"
+        )
+    free = inertia(kilograms * body.mass, moments, metres * np.array(body.centre))
+    lever = sp.adjoint(frame)
+    return lever.T @ free @ lever
+
+
+def _frames(path: Path, told: CondenseFile) -> list[Array]:
+    """(4, 4) poses of the sections in the model's axes, m: x along the span or the section's axis, z by the rotor's."""
+    span, rotor = _axis(path, "span", told.span), _axis(path, "rotor", told.rotor)
+    metres = METRES[told.units]
+    out = []
+    for k, at in enumerate(told.sections):
+        point, along = (at.point, at.axis) if isinstance(at, At) else (at * span, None)
+        x = span if along is None else _axis(path, f"sections[{k}].axis", along)
+        z = rotor - x * (x @ rotor)
+        if np.linalg.norm(z) < NEAR:
+            field = "rotor" if along is None else f"sections[{k}].axis"
+            raise CaseError(
+                f"{path}: {field}: along {'the span' if along is None else 'the rotor'}: they differ; correct it"
+            )
+        z /= np.linalg.norm(z)
+        out.append(sp.pose(np.column_stack([x, np.cross(z, x), z]), metres * np.asarray(point, float)))
+    for k, (a, b) in enumerate(pairwise(out)):
+        if (b[:3, 3] - a[:3, 3]) @ a[:3, 0] <= 0:
+            raise CaseError(
+                f"{path}: sections[{k + 1}]: {_name(told, k + 1)} is not beyond {_name(told, k)}: "
+                "sections go from the root to the tip along the span"
+            )
+    return out
+
+
+def _axis(path: Path, field: str, told: Axis) -> Array:
+    if isinstance(told, str):
+        return (-1.0 if told[0] == "-" else 1.0) * np.eye(3)["xyz".index(told[-1])]
+    vector = np.array(told)
+    length = np.linalg.norm(vector)
+    if not length:
+        raise CaseError(f"{path}: {field}: {list(told)}: no direction: give a vector, or x, y or z")
+    return vector / length
+
+
+def _root(path: Path, told: CondenseFile, first: Array) -> Array:
+    """The first section's pose in the hub's axes, its span and the rotor's axis being x and z."""
+    x = _axis(path, "span", told.span)
+    z = _axis(path, "rotor", told.rotor)
+    if abs(x @ z) > NEAR:
+        raise CaseError(
+            f"{path}: rotor: not square to the span: give the rotor's axis; cone is in the sections' places"
+        )
+    hub = sp.inverse(sp.pose(np.column_stack([x, np.cross(z, x), z]), np.zeros(3)))
+    out = hub @ first
+    if told.hub_radius is not None:
+        out[0, 3] = told.hub_radius
+    return out
+
+
+def _name(told: CondenseFile, k: int) -> str:
+    at, unit = told.sections[k], told.units.split()[0]
+    return f"{list(at.point)} {unit}" if isinstance(at, At) else f"{at:g} {unit}"
+
+
+def _tie(told: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> Tie:
+    at = told.sections[k]
+    kind = (at.tie if isinstance(at, At) else None) or (told.root if k == 0 else told.tie)
+    name = _name(told, k)
+    if kind == "rigid" or told.weights == "mass":
+        return ties.section(whole.model, frames[k], name, kind)
+    on = ties.section(whole.model, frames[k], name, "rigid").freedoms
+    if told.weights == "even":
+        return ties.average(whole.model, on, frames[k], name, np.ones(len(on)))
+    if whole.mass is None:
+        raise CondensationError(
+            f"weights: 'mass matrix': {whole.model.name} has none with it: give one, or even weights"
+        )
+    return ties.average(whole.model, on, frames[k], name, whole.mass[on][:, on].toarray())
+
+
+def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Sequence[Array]) -> Array:
+    """(m, n) lumped mass of each segment at the model's freedoms.
+
+    A node on a section has mass from both sides: shared as its entries of the mass matrix with the nodes off the section
+    are, which is exact where elements are prisms; alike where it has none (a lumped mass matrix).
+
+    Raises:
+        CaseError: nodes beyond the first or last section.
+    """
+    size = NEAR * float(np.ptp(model.points, axis=0).max())
+    ahead = np.stack([(model.points - f[:3, 3]) @ f[:3, 0] for f in frames])  # (sections, freedoms)
+    passed = (ahead > size).sum(axis=0)  # sections behind each freedom
+    on = np.abs(ahead) <= size
+    for outside, which in (((passed == 0) & ~on[0], 0), (passed == len(frames), -1)):
+        if outside.any():
+            far = np.abs(ahead[which, outside]).max()
+            raise CaseError(
+                f"{path}: sections[{which % len(frames)}]: {outside.sum()} freedoms of {model.name} lie up to {far:g} m "
+                "beyond it: put the first and last sections at the model's ends"
+            )
+    out = np.zeros((len(frames) - 1, len(model.directions)))
+    between = ~on.any(axis=0)
+    out[passed[between] - 1, np.flatnonzero(between)] = model.mass[between]
+    sizes = abs(mass)
+    for k in range(len(frames)):
+        here = np.flatnonzero(on[k])
+        if k in (0, len(frames) - 1):
+            out[0 if k == 0 else -1, here] = model.mass[here]
+            continue
+        before, after = (sizes[here] @ side.astype(float) for side in (ahead[k] < -size, ahead[k] > size))
+        both = before + after
+        share = np.where(both > 0, before / np.where(both > 0, both, 1.0), 0.5)
+        out[k - 1, here], out[k, here] = share * model.mass[here], (1 - share) * model.mass[here]
+    return out

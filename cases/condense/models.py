@@ -1,0 +1,166 @@
+"""Exported matrices and tables of nodes, as a file for ``southwell condense`` names them, made into a model in SI."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as ss
+from numpy.typing import NDArray
+
+from ...core.condense import exported, matrix_files, ties
+from ...core.condense.exported import Exported, MatrixFileError
+from ...core.condense.ties import CondensationError, FiniteElements
+from ..input.blades import read_table
+from ..input.errors import CaseError
+from .schema import Matrix, Model
+
+Array = NDArray[np.float64]
+
+NODES = ("id", "x", "y", "z")
+FREEDOMS = ("node", "freedom")
+
+METRES = {"m kg s": 1.0, "mm t s": 1e-3}
+"""Length of the unit. In mm t s a force is still one of N: stiffness and mass scale alike, N/mm and t by 1000."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A model as exported.
+
+    Attributes:
+        model: to condense.
+        mass: (n, n) in the order of its freedoms; None where there is none.
+        resisted: the largest part of the forces in it that a rigid motion of the whole leaves unbalanced.
+    """
+
+    model: FiniteElements
+    mass: ss.csr_array | None
+    resisted: float
+
+
+def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whole:
+    """The model that ``told`` names, what it leaves out taken from ``common``.
+
+    Args:
+        path: of the file that says it; other files lie beside it.
+        field: where in it, for messages.
+        told: the model.
+        common: what is said for all segments.
+        units: of nodes and matrices.
+
+    Raises:
+        CaseError: naming the file and field at fault.
+    """
+    if told.stiffness is None:
+        raise CaseError(f"{path}: {field}stiffness: missing: name the file of a stiffness matrix")
+    nodes = told.nodes or common.nodes
+    if nodes is None:
+        raise CaseError(f"{path}: {field}nodes: missing: name a CSV of {', '.join(NODES)}")
+    place = _places(path.parent / nodes)
+    listed = told.freedoms if told.freedoms is not None else common.freedoms
+    mass = None
+    try:
+        stiffness = _named(_load(path.parent, told.stiffness, "stiffness"), listed, place, path, field)
+        if told.mass is not None:
+            mass = _named(_load(path.parent, told.mass, "mass"), listed, place, path, field)
+        model = exported.model(stiffness, place, mass)
+    except (MatrixFileError, CondensationError) as error:
+        raise CaseError(f"{path}: {field}{error}") from error
+    model = _si(model, METRES[units])
+    resisted = _unsupported(path, field, model)
+    if mass is None:
+        return Whole(model, None, resisted)
+    unit = _unit(model.directions, METRES[units])
+    return Whole(model, ss.csr_array(unit @ _in_order(mass, stiffness) @ unit), resisted)
+
+
+def _load(folder: Path, told: str | Matrix, what: str) -> Exported:
+    name, chosen = (told.file, told.matrix) if isinstance(told, Matrix) else (told, what)
+    path = folder / name
+    try:
+        return matrix_files.stored(path) if path.with_suffix(".dof").is_file() else matrix_files.read(path, chosen)
+    except FileNotFoundError:
+        raise CaseError(
+            f"{path}: no such file: it is looked for beside the file that names it; correct the name"
+        ) from None
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+
+
+def _places(path: Path) -> dict[int, Array]:
+    columns = read_table(path, NODES)
+    ids = columns["id"].astype(int)
+    values, times = np.unique(ids, return_counts=True)
+    if (times > 1).any():
+        raise CaseError(f"{path}: id: {values[times.argmax()]} is given {times.max()} times: a node has one place")
+    return dict(zip(ids.tolist(), np.column_stack([columns[c] for c in NODES[1:]]), strict=True))
+
+
+def _named(
+    matrix: Exported, listed: str | Sequence[int] | None, place: dict[int, Array], path: Path, field: str
+) -> Exported:
+    if len(matrix.nodes):
+        if listed is not None:
+            raise CaseError(f"{path}: {field}freedoms: {matrix.name} names its own: take freedoms out")
+        return matrix
+    if listed is None:
+        raise CaseError(
+            f"{path}: {field}freedoms: missing: {matrix.name} does not name its freedoms: give those of each node as in "
+            f"[1, 2, 3], or a CSV of {', '.join(FREEDOMS)}"
+        )
+    rows = int(matrix.matrix.diagonal().size)
+    if isinstance(listed, str):
+        table = read_table(path.parent / listed, FREEDOMS)
+        pairs, told = np.column_stack([table[c] for c in FREEDOMS]).astype(int), f"{listed} lists {len(table['node'])}"
+    else:
+        pairs = np.array([(n, f) for n in place for f in listed])
+        told = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"
+    if len(pairs) != rows:
+        raise CaseError(
+            f"{path}: {field}freedoms: {told}, {matrix.name} has {rows} rows: of another model, or constrained?"
+        )
+    return exported.labelled(matrix.name, matrix.matrix, pairs)
+
+
+def _in_order(mass: Exported, stiffness: Exported) -> ss.csr_array:
+    """The mass matrix in the order of the stiffness's freedoms, which are the same."""
+    keys = [list(zip(e.nodes.tolist(), e.directions.tolist(), strict=True)) for e in (mass, stiffness)]
+    where = {key: k for k, key in enumerate(keys[0])}
+    pick = np.array([where[key] for key in keys[1]])
+    turned = ss.csr_array((np.ones(len(pick)), (np.arange(len(pick)), pick)))
+    return ss.csr_array(turned @ (mass.matrix @ turned.T))
+
+
+def _unit(directions: NDArray[np.intp], metres: float) -> ss.csr_array:
+    """Square roots of what stiffness and mass scale by: 1/metres between displacements, metres between rotations."""
+    return ss.csr_array(ss.diags_array(np.where(directions < 3, metres**-0.5, metres**0.5)))
+
+
+def _si(model: FiniteElements, metres: float) -> FiniteElements:
+    unit = _unit(model.directions, metres)
+    stiffness = ss.csr_array(unit @ model.stiffness @ unit)
+    return FiniteElements(
+        model.name, metres * model.points, model.directions, stiffness, unit.diagonal() ** 2 * model.mass
+    )
+
+
+def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
+    """How far a rigid motion of the whole is resisted, which it must not be.
+
+    Raises:
+        CaseError: naming the motion.
+    """
+    R = ties.motion(model.points - model.points.mean(axis=0), model.directions, np.eye(4))
+    most = (abs(model.stiffness) @ np.abs(R)).max(
+        axis=0
+    )  # none at all where nothing resists the motion, nor any part of it
+    left = np.abs(model.stiffness @ R).max(axis=0) / np.where(most > 0, most, 1.0)
+    if left.max() > ties.ASYMMETRY:
+        k = int(left.argmax())
+        motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"
+        raise CaseError(
+            f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({left[k]:.1e} of "
+            "the forces in it): supports left in it, or nodes not where the matrix has them (order, units)? export it free"
+        )
+    return float(left.max())

@@ -1,0 +1,206 @@
+"""What conformance is judged by: simple blades with closed forms or printed numbers, and the properties a blade may have."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import root_scalar
+
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, uniform_blade
+
+Array = NDArray[np.float64]
+
+LENGTH, MASS, EI = 2.0, 3.0, 48.0
+"""With these √(EI / m L⁴) is 1 rad/s, so that frequencies in rad/s are the dimensionless ones of the literature."""
+
+SHEAR, SHORT = 100.0, 20.0
+"""Of the short beam: shear stiffness in EI / L², slenderness; as a solid of ordinary material has them. Shear does 4 % to its
+first frequency. Were it ten times softer, the clamp would keep a solid's sections from warping over most of its length."""
+
+TURN = 0.5
+"""rad, of the principal axes within the coupled section."""
+
+
+EA = 160_000 * EI / LENGTH**2
+"""Slenderness 400: stretch, Coriolis and rotary inertia then do less than 0.05 % to what closed forms are asked for, and solid
+elements, whose equations grow ill-conditioned as its fourth power, still have digits to spare."""
+
+
+def _beam(name: str, EI_y: float, EI_z: float) -> Blade:
+    """Rotary inertia as of a solid: m EI / EA."""
+    I_y, I_z = MASS * EI_y / EA, MASS * EI_z / EA
+    return uniform_blade(name, LENGTH, 0.0, EA=EA, GJ=20.0, EI_y=EI_y, EI_z=EI_z, mass=MASS, I_y=I_y, I_z=I_z)
+
+
+BEAM = _beam("beam", EI, EI)
+PLANK = _beam("plank", EI, 4 * EI)
+SWAPPED = _beam("swapped plank", 4 * EI, EI)
+HINGED = replace(BEAM, name="beam on a flap hinge", root=np.array([np.inf] * BEND_Y + [0.0, np.inf]))
+WITH_TIP_MASS = replace(
+    BEAM, name="beam with its mass at the tip", tip_mass=MASS * LENGTH * np.diag([1, 1, 1, 0, 0, 0])
+)
+STUBBY = uniform_blade(
+    "stubby beam", LENGTH, 0.0, EA=3e4, GJ=200.0, EI_y=EI, EI_z=EI, mass=MASS, I_y=MASS * EI / 3e4, I_z=MASS * EI / 3e4
+)
+"""Slenderness 50, inertia of the sections to match: each effect of ``core.model`` shows at ``FAST``, by 0.7 % at least."""
+
+FAST = 10.0
+"""rad/s."""
+
+
+def coupled_plank() -> Blade:
+    """The plank's principal axes of bending turned within the section, so that its planes couple; the same frequencies."""
+    c, s = np.cos(TURN), np.sin(TURN)
+    turn, stiffness = np.array([[c, -s], [s, c]]), PLANK.stiffness.copy()
+    both = slice(BEND_Y, BEND_Z + 1)
+    stiffness[:, both, both] = turn @ np.diag([EI, 4 * EI]) @ turn.T
+    return replace(PLANK, name="coupled plank", stiffness=stiffness)
+
+
+def short_beam(shear: float = np.inf) -> Blade:
+    """A short beam, soft in shear if wanted (``shear`` in EI / L²)."""
+    EA, GA, I = (SHORT / LENGTH) ** 2 * EI, shear * EI / LENGTH**2, MASS * (LENGTH / SHORT) ** 2
+    stiff = {"EA": EA, "GJ": 200.0, "EI_y": EI, "EI_z": EI, "GA_y": GA, "GA_z": GA}
+    return uniform_blade("short beam", LENGTH, 0.0, mass=MASS, I_y=I, I_z=I, **stiff)
+
+
+CANTILEVER = np.array(
+    [
+        root_scalar(lambda x: np.cos(x) + 1 / np.cosh(x), bracket=(k * np.pi - 2.6, k * np.pi - 0.6)).root ** 2
+        for k in (1, 2, 3)
+    ]
+)
+"""β² of ``cos β cosh β = −1`` (Rayleigh, *The Theory of Sound*, 1877, §174): frequencies of the cantilever at rest, rad/s."""
+
+WRIGHT_SPEED, WRIGHT = 6.0, 7.3604
+"""First flapwise frequency of the turning beam without a hub (Wright et al., J. Appl. Mech. 49, 1982, 197–202, Table 3a).
+Chordwise it is √(ω² − Ω²): the same tension, and spin softening (inextensible)."""
+
+TIP_AT_REST = 1.5573
+"""First frequency with a point mass as heavy as the beam at its tip: 1 + 1/(cos β cosh β) = β (tan β − tanh β)."""
+
+TIP_SPEED, TIP_TURNING = 4.0, 4.543
+"""A speed, and the first flapwise frequency there (G. S. Bir, NREL/CP-500-47953, 2010, Table 5, analytical)."""
+
+
+def cantilever_shape() -> Array:
+    """First shape of the cantilever (21,), 1 at the tip."""
+    beta = np.sqrt(CANTILEVER[0])
+    x = np.linspace(0.0, beta, 21)
+    ratio = (np.cosh(beta) + np.cos(beta)) / (np.sinh(beta) + np.sin(beta))
+    shape = np.cosh(x) - np.cos(x) - ratio * (np.sinh(x) - np.sin(x))
+    return shape / shape[-1]
+
+
+def timoshenko() -> float:
+    """First frequency of the short beam, rad/s, at rest (T. C. Huang, J. Appl. Mech. 28, 1961, 579–584).
+
+    In units of EI, m and L, with λ = ω², b = λ/GA, c = λ I: the section turns by ψ, ``ψ' = w'' + b w`` and
+    ``ψ'' + c ψ = GA (ψ − w')``, hence ``w'''' + (b + c) w'' − (λ − b c) w = 0``. Solutions with w = ψ = 0 at the root are
+    two; at the tip, for some sum of them, ψ' = 0 (no moment) and ψ'' + c ψ = 0 (no force).
+    """
+
+    def free_tip(square: float) -> float:
+        b, c = square / SHEAR, square / SHORT**2
+        root = np.sqrt((b + c) ** 2 / 4 + square - b * c)
+        p, q = np.sqrt(root - (b + c) / 2), np.sqrt(root + (b + c) / 2)
+        turn_p, turn_q = (p**2 + b) / p, (q**2 - b) / q  # ψ of cosh px is turn_p sinh px, that of −cos qx turn_q sin qx
+        moment = turn_p * p * np.cosh(p) + turn_q * q * np.cos(q), p * np.sinh(p) + q * np.sin(q)
+        force = (
+            turn_p * (p**2 + c) * np.sinh(p) - turn_q * (q**2 - c) * np.sin(q),
+            (p**2 + c) * np.cosh(p) + (q**2 - c) * np.cos(q),
+        )
+        return moment[0] * force[1] - moment[1] * force[0]
+
+    return float(np.sqrt(root_scalar(free_tip, bracket=(1.0, CANTILEVER[0] ** 2)).root))
+
+
+SPEED = 3.0
+"""rad/s: near the beam's first frequency at rest, so that what the rotation does is large."""
+
+
+@dataclass(frozen=True)
+class Property:
+    """Something a blade has, and the same blade without it; so large that at ``omega`` (rad/s) dropping it shows."""
+
+    name: str
+    having: Blade
+    lacking: Blade = BEAM
+    omega: float = SPEED
+
+
+def _along(blade: Blade, stations: int = 13) -> Blade:
+    """The same straight uniform blade with more stations."""
+    s = np.linspace(0.0, blade.length, stations)
+    same = {name: np.repeat(getattr(blade, name)[:1], stations, axis=0) for name in ("stiffness", "mass", "twist")}
+    return replace(blade, stations=s, curve=np.outer(s, [1.0, 0.0, 0.0]), **same)
+
+
+def _arc(axis: int) -> Blade:
+    """The beam bent, without stress, to an arc of radius 2 L in the direction of ``axis``."""
+    blade, radius = _along(BEAM), 2 * LENGTH
+    curve = np.zeros((len(blade.stations), 3))
+    curve[:, 0] = radius * np.sin(blade.stations / radius)
+    curve[:, axis] = radius * (1 - np.cos(blade.stations / radius))
+    return replace(blade, curve=curve)
+
+
+def _tapered() -> Blade:
+    blade = _along(BEAM)
+    share = np.linspace(1.0, 0.4, len(blade.stations))[:, None, None]
+    return replace(blade, stiffness=blade.stiffness * share, mass=blade.mass * share)
+
+
+def _twisted() -> Blade:
+    blade = _along(PLANK)
+    return replace(blade, twist=np.linspace(0.0, 1.2, len(blade.stations)))
+
+
+def _joined(row: int, column: int) -> Blade:
+    """Two strains coupled, by six tenths of what would make the section unstable."""
+    stiffness = BEAM.stiffness.copy()
+    both = 0.6 * np.sqrt(stiffness[:, row, row] * stiffness[:, column, column])
+    stiffness[:, row, column] = stiffness[:, column, row] = both
+    return replace(BEAM, stiffness=stiffness)
+
+
+def _body(mass: float, moment: float = 0.0, offset: float = 0.0) -> Array:
+    """A rigid body's inertia (6, 6) with its centre off along y; ``moment`` about y and z through it."""
+    out = np.diag([mass, mass, mass, 2 * moment, moment, moment])
+    out[0, 5] = out[5, 0] = -mass * offset
+    out[2, 3] = out[3, 2] = mass * offset
+    out[[3, 5], [3, 5]] += mass * offset**2
+    return out
+
+
+LUMP = _body(0.5 * MASS * LENGTH)
+LUMPED = replace(BEAM, tip_mass=LUMP)
+
+PROPERTIES = (
+    Property("hub radius", replace(BEAM, hub_radius=1.0)),
+    Property("unlike planes", PLANK),
+    Property("taper", _tapered()),
+    Property("twist", _twisted(), PLANK),
+    Property("pitch", replace(PLANK, pitch=0.8), PLANK),
+    Property("precone", replace(BEAM, precone=0.4)),
+    Property("tip mass", LUMPED),
+    Property("tip mass's moments of inertia", replace(BEAM, tip_mass=_body(LUMP[0, 0], 0.5)), LUMPED),
+    Property("tip mass's offset", replace(BEAM, tip_mass=_body(LUMP[0, 0], 0.0, 0.4)), LUMPED),
+    Property("sweep", _arc(1)),
+    Property("prebend", _arc(2)),
+    Property("bend–twist coupling", _joined(TORSION, BEND_Y)),
+    Property("extension–bending coupling", _joined(AXIAL, BEND_Y)),
+    Property("mass off the axis", replace(BEAM, mass=np.repeat(_body(MASS, 1e-5, 0.2)[None], 2, axis=0))),
+    Property("rotary inertia", replace(BEAM, mass=np.repeat(_body(MASS, 0.1)[None], 2, axis=0))),
+    Property("shear flexibility", short_beam(SHEAR), short_beam(), 0.0),
+    Property("springs at the root", replace(BEAM, root=np.array([np.inf] * 4 + [5 * EI / LENGTH] * 2))),
+)
+"""What a blade may have; a code that takes it must not drop it."""
+
+
+def shaft() -> tuple[Blade, float]:
+    """The beam, soft in torsion, and its first torsional frequency at rest, rad/s: π/2 √(GJ / I) / L, its second mode."""
+    stiffness, frequency = BEAM.stiffness.copy(), 10.0
+    polar = BEAM.mass[0, TORSION, TORSION]
+    stiffness[:, TORSION, TORSION] = polar * (frequency * LENGTH / (np.pi / 2)) ** 2
+    return replace(BEAM, name="shaft", stiffness=stiffness), frequency

@@ -1,0 +1,219 @@
+"""The ways a case file can give its blade, and what ``core`` makes of each.
+
+Beams and stations are straight: shear is rigid (Euler–Bernoulli), the sections' principal axes turn with twist. Whole
+sections, and files of other formats, are in ``readers.sections``. Every kind may say how it is mounted on the hub.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+from msgspec import Meta
+
+from ...core.blade import (
+    Blade,
+    BladeError,
+    mass_at,
+    section_mass,
+    section_stiffness,
+    stiffness_at,
+    twist_at,
+    uniform_blade,
+)
+from ...core.space import spatial as sp
+from . import files
+from .errors import CaseError, nearest
+from .readers.sections import FromFile, Mounted, Sections
+from .readers.source import LONGEST
+
+POISSON = 0.3
+"""For the torsional stiffness of a dimensionless beam, which has no influence on its bending."""
+
+
+def _positive(description: str) -> Meta:
+    return Meta(gt=0, description=description)
+
+
+class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
+    """A uniform beam from its material and cross-section."""
+
+    length: Annotated[float, Meta(gt=0, le=LONGEST, description="from root to tip, m")]
+    E: Annotated[float, _positive("Young's modulus, Pa")]
+    G: Annotated[float, _positive("shear modulus, Pa")]
+    density: Annotated[float, _positive("kg/m³")]
+    A: Annotated[float, _positive("area of the cross-section, m²")]
+    I_y: Annotated[float, _positive("second moment of area about y, resisting flapwise motion, m⁴")]
+    I_z: Annotated[float, _positive("second moment of area about z, resisting chordwise motion, m⁴")]
+    J: Annotated[float, _positive("torsion constant, m⁴")]
+    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+    rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; ``folder`` is not used."""
+        inertia = self.density if self.rotary_inertia else 0.0
+        blade = uniform_blade(
+            name,
+            self.length,
+            self.hub_radius,
+            EA=self.E * self.A,
+            GJ=self.G * self.J,
+            EI_y=self.E * self.I_y,
+            EI_z=self.E * self.I_z,
+            mass=self.density * self.A,
+            I_y=inertia * self.I_y,
+            I_z=inertia * self.I_z,
+        )
+        return self.mounted(blade)
+
+
+class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless"):
+    """A uniform beam as the literature has it: length, mass per length and bending stiffness (both ways) are 1.
+
+    Speeds and frequencies are then in units of ``√(EI / (ρ A L⁴))``, and ``rad/s`` reads as that unit. No rotary inertia.
+    """
+
+    slenderness: Annotated[float, _positive("α = √(A L² / I), dimensionless")]
+    hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length, dimensionless")] = 0.0
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; ``folder`` is not used."""
+        blade = uniform_blade(
+            name,
+            length=1.0,
+            hub_radius=self.hub_ratio,
+            EA=self.slenderness**2,
+            GJ=1.0 / (1.0 + POISSON),
+            EI_y=1.0,
+            EI_z=1.0,
+            mass=1.0,
+        )
+        return self.mounted(blade)
+
+
+class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
+    """A blade from a table of stations along its span: a CSV file beside the case file, ``#`` starting a comment."""
+
+    file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
+    length: Annotated[float, Meta(gt=0, le=LONGEST, description="from root to tip, m")]
+    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+    bending_factor: Annotated[float, _positive("multiplies both bending stiffnesses of the table, dimensionless")] = 1.0
+    mass_factor: Annotated[float, _positive("multiplies masses and moments of inertia of the table, dimensionless")] = (
+        1.0
+    )
+    twisted: Annotated[bool, Meta(description="whether the table's twist is used")] = True
+    centred: Annotated[bool, Meta(description="leave out the offset of the mass centres")] = False
+    pieces: Annotated[
+        tuple[float, ...], Meta(description="ends, in fractions of length, of pieces that are as their middle is")
+    ] = ()
+
+    COLUMNS: ClassVar[tuple[str, ...]] = (
+        "fraction [-]",
+        "twist [deg]",
+        "mass [kg/m]",
+        "EI_flap [N m^2]",
+        "EI_edge [N m^2]",
+        "GJ [N m^2]",
+        "EA [N]",
+    )
+    OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade, its table read from ``folder``.
+
+        Raises:
+            CaseError: if the table is missing or malformed.
+        """
+        path = folder / self.file
+        columns = read_table(path, self.COLUMNS, self.OPTIONAL)
+        fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
+        if fraction[-1] != 1.0:
+            raise CaseError(
+                f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
+            )
+        I_flap, I_edge, ahead = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL)
+        sections = offset(section_mass(mass, I_flap, I_edge), ahead * (not self.centred))
+        try:
+            blade = Blade(
+                name=name,
+                stations=fraction * self.length,
+                stiffness=section_stiffness(axial, torsion, self.bending_factor * flap, self.bending_factor * edge),
+                mass=self.mass_factor * sections,
+                twist=np.radians(twist) * self.twisted,
+                hub_radius=self.hub_radius,
+            )
+            return self.mounted(stepped(blade, np.array(self.pieces)) if self.pieces else blade)
+        except BladeError as error:
+            raise CaseError(f"{path}: {error}") from error
+
+
+STEP = 1e-7
+"""Width of the change between two pieces, of the length."""
+
+
+def stepped(blade: Blade, ends: np.ndarray) -> Blade:
+    """The blade with the properties of each piece's middle all along the piece; ``ends`` in fractions of its length.
+
+    Raises:
+        BladeError: ends that do not ascend from 0 to 1.
+    """
+    if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or (np.diff(ends) <= STEP).any():
+        raise BladeError(f"pieces: {ends.tolist()}: ends of pieces ascend from 0 to 1; correct them")
+    middle = 0.5 * (ends[1:] + ends[:-1]) * blade.length
+    inside = np.concatenate([ends[:1], np.repeat(ends[1:-1], 2) + np.tile([-STEP, 0.0], len(ends) - 2), ends[-1:]])
+    piece = np.repeat(np.arange(len(middle)), 2)
+    return replace(
+        blade,
+        stations=inside * blade.length,
+        stiffness=stiffness_at(blade, middle)[piece],
+        mass=mass_at(blade, middle)[piece],
+        twist=twist_at(blade, middle)[piece],
+        curve=np.zeros((0, 3)),
+    )
+
+
+def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """Section masses (n, 6, 6) given about their centres, about an axis that lies ``ahead`` (n,) m behind those, along y."""
+    from_axis = sp.adjoint(sp.pose(np.eye(3), np.multiply.outer(-ahead, [0.0, 1.0, 0.0])))
+    return np.swapaxes(from_axis, -1, -2) @ mass @ from_axis
+
+
+BladeData = Beam | Dimensionless | Stations | Sections | FromFile
+
+
+def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:
+    """Columns of a CSV file by name, ``#`` starting a comment.
+
+    Raises:
+        CaseError: naming file, line and column.
+    """
+    found = files.table(path, absent="a case's is looked for beside the case file; correct the name")
+    numbers, rows = zip(*found, strict=True)
+    header = rows[0]
+    for column in header:
+        if column not in needed + optional:
+            raise CaseError(
+                f"{path}: line {numbers[0]}: unknown column {column!r}: {nearest(column, needed + optional)}"
+            )
+    for column in needed:
+        if column not in header:
+            raise CaseError(f"{path}: column {column!r} is missing: the header must have {', '.join(needed)}")
+    out = np.zeros((len(rows) - 1, len(header)))
+    for i, row in enumerate(rows[1:]):
+        where = f"{path}: line {numbers[i + 1]}"
+        if len(row) != len(header):
+            raise CaseError(f"{where}: {len(row)} columns instead of {len(header)}: a missing or stray comma?")
+        for j, cell in enumerate(row):
+            try:
+                out[i, j] = float(cell)
+            except ValueError:
+                raise CaseError(f"{where}: {header[j]}: {cell!r} is not a number: correct it") from None
+            if not np.isfinite(out[i, j]):
+                raise CaseError(
+                    f"{where}: {header[j]}: {cell}: not a finite number; a gap in the table? give every value"
+                )
+    if len(out) < 2:
+        raise CaseError(
+            f"{path}: rows: {len(out)}: two at least are needed, as a blade's root and tip: cut short? add them"
+        )
+    return {column: out[:, j] for j, column in enumerate(header)}

@@ -1,0 +1,82 @@
+"""The cases and mechanisms that come with the package, and any other by its file."""
+
+from dataclasses import replace
+from importlib.resources import as_file, files
+from pathlib import Path
+
+from .. import data
+from .errors import CaseError, FilesMissingError, nearest
+from .mechanisms import Described, is_one
+from .mechanisms import read as describe
+from .schema import Case, read
+
+
+def names() -> tuple[str, ...]:
+    """Names of the cases that come with the package, sorted."""
+    return tuple(sorted(Path(f.name).stem for f in files(data).iterdir() if f.name.endswith(".toml")))
+
+
+def absent() -> dict[str, str]:
+    """Cases that come with the package but not with their blade's files, where those are not found: name → what to do."""
+    out = {}
+    for name in names():
+        try:
+            load(name)
+        except FilesMissingError as error:
+            out[name] = str(error).removeprefix(f"{name}: ")
+    return out
+
+
+def mechanisms() -> tuple[str, ...]:
+    """Names of the mechanisms that come with the package, sorted."""
+    folder = files(data) / "mechanisms"
+    return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def mechanism(name: str) -> Described:
+    """A mechanism by its name, or by the path of its TOML file.
+
+    Raises:
+        CaseError: if there is no such mechanism (the nearest is suggested), or its file is at fault.
+    """
+    if name in mechanisms():
+        with as_file(files(data) / "mechanisms" / f"{name}.toml") as path:
+            return describe(path)
+    if name.endswith(".toml"):
+        return describe(Path(name))
+    raise CaseError(
+        f"mechanism: {name!r} is not known: {nearest(name, mechanisms())}; or give the path of a .toml file"
+    )
+
+
+def load(name: str) -> Case:
+    """A case by its name, or by the path of its TOML file.
+
+    Raises:
+        CaseError: if there is no such case (the nearest is suggested), or its file is at fault.
+    """
+    if name in names():
+        with as_file(files(data)) as folder:
+            return read(folder / f"{name}.toml")
+    if name in mechanisms() or (name.endswith(".toml") and is_one(Path(name))):
+        raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
+    if name.endswith(".toml"):
+        return read(Path(name))
+    known = (*names(), *mechanisms())
+    raise CaseError(f"case: {name!r} is not known: {nearest(name, known)}; or give the path of a .toml file")
+
+
+def select(name: str) -> Case:
+    """A case by name or file, or with only one of its blades: ``park-blade/surrogate``.
+
+    Raises:
+        CaseError: if there is no such case or blade.
+    """
+    stem, _, blade = name.partition("/")
+    if name.endswith(".toml") or not blade:
+        return load(name)
+    case = load(stem)
+    kept = tuple(v for v in case.variants if v.name == name)
+    if not kept:
+        raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
+    return replace(case, variants=kept)

@@ -1,0 +1,217 @@
+"""A mechanism from its TOML file (``mechanism_schema``): read, checked, and as core is given it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from ...core import multibody as mb
+from ...core.multibody.mechanism import at_time
+from ...core.multibody.tree import compile_tree
+from ...core.space import spatial as sp
+from .errors import CaseError, nearest
+from .mechanism_schema import BodyData, CoordinateSpringData, Frame, JointData, MechanismFile, MotionData
+from .toml import convert, document, finite
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Described:
+    """A mechanism's file, read.
+
+    Attributes:
+        path: of the file, for messages.
+        text: the file's contents.
+        mechanism: as core is given it.
+        guess: coordinates to start from, by name.
+    """
+
+    path: str
+    text: MechanismFile
+    mechanism: mb.Mechanism
+    guess: dict[str, float]
+
+    def solve(self, count: int | None = None, time: float = 0.0) -> mb.Solution:
+        """Steady state and the lowest ``count`` modes, motions frozen at ``time`` (s).
+
+        Raises:
+            CaseError: if core cannot assemble, balance or partition it, or the time is not finite.
+        """
+        if not np.isfinite(time):
+            raise CaseError(f"{self.path}: time: {time}: give a finite instant, in seconds")
+        try:
+            return mb.solve(
+                self.mechanism, self.guess, count=count, independent=self.text.independent or None, time=time
+            )
+        except mb.MechanismError as error:
+            raise CaseError(f"{self.path}: {error}") from error
+
+
+def is_one(path: Path) -> bool:
+    """Whether a TOML file holds a mechanism: it has bodies.
+
+    Raises:
+        CaseError: if there is no such file, or it is not TOML.
+    """
+    return "bodies" in document(path)
+
+
+def read(path: Path) -> Described:
+    """The mechanism in a TOML file.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    return decode(document(path), str(path))
+
+
+def decode(data: Mapping[str, Any], path: str) -> Described:
+    """The mechanism in a decoded TOML document.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    finite(data, path)
+    text = convert(data, MechanismFile, path)
+    springs = _by_coordinate(text.coordinate_springs, CoordinateSpringData, path, "coordinate_springs")
+    mechanism = mb.Mechanism(
+        bodies=_bodies(text, path),
+        joints=_joints(text, path),
+        motions=_motions(text, path),
+        coordinate_springs=tuple(mb.CoordinateSpring(c, s.stiffness, s.damping, s.rest) for c, s in springs),
+        springs=tuple(
+            mb.Spring(s.body_a, s.body_b, np.array(s.point_a), np.array(s.point_b), s.stiffness, s.damping, s.rest)
+            for s in text.springs
+        ),
+        beams=(*_bushings(text, path), *_beams(text, path)),
+        gravity=text.gravity,
+    )
+    guess = {f"{joint}.{name}": value for joint, rows in text.guess.items() for name, value in rows.items()}
+    _check_names(text, mechanism, guess, path)
+    return Described(path, text, mechanism, guess)
+
+
+def _bodies(text: MechanismFile, path: str) -> tuple[mb.Body, ...]:
+    out = []
+    for name, data in text.bodies.items():
+        field = f"bodies.{name}"
+        b = convert(data, BodyData, path, field)
+        moments = _moments(b.moments, f"{path}: {field}.moments") if isinstance(b.moments, list) else b.moments
+        out.append(mb.Body(name, mb.inertia(b.mass, moments, b.centre)))
+    return tuple(out)
+
+
+def _joints(text: MechanismFile, path: str) -> tuple[mb.Joint, ...]:
+    out = []
+    for name, data in text.joints.items():
+        field = f"joints.{name}"
+        j = convert(data, JointData, path, field)
+        ends = (_pose(f, f"{path}: {field}.{end}") for f, end in ((j.at_parent, "at_parent"), (j.at_child, "at_child")))
+        out.append(mb.Joint(name, j.kind, j.parent, j.child, *ends, cut=j.cut))
+    return tuple(out)
+
+
+def _motions(text: MechanismFile, path: str) -> tuple[mb.Motion, ...]:
+    out = []
+    for name, m in _by_coordinate(text.motions, MotionData, path, "motions"):
+        laws = [Polynomial(m.polynomial)] if m.polynomial else []
+        laws += [mb.Harmonic(h.amplitude, h.frequency, h.phase, h.mean) for h in m.harmonics]
+        if laws and (m.position is not None or m.rate or m.acceleration):
+            raise CaseError(
+                f"{path}: motions.{name}: both numbers (position, rate, acceleration) and a function of time (polynomial, "
+                "harmonics): give one of them"
+            )
+        law = mb.Sum(tuple(laws)) if laws else None
+        out.append(mb.Motion(name, m.position, m.rate, m.acceleration, m.held, law))
+    return tuple(out)
+
+
+def _bushings(text: MechanismFile, path: str) -> list[mb.Beam]:
+    out = []
+    for k, b in enumerate(text.bushings):
+        where = f"{path}: bushings[{k}]"
+        if len(b.preload) != 6:
+            raise CaseError(f"{where}.preload: {len(b.preload)} numbers: give 6, forces first")
+        stiffness = _matrix(b.stiffness, 6, f"{where}.stiffness")
+        damping = np.zeros((6, 6)) if b.damping is None else _matrix(b.damping, 6, f"{where}.damping")
+        try:
+            law = mb.bushing(np.eye(4), stiffness, np.array(b.preload))
+        except ValueError as error:
+            raise CaseError(f"{where}.{error}") from error
+        out.append(mb.Beam(b.body_a, b.body_b, law, damping, *_ends(b.at_a, b.at_b, where)))
+    return out
+
+
+def _beams(text: MechanismFile, path: str) -> list[mb.Beam]:
+    out = []
+    for k, b in enumerate(text.beams):
+        names = ("EA", "GJ", "EI_y", "EI_z", "GA_y", "GA_z", "mass", "I_y", "I_z")
+        section = {n: v for n in names if (v := getattr(b, n)) is not None}
+        at_a, at_b = _ends(b.at_a, b.at_b, f"{path}: beams[{k}]")
+        out.append(mb.Beam(b.body_a, b.body_b, mb.straight_beam(b.length, **section), at_a=at_a, at_b=at_b))
+    return out
+
+
+def _ends(at_a: Frame, at_b: Frame, where: str) -> tuple[Array, Array]:
+    return _pose(at_a, f"{where}.at_a"), _pose(at_b, f"{where}.at_b")
+
+
+def _pose(frame: Frame, where: str) -> Array:
+    if frame.turn is None:
+        try:
+            return mb.at(*frame.point, axis=frame.axis if isinstance(frame.axis, str) else np.array(frame.axis))
+        except ValueError as error:
+            raise CaseError(f"{where}.{error}") from error
+    if frame.axis != "z":
+        raise CaseError(f"{where}: both axis and turn are given: give one of them")
+    pose = sp.exp(np.array([0.0, 0.0, 0.0, *frame.turn]))
+    pose[:3, 3] = frame.point
+    return pose
+
+
+def _moments(value: list[float | list[float]], where: str) -> Array:
+    """A tensor of inertia: of its principal moments none is more than the others together."""
+    out = _matrix(value, 3, where)
+    least, middle, most = np.linalg.eigvalsh(out).tolist()
+    if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
+        raise CaseError(
+            f"{where}: {most:g} is more than {least:g} and {middle:g} together: no body has such; correct it"
+        )
+    return out
+
+
+def _matrix(value: list[float | list[float]], side: int, where: str) -> Array:
+    """A square matrix from its rows, or from its diagonal."""
+    rows = {len(row) if isinstance(row, list) else 0 for row in value}
+    if len(value) != side or rows not in ({0}, {side}):
+        raise CaseError(f"{where}: {value}: neither {side} numbers nor {side} rows of {side}: correct it")
+    out = np.array(value, dtype=float)
+    return np.diag(out) if rows == {0} else out
+
+
+def _by_coordinate(table: Mapping[str, Mapping[str, Any]], kind: type[T], path: str, field: str) -> list[tuple[str, T]]:
+    return [
+        (f"{joint}.{name}", convert(data, kind, path, f"{field}.{joint}.{name}"))
+        for joint, rows in table.items()
+        for name, data in rows.items()
+    ]
+
+
+def _check_names(text: MechanismFile, mechanism: mb.Mechanism, guess: Mapping[str, float], path: str) -> None:
+    """Refuse coordinates that no joint has, and what core refuses before it knows a state."""
+    try:
+        known = compile_tree(at_time(mechanism, 0.0)).coordinates
+    except mb.MechanismError as error:
+        raise CaseError(f"{path}: {error}") from error
+    used = [("motions", m.coordinate) for m in mechanism.motions]
+    used += [("coordinate_springs", s.coordinate) for s in mechanism.coordinate_springs]
+    used += [("guess", name) for name in guess] + [("independent", name) for name in text.independent]
+    for field, name in used:
+        if name not in known:
+            raise CaseError(f"{path}: {field}: {name!r}: no joint has this coordinate: {nearest(name, known)}")

@@ -1,0 +1,90 @@
+"""Blades from the files they come in: the format is known by what the file says, the axes are converted at the door.
+
+``reading(path)`` gives the blade with its source, ``read(path)`` the blade alone; a format's own module has its own
+``read``, and ``own.write``, ``elastodyn_write.write``, ``beamdyn_write.write`` write files that are read as the same blade.
+
+The text formats are parsed here, since no library tells the line of a fault: weio 2.0.0 reads a column that is missing as
+zeros, NaN and negative stiffness as they stand, and no ``1.0D+03``; openfast_io 5.0.0 does not read BeamDyn's old header.
+YAML and TOML are parsed by libraries.
+"""
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from ....core.blade import Blade
+from ..errors import CaseError
+from .source import Mount, Reading, Source
+
+__all__ = ["FORMATS", "Mount", "Reading", "Source", "read", "reading", "recognise"]
+
+FORMATS = ("ElastoDyn", "BeamDyn", "BModes", "HAWC2", "windIO", "Southwell TOML and CSV")
+
+
+def read(path: Path, mount: Mount | None = None) -> Blade:
+    """The blade in a file of any format.
+
+    Raises:
+        CaseError: as ``reading``.
+    """
+    return reading(path, mount).blade
+
+
+def reading(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in a file of any format, and its source.
+
+    Args:
+        path: of the file; for formats of several files, of the main or the blade's.
+        mount: what the files do not say, or is to be different.
+
+    Raises:
+        CaseError: one line with file and line, value, likely cause and remedy.
+    """
+    found = recognise(path)(path, mount)
+    if mount is not None:
+        for option, given, format in (
+            ("multipliers", mount.multipliers, "ElastoDyn"),
+            ("subset", mount.subset, "HAWC2"),
+        ):
+            if given is not None and found.source.format != format:
+                raise CaseError(f"{path}: {option}: {found.source.format} has none, {format} has: leave it out")
+    if np.abs(found.blade.twist).max() > np.pi:
+        k = int(np.abs(found.blade.twist).argmax())
+        raise CaseError(
+            f"{path}: twist: {np.degrees(found.blade.twist[k]):.6g} degrees at {found.blade.stations[k]:g} m: more than half a "
+            "turn: another unit, or another column? correct it"
+        )
+    return found
+
+
+def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
+    """The reader of a file's format.
+
+    Raises:
+        CaseError: if the file is of no known format, or there is none.
+    """
+    module = {".toml": "southwell_toml", ".csv": "southwell_toml", ".yaml": "windio", ".yml": "windio"}.get(
+        path.suffix.lower()
+    )
+    if module is None:
+        from . import beamdyn, bmodes, elastodyn, hawc2, text
+
+        lines = text.load(path)
+        signs = (
+            ("elastodyn", elastodyn.is_blade),
+            ("elastodyn", elastodyn.is_main),
+            ("beamdyn", beamdyn.is_blade),
+            ("beamdyn", beamdyn.is_main),
+            ("bmodes", bmodes.is_one),
+            ("hawc2", hawc2.is_st),
+            ("hawc2", hawc2.is_htc),
+        )
+        module = next((name for name, sign in signs if sign(lines)), None)
+    if module is None:
+        raise CaseError(
+            f"{path}: not a blade file of a known format ({', '.join(FORMATS)}): "
+            "none of their names is in it; were the comments behind the values removed?"
+        )
+    return import_module(f".{module}", __package__).read

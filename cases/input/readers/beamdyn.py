@@ -1,0 +1,223 @@
+"""BeamDyn's main file (key points: prebend, sweep, twist) and its blade file (6×6 matrices at stations), old and new.
+
+BeamDyn's axes are x downwind, y to the trailing edge, z along the blade; matrices are about the reference curve, order
+(Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a y-component, both then turned by the
+twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in ElastoDyn). Ours swing from the
+blade's axes by the shortest way, half the product of prebend's and sweep's slopes away. Positions and twist between key
+points are natural cubic splines in z; stations are fractions of the curve's arc length. Source: Q. Wang, J. Jonkman,
+M. Sprague, B. Jonkman, *BeamDyn User's Guide and Theory Manual*, NREL, 2016.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ....core.blade import Blade, BladeError
+from ..errors import CaseError
+from . import elastodyn
+from .beamdyn_axis import Axis, line, measured, roll
+from .matrices import BEAMDYN, fault, in_axes, mass_fault
+from .source import OPENFAST_AXES, Mount, Reading, Source
+from .text import Table, Text, fractions, keys, leading, load, row, table, whole, word
+
+Array = NDArray[np.float64]
+
+NAME = "BeamDyn"
+KEY_POINTS = ("kp_xr", "kp_yr", "kp_zr", "initial_twist")
+SAME = 1e-6
+"""Key points and stations nearer than this, of the length, are one."""
+
+
+def is_blade(text: Text) -> bool:
+    """Whether these are lines of a blade file."""
+    return "station_total" in keys(text)
+
+
+def is_main(text: Text) -> bool:
+    """Whether these are lines of a main file."""
+    return "kp_total" in keys(text)
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in BeamDyn's main file, or in a blade file that a main file beside it names.
+
+    Args:
+        path: of either. A blade file with neither a main file nor ``mount.length`` is refused; with the length alone it is
+            straight and untwisted.
+        mount: hub radius, precone and pitch, which BeamDyn does not have; ``mount.main`` is ElastoDyn's main file.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    mount = mount or Mount()
+    text = load(path)
+    if is_main(text):
+        main, text = text, load(_named(text))
+    else:
+        main = _main(path, mount)
+    told = elastodyn.hub(load(mount.main)) if mount.main and is_elastodyn(mount.main) else None
+    settled = elastodyn.settle(mount, told.mount if told else None)
+    if main is None and settled.length is None:
+        raise CaseError(
+            f"{path}: length: stations are fractions of it, and the main file with the key points is not beside it: "
+            "give that file instead, or --length for a straight, untwisted blade"
+        )
+    axis = _axis(_points(main)) if main is not None else line(settled.length or 0.0)
+    found, stiffness, mass = _sections(text)
+    eta = fractions(found, "station_eta")
+    files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if told and mount.main else ())
+    blade = assemble(path.stem, axis, eta, stiffness, mass, settled)
+    if told and told.tip_mass:
+        blade = replace(blade, tip_mass=np.diag([told.tip_mass] * 3 + [0.0] * 3))
+    notes = [
+        "matrices made symmetric; structural damping not used",
+        "twist between key points: a cubic spline, sampled at key points and stations",
+    ]
+    if main is None:
+        notes.append("no main file: straight, untwisted")
+    if told is None:
+        open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+        notes += [f"no ElastoDyn main file: {', '.join(open_)} taken as 0"] if open_ else []
+    axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
+    return Reading(blade, Source(NAME, files, axes, tuple(notes)))
+
+
+def is_elastodyn(path: Path) -> bool:
+    """Whether a file is ElastoDyn's main file."""
+    return elastodyn.is_main(load(path))
+
+
+def _main(path: Path, mount: Mount) -> Text | None:
+    if mount.main and not is_elastodyn(mount.main):
+        return load(mount.main)
+    found = elastodyn.beside(path, is_main, _named)
+    return load(found) if found else None
+
+
+def _named(main: Text) -> Path:
+    return main.path.parent / word(main, keys(main), "BldFile").replace("\\", "/")
+
+
+def _points(main: Text) -> Table:
+    """The key points: the first rows of four numbers after their count."""
+    named = keys(main)
+    count = whole(main, named, "kp_total")
+    members = whole(main, named, "member_total") if "member_total" in named else 1
+    first = named["kp_total"][0] + 1 + members
+    while first < len(main.lines) and not leading(main.lines[first]):
+        first += 1
+    found = table(main, first, count, KEY_POINTS)
+    z = found["kp_zr"]
+    for name in ("kp_xr", "kp_yr", "kp_zr"):
+        found.need(
+            np.arange(count) > 0 if found[name][0] else np.ones(count, bool),
+            name,
+            found[name],
+            "the first key point is the root; begin at 0, 0, 0 and put the hub's radius into the main file",
+        )
+    rises = np.concatenate([[True], np.diff(z) > 0])
+    found.need(rises, "kp_zr", z, "not beyond the key point before it: a duplicate or out of order? correct it")
+    if count < 2:
+        raise CaseError(f"{main.at(found.lines[0])}: 1 key point: a blade needs at least a root and a tip")
+    return found
+
+
+def _axis(found: Table) -> Axis:
+    z = found["kp_zr"]
+    values = np.stack([found["kp_xr"], found["kp_yr"], found["initial_twist"]], axis=1)
+    return measured(CubicSpline(z, values, bc_type="natural"), z)
+
+
+def _sections(text: Text) -> tuple[Table, Array, Array]:
+    """Stations' fractions, stiffness and mass (n, 6, 6) in BeamDyn's order and axes."""
+    named = keys(text)
+    count = whole(text, named, "station_total")
+    k = named["station_total"][0] + 1
+    while k < len(text.lines) and not _starts(text, k):
+        k += 1
+    etas, lines, matrices = [], [], []
+    for i in range(count):
+        k = _next(text, k, i, count)
+        (eta,) = row(text, k, ("station_eta",))
+        etas.append(eta)
+        lines.append(k)
+        k += 1
+        pair = []
+        for what in ("stiffness", "mass"):
+            first = _next(text, k, i, count)
+            rows = [_row(text, first + j, what, j, i, count) for j in range(6)]
+            matrix = np.array(rows)
+            wrong = fault(matrix) if what == "stiffness" else mass_fault(matrix)
+            if wrong:
+                raise CaseError(f"{text.at(first)}: {what} at station_eta {eta:g}: {wrong}")
+            pair.append((matrix + matrix.T) / 2)
+            k = first + 6
+        matrices.append(pair)
+    if any(_starts(text, j) for j in range(k, len(text.lines))):
+        raise CaseError(f"{text.at(k)}: another station after the {count} announced: correct station_total")
+    stiffness, mass = np.array(matrices).transpose(1, 0, 2, 3)
+    return Table(text, {"station_eta": np.array(etas)}, tuple(lines)), stiffness, mass
+
+
+def _starts(text: Text, k: int) -> bool:
+    """Whether a station starts on line ``k``: one number alone, and six below it."""
+    below = next((j for j in range(k + 1, len(text.lines)) if not text.blank(j)), k)
+    return len(text.lines[k].split()) == 1 == len(leading(text.lines[k])) and len(leading(text.lines[below])) >= 5
+
+
+def _next(text: Text, k: int, i: int, count: int) -> int:
+    while k < len(text.lines) and text.blank(k):
+        k += 1
+    if k >= len(text.lines):
+        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: truncated? give it whole")
+    return k
+
+
+def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[float]:
+    if k >= len(text.lines):
+        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: truncated? give it whole")
+    return row(text, k, tuple(f"{what} {j + 1}{c}" for c in range(1, 7)))
+
+
+def assemble(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
+    """A blade of sections at fractions ``eta`` (n,) of a curve's length, in BeamDyn's axes; stations at key points too.
+
+    Raises:
+        CaseError: what cannot be.
+    """
+    length = axis.arc[-1]
+    own = eta * length
+    points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > SAME * length]
+    s = np.sort(np.concatenate([own, points]))
+    s[-1] = length
+    z = axis.at(s)
+    x, y, degrees = axis.spline(z).T
+    if mount.length is not None and abs(mount.length - length) > 0.02 * length:
+        raise CaseError(
+            f"length: {mount.length:g} m by the main file or --length, {length:g} m by the key points: "
+            "are they of the same blade?"
+        )
+    at = [_between(own, m, s) for m in (stiffness, mass)]
+    try:
+        return Blade(
+            name=name,
+            stations=s,
+            stiffness=in_axes(at[0], BEAMDYN),
+            mass=in_axes(at[1], BEAMDYN),
+            twist=roll(axis, z) - np.radians(degrees),
+            hub_radius=mount.hub_radius or 0.0,
+            curve=np.stack([z, -y, x], axis=1),
+            precone=mount.precone or 0.0,
+            pitch=mount.pitch or 0.0,
+        )
+    except BladeError as error:
+        raise CaseError(f"{name}: {error}") from error
+
+
+def _between(stations: Array, values: Array, s: Array) -> Array:
+    k = np.clip(np.searchsorted(stations, s, side="right") - 1, 0, len(stations) - 2)
+    t = ((s - stations[k]) / (stations[k + 1] - stations[k]))[:, None, None]
+    return (1 - t) * values[k] + t * values[k + 1]

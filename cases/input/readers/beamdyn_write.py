@@ -1,0 +1,121 @@
+"""BeamDyn's main and blade file, written."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ....core.blade import Blade
+from ..errors import CaseError
+from .beamdyn_axis import measured, roll
+from .matrices import BEAMDYN, in_axes
+from .source import Mount
+from .text import fortran
+
+Array = NDArray[np.float64]
+
+
+def write(blade: Blade, path: Path) -> Mount:
+    """Write the main file at ``path`` and, beside it, the blade file; returns what ElastoDyn's main file must say.
+
+    A twist and a curve between stations are as BeamDyn makes them, a natural spline in z.
+
+    Raises:
+        CaseError: naming what the format cannot hold: rigid strains, root joints, tip masses, curves that turn back.
+    """
+    lacks = {
+        "rigid strains": bool(np.isinf(blade.stiffness).any()),
+        "a root that is not clamped": not np.isinf(blade.root).all(),
+        "a tip mass (ElastoDyn's main file has it)": bool(blade.tip_mass.any()),
+        "a curve that turns back": bool((np.diff(blade.curve[:, 0]) <= 0).any()),
+        "a curve that begins beside the root": bool(blade.curve[0].any()),
+    }
+    for what, here in lacks.items():
+        if here:
+            raise CaseError(f"{path}: BeamDyn cannot hold {what}: write TOML, which holds any blade")
+    z, y, x = blade.curve[:, 0], -blade.curve[:, 1], blade.curve[:, 2]
+    flat = np.zeros_like(z)
+    axis = measured(CubicSpline(z, np.stack([x, y, flat], axis=1), bc_type="natural"), z)
+    degrees = np.degrees(roll(axis, z) - blade.twist)
+    sections = blade_file(path)
+    points = np.stack([x, y, z, degrees], axis=1)
+    path.write_text(_main_text(blade.name, points, sections.name), encoding="utf-8")
+    sections.write_text(_blade_text(blade), encoding="utf-8")
+    return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
+
+
+def blade_file(path: Path) -> Path:
+    """The blade file beside a main file at ``path``."""
+    return path.with_name(f"{path.stem}_blade{path.suffix or '.dat'}")
+
+
+_MAIN = """\
+--------- BEAMDYN with OpenFAST INPUT FILE -------------------------------------------
+{name}
+---------------------- SIMULATION CONTROL --------------------------------------
+False         Echo             - Echo input data to "<RootName>.ech"? (flag)
+True          QuasiStaticInit  - Quasi-static start under centripetal acceleration? (flag)
+          0   rhoinf           - Numerical damping (-)
+          2   quadrature       - 1: Gauss, 2: trapezoidal (switch)
+"DEFAULT"     refine           - Refinement for trapezoidal quadrature (-)
+"DEFAULT"     n_fact           - Factorization frequency (-)
+"DEFAULT"     DTBeam           - Time step (s)
+"DEFAULT"     load_retries     - Load retries (-)
+"DEFAULT"     NRMax            - Newton-Raphson iterations (-)
+"DEFAULT"     stop_tol         - Tolerance (-)
+"DEFAULT"     tngt_stf_fd      - Finite-difference tangent? (flag)
+"DEFAULT"     tngt_stf_comp    - Compare tangents? (flag)
+"DEFAULT"     tngt_stf_pert    - Perturbation (-)
+"DEFAULT"     tngt_stf_difftol - Allowed difference of tangents (-)
+True          RotStates        - States in the rotating frame? (flag)
+---------------------- GEOMETRY PARAMETER --------------------------------------
+          1   member_total     - Total number of members (-)
+{count:>11}   kp_total         - Total number of key points (-)
+     1  {count}                - Member number; its key points
+   kp_xr  kp_yr  kp_zr  initial_twist
+   (m)    (m)    (m)    (deg)
+{points}
+---------------------- MESH PARAMETER ------------------------------------------
+          5   order_elem       - Order of interpolation (-)
+---------------------- MATERIAL PARAMETER --------------------------------------
+"{sections}"    BldFile        - File of the blade's properties
+---------------------- PITCH ACTUATOR PARAMETERS -------------------------------
+False         UsePitchAct      - Pitch actuator? (flag)
+          1   PitchJ           - Its inertia (kg-m^2)
+          0   PitchK           - Its stiffness (kg-m^2/s^2)
+          0   PitchC           - Its damping (kg-m^2/s)
+---------------------- OUTPUTS -------------------------------------------------
+False         SumPrint         - Summary file? (flag)
+"ES10.3E2"    OutFmt           - Format
+          0   NNodeOuts        - Number of nodes to output (-)
+          1   OutNd            - Nodes to output (-)
+          OutList              - Output channels
+END of input file (the word "END" must appear in the first 3 columns of this last OutList line)
+"""
+
+
+def _main_text(name: str, points: Array, sections: str) -> str:
+    lines = "\n".join("  ".join(fortran(x) for x in point) for point in points)
+    return _MAIN.format(name=name, count=len(points), points=lines, sections=sections)
+
+
+def _blade_text(blade: Blade) -> str:
+    lines = [
+        "------- BEAMDYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
+        blade.name,
+        "---------------------- BLADE PARAMETERS --------------------------------------",
+        f"{len(blade.stations)}  station_total - Number of blade input stations (-)",
+        "0  damp_type - Damping type: 0: no damping; 1: damped",
+        "---------------------- DAMPING COEFFICIENT------------------------------------",
+        "mu1  mu2  mu3  mu4  mu5  mu6",
+        "(-)  (-)  (-)  (-)  (-)  (-)",
+        "0.0  0.0  0.0  0.0  0.0  0.0",
+        "---------------------- DISTRIBUTED PROPERTIES---------------------------------",
+    ]
+    theirs = [in_axes(m, BEAMDYN.T) for m in (blade.stiffness, blade.mass)]
+    for k, eta in enumerate(blade.stations / blade.length):
+        lines.append(fortran(eta))
+        for matrix in theirs:
+            lines += ["  ".join(fortran(x) for x in line) for line in matrix[k]] + [""]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,130 @@
+"""BModes 3 main files (.bmi) of a blade, with the section properties they name.
+
+Section axes are x flapwise (downwind), y to the trailing edge, z along the blade, turned by the structural twist, positive
+with the leading edge upwind; offsets are along y, from the reference axis. The mass acts at ``cg_offst`` with principal
+moments of inertia about it in axes turned by ``tw_iner``, stretch and bending at ``tc_offst``, torsion about ``sc_offst``.
+Shear is rigid, which fixes where torsion turns about: where a shear centre is off the axis, the shear centres' line is taken
+for the blade's axis and the other centres from it, as BModes does. Source: G. Bir, *User's Guide to BModes*,
+NREL/TP-500-39133, 2005.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
+from ..errors import CaseError
+from .elastodyn import settle
+from .matrices import BEAMDYN, about, bending, in_axes, rigid, shearing, turned
+from .source import OPENFAST_AXES, Mount, Reading, Source
+from .text import Text, fractions, keys, leading, load, table, value, whole, word
+
+Array = NDArray[np.float64]
+Named = dict[str, tuple[int, str]]
+
+NAME = "BModes"
+COLUMNS = (
+    *("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff"),
+    *("edge_stff", "tor_stff", "axial_stff", "cg_offst", "sc_offst", "tc_offst"),
+)
+FACTORS = {
+    "sec_mass_mult": "mass_den",
+    "flp_iner_mult": "flp_iner",
+    "lag_iner_mult": "edge_iner",
+    "flp_stff_mult": "flp_stff",
+    "edge_stff_mult": "edge_stff",
+    "tor_stff_mult": "tor_stff",
+    "axial_stff_mult": "axial_stff",
+    "cg_offst_mult": "cg_offst",
+    "sc_offst_mult": "sc_offst",
+    "tc_offst_mult": "tc_offst",
+}
+ROOTS = {1: [np.inf] * 6, 4: [np.inf, np.inf, np.inf, np.inf, 0.0, 0.0]}
+"""What hub_conn holds: 1 all, 4 pinned-free: flap and lag slopes are free."""
+
+
+def is_one(text: Text) -> bool:
+    """Whether these are lines of a main file."""
+    return {"hub_conn", "sec_props_file"} <= set(keys(text))
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade of a BModes main file.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    main = load(path)
+    named = keys(main)
+    if "beam_type" in named and whole(main, named, "beam_type") != 1:
+        raise CaseError(f"{main.at(named['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade")
+    text = load(path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
+    own = keys(text)
+    count = whole(text, own, "n_secs")
+    start = own["n_secs"][0] + 1
+    while start < len(text.lines) and not leading(text.lines[start]):
+        start += 1
+    found = table(text, start, count, COLUMNS)
+    found.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
+    found.positive("flp_iner", "edge_iner", zero=True)
+    eta = fractions(found, "sec_loc")
+    by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
+    p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
+
+    tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
+    told = Mount(
+        length=tip - hub_radius,
+        hub_radius=hub_radius,
+        precone=np.radians(value(main, named, "precone")),
+        pitch=-np.radians(value(main, named, "bl_thp")),
+    )
+    settled = settle(mount or Mount(), told)
+    y_mass, y_tension = -(p["cg_offst"] - p["sc_offst"]), -(p["tc_offst"] - p["sc_offst"])
+    stretch = about(bending(p["axial_stff"], p["flp_stff"], p["edge_stff"]), y_tension, 0.0)
+    inertia = turned(section_mass(p["mass_den"], p["flp_iner"], p["edge_iner"]), np.radians(p["str_tw"] - p["tw_iner"]))
+    try:
+        blade = Blade(
+            name=path.stem,
+            stations=eta * float(settled.length or 0.0),
+            stiffness=rigid(stretch + shearing(p["tor_stff"], 0.0, 0.0), SHEAR_Y, SHEAR_Z),
+            mass=about(inertia, y_mass, 0.0),
+            twist=-np.radians(p["str_tw"]),
+            hub_radius=settled.hub_radius or 0.0,
+            precone=settled.precone or 0.0,
+            pitch=settled.pitch or 0.0,
+            tip_mass=_tip(main, named),
+            root=np.array(_root(main, named)),
+        )
+    except BladeError as error:
+        raise CaseError(f"{text.path}: {error}") from error
+    axes = f"{OPENFAST_AXES}; mass and tension centres off the axis along the section's y"
+    return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)))
+
+
+def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
+    out = ["shear is rigid"]
+    scaled = [f for f in FACTORS if value(main, named, f) != 1]
+    if scaled:
+        out.append(f"multiplied: {', '.join(f'{f} = {value(main, named, f):g}' for f in scaled)}")
+    if p["sc_offst"].any():
+        out.append("shear centres lie off the axis: their line is taken for it, straight")
+    return tuple(out)
+
+
+def _root(main: Text, named: Named) -> list[float]:
+    kind = whole(main, named, "hub_conn")
+    if kind not in ROOTS:
+        raise CaseError(
+            f"{main.at(named['hub_conn'][0])}: hub_conn: {kind}: a blade needs a hub: give 1 (clamped) or 4 (pinned)"
+        )
+    return ROOTS[kind]
+
+
+def _tip(main: Text, named: Named) -> Array:
+    """The tip's rigid body (6, 6) about the axis in our axes; BModes' moments are about the tip section's axes."""
+    names = ("tip_mass", "cm_loc", "cm_axial", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
+    m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
+    cross = m * np.array([[0.0, -z, y], [z, 0.0, 0.0], [-y, 0.0, 0.0]])
+    tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
+    return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)

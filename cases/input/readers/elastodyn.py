@@ -1,0 +1,213 @@
+"""ElastoDyn's blade file (FAST 7 to OpenFAST 4), and the hub that its main file describes.
+
+The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes turned by the
+structural twist. OpenFAST turns a positive twist, and pitch, with the leading edge upwind: about −x here. There is neither
+stretch nor torsion nor rotary inertia in the format: those strains are rigid, and the sections have no moments of inertia;
+FAST 7's further columns (GJStff, EAStff, FlpIner, EdgIner) are used where they are there. AdjBlMs, AdjFlSt and AdjEdSt
+multiply the table (on FlStTunr see ``_notes``). Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ..errors import CaseError
+from .source import OPENFAST_AXES, Mount, Reading, Source
+from .text import Text, fractions, keys, leading, load, table, tokens, value, whole, word
+
+Array = NDArray[np.float64]
+
+NAME = "ElastoDyn"
+COLUMNS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
+MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
+LARGEST = 1_000_000
+"""Bytes of a main file, at most: larger files beside a blade are not looked into."""
+
+
+@dataclass(frozen=True)
+class Hub:
+    """What a main file says of the first blade: ``mount``, its tip mass in kg, and the blade file it names."""
+
+    mount: Mount
+    tip_mass: float
+    blade_file: Path
+
+
+def is_blade(text: Text) -> bool:
+    """Whether these are lines of a blade file."""
+    return "nblinpst" in keys(text)
+
+
+def is_main(text: Text) -> bool:
+    """Whether these are lines of a main file."""
+    named = keys(text)
+    return "tiprad" in named and "hubrad" in named
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in an ElastoDyn blade file, or the first blade of a main file.
+
+    Args:
+        path: of either. A blade file's length is in the main file: ``mount.main``, or the one main file beside the
+            blade file that names it; or ``mount.length``.
+        mount: what stands in no file, or is to be different.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    mount = mount or Mount()
+    text = load(path)
+    if is_main(text):
+        main, text = path, load(hub(text).blade_file)
+    else:
+        main = mount.main or (None if mount.length else beside(path, is_main, blade_file))
+    told = hub(load(main)) if main else None
+    return _blade(text, mount, told, main)
+
+
+def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
+    """The one main file in the folder of ``path`` that names ``path``; None if none does.
+
+    Raises:
+        CaseError: if several do.
+    """
+    found = []
+    for other in sorted(path.parent.glob("*")):
+        fits = other.suffix.lower() in {".dat", ".inp", ".txt"} and other.is_file() and other.stat().st_size < LARGEST
+        if not fits or other == path:
+            continue
+        try:
+            text = load(other)
+        except CaseError:  # empty, or no text: output of a run, not a main file
+            continue
+        if kind(text) and named(text).resolve() == path.resolve():
+            found.append(other)
+    if len(found) > 1:
+        names = ", ".join(f.name for f in found)
+        raise CaseError(f"{path}: {len(found)} main files beside it name it ({names}): say which by --main")
+    return found[0] if found else None
+
+
+def hub(text: Text) -> Hub:
+    """The hub of a main file; OpenFAST's coning is positive downwind, as ours, its pitch the other way round.
+
+    Raises:
+        CaseError: if a value is missing or none.
+    """
+    named = keys(text)
+    tip, root = value(text, named, "TipRad"), value(text, named, "HubRad")
+    if tip <= root:
+        raise CaseError(
+            f"{text.path}: TipRad {tip:g} is not beyond HubRad {root:g}: no blade between them; correct one"
+        )
+    mount = Mount(
+        length=tip - root,
+        hub_radius=root,
+        precone=np.radians(value(text, named, "PreCone1", "PreCone")),
+        pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")),
+    )
+    mass = value(text, named, "TipMass1", "TipMass")
+    return Hub(mount, mass, blade_file(text))
+
+
+def blade_file(text: Text) -> Path:
+    """The first blade's file that a main file names.
+
+    Raises:
+        CaseError: if it names none.
+    """
+    return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
+
+
+def settle(mount: Mount, told: Mount | None) -> Mount:
+    """``mount`` with what it leaves open from ``told``."""
+    given = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
+    return replace(told or Mount(), **given)
+
+
+def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Reading:
+    named = keys(text)
+    count = whole(text, named, "NBlInpSt")
+    factors = {name: value(text, named, name) for name in MULTIPLIERS}
+    for name, factor in factors.items():
+        if factor <= 0:
+            raise CaseError(
+                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: it multiplies; give a positive number"
+            )
+    first = max(k for k, _ in (named[name.lower()] for name in MULTIPLIERS)) + 1
+    heads = [k for k in range(first, len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "blfract"]
+    first = heads[0] + 1 if heads else first
+    columns = _columns(tokens(text.lines[heads[0]])) if heads else COLUMNS
+    missing = [name for name in NEEDED if name not in columns]
+    if missing:
+        raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(NEEDED)}; add it")
+    start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
+    found = table(text, start, count, columns)
+    found.positive(*[name for name in POSITIVE if name in columns])
+    eta = fractions(found, "BlFract")
+    settled = settle(mount, told.mount if told else None)
+    if settled.length is None:
+        raise CaseError(
+            f"{text.path}: length: stations are fractions of it, and the main file that says it is not here: "
+            "give --main FILE, or --length and --hub-radius"
+        )
+    by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
+    flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
+    tip = np.diag([told.tip_mass] * 3 + [0.0] * 3) if told else np.zeros((6, 6))
+    try:
+        blade = Blade(
+            name=text.path.stem,
+            stations=eta * settled.length,
+            stiffness=section_stiffness(
+                found.columns.get("EAStff", np.full(count, np.inf)),
+                found.columns.get("GJStff", np.full(count, np.inf)),
+                by_flap * found["FlpStff"],
+                by_edge * found["EdgStff"],
+            ),
+            mass=section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia),
+            twist=-np.radians(found["StrcTwst"]),
+            hub_radius=settled.hub_radius or 0.0,
+            precone=settled.precone or 0.0,
+            pitch=settled.pitch or 0.0,
+            tip_mass=tip,
+        )
+    except BladeError as error:
+        raise CaseError(f"{text.path}: {error}") from error
+    files = (text.path,) if main is None else (text.path, main)
+    axes = f"{OPENFAST_AXES}; all centres on the pitch axis"
+    return Reading(blade, Source(NAME, files, axes, _notes(text, named, factors, main, settled, columns)))
+
+
+def _columns(names: list[str]) -> tuple[str, ...]:
+    known = {name.lower(): name for name in (*COLUMNS, *POSITIVE, "FlpIner", "EdgIner")}
+    return tuple(known.get(name.lower(), name) for name in names)
+
+
+def _notes(
+    text: Text,
+    named: dict[str, tuple[int, str]],
+    factors: dict[str, float],
+    main: Path | None,
+    settled: Mount,
+    columns: tuple[str, ...],
+) -> tuple[str, ...]:
+    said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
+    given = settled.multipliers
+    out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
+    if any(name in named and value(text, named, name) != 1 for name in ("flsttunr1", "flsttunr2")):
+        out.append("FlStTunr multiply ElastoDyn's modal stiffness, which sections do not have: not applied")
+    rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]
+    if rigid:
+        out.append(f"the format has no {' and no '.join(rigid)}: rigid; shear is rigid")
+    if "FlpIner" not in columns:
+        out.append("the format has no sectional moments of inertia: none")
+    if main is None:
+        given = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+        out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))
+    return tuple(out)

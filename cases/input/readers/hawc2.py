@@ -1,0 +1,168 @@
+"""HAWC2's structural files (``st``): 19 columns, or 30 with fully populated stiffness; curve and twist from an htc's c2_def.
+
+HAWC2's blade axes are x to the leading edge, y downwind, z along the blade; offsets are from the half-chord line, in axes
+turned by c2_def's twist, and ``pitch`` turns from those to the principal bending axes, both positive from x towards y. The
+half-chord line becomes the reference axis. 19 columns: stretch and bending (E A, E I_x, E I_y) act at the elastic centre in
+the principal axes, torsion and shear (G I_p, k G A) at the shear centre; 30 columns: the matrix is about the elastic centre
+in the principal axes, order (shear x, shear y, axial, bending x, bending y, torsion). Radii of gyration are about the
+elastic centre, in the principal axes, as the manual says; there are files (IEA-15's) whose numbers are about the mass
+centre. c2_def is interpolated by Akima splines in z. Source: T. J. Larsen, A. M. Hansen, *How 2 HAWC2, the user's manual*,
+Risø-R-1597, ch. 6.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade, BladeError
+from ..errors import CaseError
+from . import hawc2_htc
+from .elastodyn import settle
+from .matrices import HAWC2, about, bending, fault, in_axes, shearing, turned
+from .source import Mount, Reading, Source
+from .text import Table, Text, leading, load, table
+
+Array = NDArray[np.float64]
+
+NAME = "HAWC2"
+SHARED = ("r", "m", "x_cg", "y_cg", "ri_x", "ri_y")
+PLAIN = (*SHARED, "x_sh", "y_sh", "E", "G", "I_x", "I_y", "I_p", "k_x", "k_y", "A", "pitch", "x_e", "y_e")
+UPPER = np.triu_indices(6)
+FULL = (*SHARED, "pitch", "x_e", "y_e", *(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True)))
+AXES = (
+    "HAWC2: x to the leading edge, y downwind, z along the blade; here x = its z, y = its x, z = its y, twist alike; "
+    "matrices brought from elastic, shear and mass centres to the half-chord line"
+)
+_SET, _SUBSET = re.compile(r"\s*#\s*(\d+)"), re.compile(r"\s*\$\s*(\d+)\s+(\d+)")
+
+
+def is_st(text: Text) -> bool:
+    """Whether these are lines of a structural file."""
+    return any(_SUBSET.match(line) for line in text.lines)
+
+
+def is_htc(text: Text) -> bool:
+    """Whether these are lines of an htc file."""
+    return hawc2_htc.is_one(text)
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in a structural file, or the one an htc's body with c2_def and a name beginning with "blade" has.
+
+    Args:
+        path: of either. Without an htc (``mount.main``) the half-chord line is straight along r and untwisted.
+        mount: ``subset`` picks set and subset where the file has several.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    mount = mount or Mount()
+    text, htc, wanted, body = load(path), None, mount.subset, None
+    if is_htc(text):
+        htc, text = text, None
+    elif mount.main is not None:
+        htc = load(mount.main)
+    if htc is not None:
+        body = hawc2_htc.blade_body(htc)
+        file, given = hawc2_htc.properties(htc, body)
+        wanted = wanted or given
+        text = text or load(file)
+    assert text is not None
+    found = _subset(text, wanted)
+    r = found["r"]
+    found.need(
+        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
+    )
+    rises = np.concatenate([[True], np.diff(r) > 0])
+    found.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
+    notes = []
+    stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
+    if htc is not None and body is not None:
+        stations, curve, twist = hawc2_htc.half_chords(body, r)
+        notes.append(
+            "sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way"
+        )
+    else:
+        notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")
+    settled = settle(mount, None)
+    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is None]
+    if open_:
+        notes.append(f"{', '.join(open_)} taken as 0: in HAWC2 they are other bodies'")
+    try:
+        blade = Blade(
+            name=path.stem,
+            stations=stations,
+            stiffness=_stiffness(found),
+            mass=_mass(found),
+            twist=twist,
+            hub_radius=settled.hub_radius or 0.0,
+            curve=curve,
+            precone=settled.precone or 0.0,
+            pitch=settled.pitch or 0.0,
+        )
+    except BladeError as error:
+        raise CaseError(f"{text.path}: {error}") from error
+    return Reading(blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes)))
+
+
+def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:
+    heads, current = {}, 1
+    for k, line in enumerate(text.lines):
+        if found := _SET.match(line):
+            current = int(found[1])
+        elif found := _SUBSET.match(line):
+            heads[current, int(found[1])] = (k, int(found[2]))
+    if wanted is None and len(heads) > 1:
+        names = ", ".join(f"{a}:{b}" for a, b in heads)
+        raise CaseError(
+            f"{text.path}: {len(heads)} sets: subsets {names}: say which by --subset, or give the htc by --main"
+        )
+    wanted = wanted or next(iter(heads))
+    if wanted not in heads:
+        names = ", ".join(f"{a}:{b}" for a, b in heads)
+        raise CaseError(f"{text.path}: no set {wanted[0]}, subset {wanted[1]}: it has {names}: correct --subset")
+    k, count = heads[wanted]
+    first = next((j for j in range(k + 1, len(text.lines)) if leading(text.lines[j])), len(text.lines))
+    wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
+    found = table(text, first, count, FULL if wide else PLAIN)
+    found.positive("m", *(("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "A")))
+    found.positive("ri_x", "ri_y", *(() if wide else ("k_x", "k_y")), zero=True)
+    return found
+
+
+def _stiffness(p: Table) -> Array:
+    angle = np.radians(p["pitch"])
+    if "K11" in p.columns:
+        full = np.zeros((len(angle), 6, 6))
+        full[:, UPPER[0], UPPER[1]] = np.stack([p[name] for name in FULL[-21:]], axis=1)
+        full += np.triu(full, 1).swapaxes(1, 2)
+        for k, matrix in enumerate(full):
+            if wrong := fault(matrix):
+                raise CaseError(f"{p.text.at(p.lines[k])}: stiffness: {wrong}")
+        return about(turned(in_axes(full, HAWC2), angle), p["x_e"], p["y_e"])
+    bend = turned(bending(p["E"] * p["A"], p["E"] * p["I_x"], p["E"] * p["I_y"]), angle)
+    ga = p["G"] * p["A"]
+    shear = turned(shearing(p["G"] * p["I_p"], p["k_x"] * ga, p["k_y"] * ga), angle)
+    return about(bend, p["x_e"], p["y_e"]) + about(shear, p["x_sh"], p["y_sh"])
+
+
+def _mass(p: Table) -> Array:
+    """About the half-chord line: moments about the elastic centre less those of the mass there, moved from the mass centre."""
+    m, y, z = p["m"], p["x_cg"] - p["x_e"], p["y_cg"] - p["y_e"]
+    rotary = np.zeros((len(m), 6, 6))
+    rotary[:, 4, 4], rotary[:, 5, 5] = m * p["ri_x"] ** 2, m * p["ri_y"] ** 2
+    rotary = turned(rotary, np.radians(p["pitch"]))
+    rotary[:, 4, 4] -= m * z**2
+    rotary[:, 5, 5] -= m * y**2
+    rotary[:, 4, 5] += m * y * z
+    rotary[:, 5, 4] += m * y * z
+    least = np.linalg.eigvalsh(rotary[:, 4:, 4:])[:, 0]
+    remedy = (
+        "less than the mass centre's distance from the elastic centre, about which it is: is it about another point?"
+    )
+    p.need(least >= -1e-9 * np.abs(rotary[:, 4:, 4:]).max(), "ri_x, ri_y", p["ri_y"], remedy)
+    rotary[:, 3, 3] = rotary[:, 4, 4] + rotary[:, 5, 5]
+    rotary[:, range(3), range(3)] = m[:, None]
+    return about(rotary, p["x_cg"], p["y_cg"])

@@ -1,0 +1,103 @@
+"""Section matrices about one point and in one set of axes, brought to another.
+
+Orders and axes are those of ``core.blade``: force and strain (axial, y, z), then moment and curvature about (x, y, z).
+The strain of point p at r from the reference is ε_p = ε + κ × r, so that K = Tᵀ K_p T with T = [1, −r×; 0, 1]
+(Hodges, *Nonlinear Composite Beam Theory*, 2006, ch. 4); mass goes likewise, with velocity for strain.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ....core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION
+from ....core.space.spatial import rotation, skew
+
+Array = NDArray[np.float64]
+
+BEAMDYN = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+"""Our components of a vector from OpenFAST's blade axes (x downwind, y to the trailing edge, z along the blade)."""
+
+HAWC2 = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+"""Our components of a vector from HAWC2's blade axes (x to the leading edge, y downwind, z along the blade)."""
+
+
+def in_axes(matrix: Array, axes: Array) -> Array:
+    """Matrices (…, 6, 6) with components along axes whose matrix to ours is ``axes`` (…, 3, 3), in ours."""
+    turn = np.zeros((*axes.shape[:-2], 6, 6))
+    turn[..., :3, :3] = turn[..., 3:, 3:] = axes
+    return turn @ matrix @ np.swapaxes(turn, -1, -2)
+
+
+def turned(matrix: Array, angle: ArrayLike) -> Array:
+    """Matrices (n, 6, 6) given in axes turned by ``angle`` (n,) about x (y towards z) from the section's, in the section's."""
+    return in_axes(matrix, rotation(0, np.asarray(angle, float)))
+
+
+def about(matrix: Array, y: ArrayLike, z: ArrayLike) -> Array:
+    """Matrices (n, 6, 6) given about points at (``y``, ``z``) (n,) of the section, about its origin."""
+    y, z = np.broadcast_arrays(np.asarray(y, float), np.asarray(z, float))
+    move = np.broadcast_to(np.eye(6), (*y.shape, 6, 6)).copy()
+    move[..., :3, 3:] = -skew(np.stack([np.zeros_like(y), y, z], axis=-1))
+    return np.swapaxes(move, -1, -2) @ matrix @ move
+
+
+def bending(EA: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike) -> Array:
+    """Stiffness (n, 6, 6) of axial and bending strains about the tension centre; none against the others."""
+    return _with({AXIAL: EA, BEND_Y: EI_y, BEND_Z: EI_z})
+
+
+def shearing(GJ: ArrayLike, GA_y: ArrayLike, GA_z: ArrayLike) -> Array:
+    """Stiffness (n, 6, 6) of torsion and shear about the shear centre; none against the others."""
+    return _with({TORSION: GJ, SHEAR_Y: GA_y, SHEAR_Z: GA_z})
+
+
+def rigid(stiffness: Array, *strains: int) -> Array:
+    """The same stiffness with some strains rigid; their rows and columns are otherwise zero."""
+    out = stiffness.copy()
+    for i in strains:
+        out[:, i, :] = out[:, :, i] = 0.0
+        out[:, i, i] = np.inf
+    return out
+
+
+def _with(entries: dict[int, ArrayLike]) -> Array:
+    columns = np.broadcast_arrays(*[np.atleast_1d(np.asarray(e, float)) for e in entries.values()])
+    out = np.zeros((len(columns[0]), 6, 6))
+    for i, column in zip(entries, columns, strict=True):
+        out[:, i, i] = column
+    return out
+
+
+def fault(matrix: Array) -> str | None:
+    """What is wrong with a section matrix (6, 6): not symmetric to 1e-3 of its diagonal, or not positive definite."""
+    d = np.diag(matrix)
+    if (d <= 0).any():
+        i = int(np.argmax(d <= 0))
+        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
+    scaled = matrix / np.sqrt(np.outer(d, d))
+    i, j = np.unravel_index(np.abs(scaled - scaled.T).argmax(), (6, 6))
+    if abs(scaled[i, j] - scaled[j, i]) > 1e-3:
+        return (
+            f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
+            "it must be symmetric; a digit lost? correct one"
+        )
+    least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
+    if least <= 0:
+        return f"not positive definite (least scaled eigenvalue {least:.2g}): a coupling too large? check the entries"
+    return None
+
+
+def mass_fault(matrix: Array) -> str | None:
+    """What is wrong with a section's mass (6, 6): as ``fault``, but moments of inertia may be zero."""
+    d = np.diag(matrix)
+    bad = np.where(np.arange(6) < 3, d <= 0, d < 0)
+    if bad.any():
+        i = int(np.argmax(bad))
+        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
+    scale = np.sqrt(np.outer(d, d)) + 1e-9 * d[0]
+    i, j = np.unravel_index((np.abs(matrix - matrix.T) / scale).argmax(), (6, 6))
+    if abs(matrix[i, j] - matrix[j, i]) > 1e-3 * scale[i, j]:
+        return (
+            f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
+            "it must be symmetric; a sign or digit lost? correct one"
+        )
+    return None

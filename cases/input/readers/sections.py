@@ -1,0 +1,227 @@
+"""Blades in our own TOML: whole sections (``kind = "sections"``), a file of any format (``"file"``); root and tip of both.
+
+Axes are ours throughout (``core.blade``): twist and pitch turn y towards z, the leading edge downwind.
+"""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from msgspec import Meta, Struct
+from msgspec.structs import replace as changed
+from numpy.typing import NDArray
+
+from ....core.blade import Blade, BladeError
+from ..errors import CaseError, FilesMissingError
+from .source import LONGEST
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+Positive = Annotated[float, Meta(gt=0)]
+Upper = Annotated[list[float], Meta(min_length=21, max_length=21)]
+
+STRAINS = ("axial", "shear_y", "shear_z", "torsion", "bend_y", "bend_z")
+HINGES = {"clamped": (), "flap hinge": (4,), "lag hinge": (5,), "both hinges": (4, 5)}
+UPPER = np.triu_indices(6)
+
+
+class Springs(Struct, frozen=True, forbid_unknown_fields=True):
+    """The root's springs along and about the blade's axes there, in N/m and N m/rad; 0 is free, what is not named is held."""
+
+    x: Annotated[float, Meta(ge=0)] | None = None
+    y: Annotated[float, Meta(ge=0)] | None = None
+    z: Annotated[float, Meta(ge=0)] | None = None
+    torsion: Annotated[float, Meta(ge=0)] | None = None
+    flap: Annotated[float, Meta(ge=0)] | None = None
+    lag: Annotated[float, Meta(ge=0)] | None = None
+
+
+class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
+    """A rigid body at the tip, in the tip section's axes."""
+
+    mass: Annotated[float, Meta(ge=0, description="kg")]
+    offset: Annotated[Vector, Meta(description="of its centre of mass from the tip, m")] = (0.0, 0.0, 0.0)
+    inertia: Annotated[
+        tuple[float, float, float, float, float, float],
+        Meta(description="tensor about its centre of mass: xx, yy, zz, xy, yz, zx (signs of the tensor), kg m²"),
+    ] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def matrix(self) -> Array:
+        """Rigid body's inertia (6, 6) about the tip."""
+        x, y, z = self.offset
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        xx, yy, zz, xy, yz, zx = self.inertia
+        tensor = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+        m = self.mass
+        return np.block([[m * np.eye(3), -m * cross], [m * cross, tensor - m * cross @ cross]])
+
+
+class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How a blade sits on its hub and what is at its tip; what is not given is as its file says, else 0 and clamped."""
+
+    precone_deg: Annotated[float | None, Meta(description="towards +z, degrees")] = None
+    pitch_deg: Annotated[float | None, Meta(description="y towards z, degrees")] = None
+    root: Annotated[
+        Literal["clamped", "flap hinge", "lag hinge", "both hinges"] | Springs | None,
+        Meta(description="the root's joint"),
+    ] = None
+    tip_mass: Annotated[TipMass | None, Meta(description="a rigid body at the tip")] = None
+
+    def mounted(self, blade: Blade) -> Blade:
+        """The blade so mounted."""
+        changes: dict[str, Any] = {}
+        if self.precone_deg is not None:
+            changes["precone"] = float(np.radians(self.precone_deg))
+        if self.pitch_deg is not None:
+            changes["pitch"] = float(np.radians(self.pitch_deg))
+        if self.root is not None:
+            changes["root"] = springs(self.root)
+        if self.tip_mass is not None:
+            changes["tip_mass"] = self.tip_mass.matrix()
+        return replace(blade, **changes)
+
+
+class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
+    """A blade's sections as they are: matrices about the reference curve in section axes, 21 numbers a station.
+
+    The 21 are the rows of the upper triangle, first (11 … 16), then (22 … 26), and so on; rigid strains have zeros.
+    """
+
+    s: Annotated[list[float], Meta(min_length=2, description="arc length from the root, m")]
+    stiffness: Annotated[list[Upper], Meta(description="N, N m, N m²")]
+    mass: Annotated[list[Upper], Meta(description="kg/m, kg, kg m")]
+    twist_deg: Annotated[list[float] | None, Meta(description="degrees")] = None
+    curve: Annotated[list[Vector] | None, Meta(description="reference curve from the root in blade axes, m")] = None
+    rigid: Annotated[
+        tuple[Literal["axial", "shear_y", "shear_z", "torsion"], ...], Meta(description="rigid strains")
+    ] = ()
+    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; ``folder`` is not used.
+
+        Raises:
+            CaseError: what cannot be.
+        """
+        n = len(self.s)
+        for what in ("stiffness", "mass", "twist_deg", "curve"):
+            given = getattr(self, what)
+            if given is not None and len(given) != n:
+                raise CaseError(f"blade.{what}: {len(given)} entries for {n} stations in blade.s: give one a station")
+        stiffness = symmetric(np.array(self.stiffness))
+        for i in (STRAINS.index(r) for r in self.rigid):
+            if stiffness[:, i, :].any():
+                raise CaseError(f"blade.rigid: {STRAINS[i]}: its stiffnesses are not zero: remove it or make them zero")
+            stiffness[:, i, i] = np.inf
+        try:
+            blade = Blade(
+                name=name,
+                stations=np.array(self.s),
+                stiffness=stiffness,
+                mass=symmetric(np.array(self.mass)),
+                twist=np.radians(self.twist_deg) if self.twist_deg is not None else np.zeros(n),
+                hub_radius=self.hub_radius,
+                curve=np.array(self.curve) if self.curve is not None else np.zeros((0, 3)),
+            )
+        except BladeError as error:
+            raise CaseError(f"blade.{error}") from error
+        return self.mounted(blade)
+
+
+class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
+    """A blade from a file of any format that is read (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, CSV)."""
+
+    file: Annotated[str, Meta(description="path from the case file's folder, or from `files`")]
+    files: Annotated[str | None, Meta(description="environment variable that names the folder `file` is in")] = None
+    main: Annotated[
+        str | None, Meta(description="main file that says how it is mounted, from the case file's folder")
+    ] = None
+    length: Annotated[float, Meta(gt=0, le=LONGEST, description="m, where no file says it")] | None = None
+    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="m, where no file says it")] | None = None
+    subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
+    multipliers: Annotated[
+        tuple[Positive, Positive, Positive] | None,
+        Meta(description="of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt"),
+    ] = None
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade, its file found from ``folder``.
+
+        Raises:
+            FilesMissingError: the variable of ``files`` is not set, or its folder has no such file.
+            CaseError: what the file's reader raises.
+        """
+        from . import reading  # which itself reads blades of these kinds
+        from .source import Mount
+
+        main = folder / self.main if self.main is not None else None
+        mount = Mount(
+            main=main,
+            length=self.length,
+            hub_radius=self.hub_radius,
+            subset=self.subset,
+            multipliers=self.multipliers,
+        )
+        return self.mounted(replace(reading(self._path(name, folder), mount).blade, name=name))
+
+    def _path(self, name: str, folder: Path) -> Path:
+        if self.files is None:
+            return folder / self.file
+        named = os.environ.get(self.files)
+        if named and (path := Path(named) / self.file).is_file():
+            return path
+        found = f"not in {self.files}={named}" if named else f"{self.files} is not set"
+        raise FilesMissingError(
+            f"{name}: file: {self.file}: {found}: set it to a folder with this file, which does not come with Southwell"
+        )
+
+
+def springs(root: str | Springs) -> Array:
+    """The root's stiffness (6,) from its name or springs."""
+    out = np.full(6, np.inf)
+    if isinstance(root, str):
+        out[list(HINGES[root])] = 0.0
+        return out
+    for i, name in enumerate(("x", "y", "z", "torsion", "flap", "lag")):
+        if getattr(root, name) is not None:
+            out[i] = getattr(root, name)
+    return out
+
+
+def symmetric(upper: Array) -> Array:
+    """Matrices (n, 6, 6) from the rows of their upper triangles (n, 21)."""
+    out = np.zeros((len(upper), 6, 6))
+    out[:, UPPER[0], UPPER[1]] = out[:, UPPER[1], UPPER[0]] = upper
+    return out
+
+
+def describe(blade: Blade) -> Sections:
+    """A blade as whole sections."""
+    finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
+    held = np.isinf(blade.root)
+    names = ("x", "y", "z", "torsion", "flap", "lag")
+    loose = Springs(**{n: float(k) for n, k, h in zip(names, blade.root, held, strict=True) if not h})
+    out = Sections(
+        s=blade.stations.tolist(),
+        stiffness=finite[:, UPPER[0], UPPER[1]].tolist(),
+        mass=blade.mass[:, UPPER[0], UPPER[1]].tolist(),
+        twist_deg=np.degrees(blade.twist).tolist(),
+        curve=[tuple(p) for p in blade.curve.tolist()],
+        rigid=tuple(STRAINS[i] for i in range(4) if np.isinf(blade.stiffness[:, i, i]).all()),  # pyright: ignore[reportArgumentType]
+        hub_radius=blade.hub_radius,
+        precone_deg=float(np.degrees(blade.precone)),
+        pitch_deg=float(np.degrees(blade.pitch)),
+    )
+    out = out if held.all() else changed(out, root=loose)
+    return changed(out, tip_mass=_body(blade.tip_mass)) if blade.tip_mass.any() else out
+
+
+def _body(matrix: Array) -> TipMass:
+    m = float(matrix[0, 0])
+    x, y, z = -np.array([matrix[4, 2], matrix[5, 0], matrix[3, 1]]) / m if m else np.zeros(3)  # of m c×, lower left
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    t = matrix[3:, 3:] + m * cross @ cross
+    entries = (t[0, 0], t[1, 1], t[2, 2], t[0, 1], t[1, 2], t[2, 0])
+    return TipMass(mass=m, offset=(float(x), float(y), float(z)), inertia=tuple(float(e) for e in entries))  # pyright: ignore[reportArgumentType]

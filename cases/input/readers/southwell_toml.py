@@ -1,0 +1,93 @@
+"""Southwell's own blade files: TOML with ``name`` and a table ``blade`` of any kind of a case file; CSV of stations.
+
+Axes are ours (``core.blade``). A CSV has the columns of ``cases.blades.Stations``; its length is given beside it.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta, Struct
+
+from ....core.blade import Blade
+from ..blades import BladeData, Dimensionless, Stations
+from ..errors import CaseError
+from ..toml import convert, document, finite
+from .sections import describe
+from .source import Mount, Reading, Source
+
+NAME = "Southwell TOML"
+AXES = "ours: x along the blade, z the rotor's axis, y the direction of motion; nothing to convert"
+
+
+class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
+    """A blade file."""
+
+    name: Annotated[str, Meta(min_length=1, description="what to call it")]
+    blade: BladeData
+    title: Annotated[str, Meta(description="one line")] = ""
+    source: Annotated[str, Meta(description="where the data come from")] = ""
+
+
+def is_one(path: Path) -> bool:
+    """Whether a TOML file is a blade's, and not a case's or a mechanism's."""
+    found = document(path)
+    return "blade" in found and "speeds" not in found and "compare" not in found
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in a TOML or CSV file.
+
+    Args:
+        path: of the file.
+        mount: hub radius, precone and pitch that are to differ; of a CSV also the length.
+
+    Raises:
+        CaseError: naming the file and field, or line, at fault.
+    """
+    mount = mount or Mount()
+    if path.suffix.lower() == ".csv":
+        if mount.length is None:
+            raise CaseError(f"{path}: length: stations are fractions of it: give --length and --hub-radius")
+        told = Stations(file=path.name, length=mount.length)
+        source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight",))
+        return Reading(_mounted(told.blade(path.stem, path.parent), mount), source)
+    data = document(path)
+    finite(data, str(path))
+    text = convert(data, BladeFile, str(path))
+    if isinstance(text.blade, Dimensionless):
+        raise CaseError(
+            f"{path}: blade.kind: 'dimensionless': it has no metres or seconds: make it a case with gamma speeds"
+        )
+    try:
+        blade = text.blade.blade(text.name, path.parent)
+    except CaseError as error:
+        raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
+    notes = tuple(note for note in (text.title, text.source) if note)
+    return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes))
+
+
+def _mounted(blade: Blade, mount: Mount) -> Blade:
+    given = {n: getattr(mount, n) for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is not None}
+    return replace(blade, **given)
+
+
+def write(blade: Blade, path: Path) -> None:
+    """Write any blade, all of it, so that ``read`` gives the same."""
+    data = msgspec.to_builtins(describe(blade))
+    lines = [f"name = {_toml(blade.name)}", "", "[blade]"]
+    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
+    lines += [f"{key} = {_toml(value)}" for key, value in data.items() if value is not None and key not in tables]
+    for name, table in tables.items():
+        lines += ["", f"[blade.{name}]", *(f"{k} = {_toml(v)}" for k, v in table.items() if v is not None)]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _toml(value: object) -> str:
+    """A value as TOML; lists of lists a line each."""
+    if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
+        return "[\n" + "".join(f"  {_toml(v)},\n" for v in value) + "]"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    return msgspec.json.encode(value).decode() if isinstance(value, str) else repr(value)

@@ -1,0 +1,265 @@
+"""windIO 1 and 2: a turbine's YAML with 6×6 matrices of the blade.
+
+In both the matrices are about the reference axis, order (shear x, shear y, axial, bending about x, about y, torsion), x
+downwind (to the suction side), y to the trailing edge, z along the blade, in axes turned by the twist, positive with the
+leading edge upwind: BeamDyn's conventions. (windIO 2's text on K11 says that x points to the trailing edge; its reference
+axis, its inertia and the files of its own examples say otherwise, and are followed.) ``i_edge`` and ``i_flap`` are about
+the reference axis' x and y, not about the mass centre's, and ``i_cp = −M45`` (windIO's converter from 1 to 2).
+
+| | windIO 1 | windIO 2 |
+|---|---|---|
+| matrices | ``elastic_properties_mb.six_x_six``, 21 numbers a station | ``structure.elastic_properties``, a list an entry |
+| axis, twist | beside the matrices, else ``outer_shape_bem``; rad | ``reference_axis``, ``outer_shape.twist``; degrees |
+| ``hub.cone_angle`` | rad | degrees |
+
+The cone is positive away from the tower, hence upwind for an upwind rotor. Grids are fractions of arc length; reference axis
+and twist are interpolated by PCHIP between their own points. Source: IEA Wind Task 37, windIO, turbine schema 1 and 2.1;
+P. Bortolotti et al., *A Framework for the Definition of Wind Turbine Systems*, IEA Wind (2022).
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
+
+from ....core.blade import AXIAL, SHEAR_Y, SHEAR_Z, TORSION
+from ..errors import CaseError
+from . import beamdyn
+from .beamdyn_axis import Axis, measured
+from .elastodyn import settle
+from .matrices import fault, mass_fault, rigid
+from .source import OPENFAST_AXES, Mount, Reading, Source
+from .text import load
+from .yaml_fields import Field, fields
+
+Array = NDArray[np.float64]
+
+NAME = "windIO"
+UPPER = np.triu_indices(6)
+ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
+STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
+"""Entries that a file may leave out, and the strain that is then rigid, in our order."""
+
+FAR = 1.0
+"""No blade is twisted by more, in radians: files of windIO 1 that say so have it in degrees, as windIO 2."""
+
+SAME = 1e-9
+"""Grid points nearer than this, of the length, are one."""
+
+
+class Told(NamedTuple):
+    """What a version says where: the elements, and what turns its angles into degrees."""
+
+    version: int
+    elastic: Field
+    axis: Field
+    twist: Field
+    degrees: float
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The blade in a windIO file.
+
+    Args:
+        path: of the file.
+        mount: what is to be different; hub radius and precone are the hub's.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    top = fields(load(path))
+    told = _told(top)
+    settled = settle(mount or Mount(), _hub(top, told))
+    eta, stiffness, mass, loose = (_lists if told.version == 2 else _rows)(told.elastic)
+    name = top.find("name")
+    blade = beamdyn.assemble(name.word() if name else path.stem, _axis(told), eta, stiffness, mass, settled)
+    blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(told.elastic))
+    notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
+    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+    if open_:
+        notes.append(f"{', '.join(open_)} taken as 0")
+    if told.version == 1 and told.degrees == 1.0:
+        notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
+    if loose:
+        notes.append(f"{', '.join(key for key, i in STRAINS.items() if i in loose)} not given: rigid")
+    axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
+    return Reading(blade, Source(f"{NAME} {told.version}", (path,), axes, tuple(notes)))
+
+
+def _told(top: Field) -> Told:
+    blade = top.get("components", "blade")
+    new = blade.find("structure", "elastic_properties") if blade.find("structure") else None
+    if new is not None:
+        return Told(2, new, blade.get("reference_axis"), blade.get("outer_shape", "twist"), 1.0)
+    old = blade.find("elastic_properties_mb", "six_x_six") if blade.find("elastic_properties_mb") else None
+    if old is None:
+        raise CaseError(
+            f"{blade.at}: no 6×6 matrices: neither structure.elastic_properties (windIO 2) nor "
+            "elastic_properties_mb.six_x_six (windIO 1); have them computed from the layers first (as by WISDEM)"
+        )
+    axis, twist = (old.find(key) or blade.get("outer_shape_bem", key) for key in ("reference_axis", "twist"))
+    already = np.abs(twist.get("values").numbers()).max() > FAR
+    return Told(1, old, axis, twist, 1.0 if already else float(np.degrees(1.0)))
+
+
+def _hub(top: Field, told: Told) -> Mount:
+    """Hub radius, and precone towards +z."""
+    hub = top.find("components", "hub")
+    if hub is None:
+        return Mount()
+    hub = hub.find("outer_shape_bem") or hub
+    diameter, cone = hub.find("diameter"), hub.find("cone_angle")
+    orientation = top.find("assembly", "rotor_orientation") if top.find("assembly") else None
+    upwind = orientation is None or orientation.word().lower() == "upwind"
+    radians = cone.number() * (1.0 if told.version == 1 else np.pi / 180) if cone else None
+    return Mount(
+        hub_radius=diameter.number() / 2 if diameter else None,
+        precone=None if radians is None else float(-radians if upwind else radians),
+    )
+
+
+def _axis(told: Told) -> Axis:
+    """The curve and the twist in degrees, in windIO's axes."""
+    parts = [_curve(told.axis.get(key)) for key in "xyz"] + [_curve(told.twist)]
+    grid = np.sort(np.concatenate([part.x for part in parts]))
+    grid = grid[np.append(True, np.diff(grid) > SAME)]
+    x, y, z, twist = (part(grid) for part in parts)
+    start = np.abs([x[0], y[0], z[0]]).max()
+    if start > SAME * z[-1]:
+        raise CaseError(f"{told.axis.at}: begins {start:g} m from the root: give it from the root, at 0, 0, 0")
+    z[0] = 0.0
+    if (np.diff(z) <= 0).any():
+        k = int(np.argmax(np.diff(z) <= 0)) + 1
+        raise CaseError(f"{told.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
+    values = np.stack([x - x[0], y - y[0], twist * told.degrees], axis=1)
+    return measured(CubicSpline(z, values, bc_type="natural"), z)
+
+
+def _curve(found: Field) -> PchipInterpolator:
+    return PchipInterpolator(_grid(found), _paired(found.get("values").numbers(), found.get("values"), found))
+
+
+def _grid(found: Field) -> Array:
+    """The grid of a field: from 0 to 1, strictly rising."""
+    field = found.get("grid")
+    grid = field.numbers()
+    if len(grid) < 2:
+        raise CaseError(f"{field.at}: {len(grid)} points: a blade needs at least a root and a tip")
+    for k, end in ((0, 0.0), (-1, 1.0)):
+        if abs(grid[k] - end) > SAME:
+            raise CaseError(f"{field.item(k)}: {grid[k]:g}: fractions of the length: begin at 0 and end at 1")
+    if (np.diff(grid) <= 0).any():
+        k = int(np.argmax(np.diff(grid) <= 0)) + 1
+        raise CaseError(
+            f"{field.item(k)}: {grid[k]:g}: not beyond the one before: a duplicate or out of order? sort them"
+        )
+    return grid
+
+
+def _paired(values: Array, field: Field, found: Field) -> Array:
+    count = len(found.get("grid").numbers())
+    if len(values) != count:
+        raise CaseError(f"{field.at}: {len(values)} values for {count} grid points: give one a point")
+    return values
+
+
+Sections = tuple[Array, Array, Array, tuple[int, ...]]
+
+
+def _rows(elastic: Field) -> Sections:
+    """windIO 1: stations, stiffness and mass in its axes, and rigid strains (none)."""
+    grids, matrices = [], []
+    for key, wrong in (("stiff_matrix", fault), ("inertia_matrix", mass_fault)):
+        found = elastic.get(key)
+        grids.append(_grid(found))
+        field = found.get("values")
+        matrices.append(_checked(_full(_paired(field.rows(21), field, found)), wrong, field))
+    return *_together(grids, matrices), ()
+
+
+def _lists(elastic: Field) -> Sections:
+    """windIO 2: stations, stiffness and mass in its axes, and which of our strains are rigid."""
+    found = elastic.get("stiffness_matrix")
+    grids = [_grid(found)]
+    entries = np.zeros((len(grids[0]), 21))
+    loose = []
+    for k, key in enumerate(ENTRIES):
+        field = found.find(key)
+        if field is not None and field.numbers().any():
+            entries[:, k] = _paired(field.numbers(), field, found)
+        elif key in STRAINS:
+            loose.append(STRAINS[key])
+            entries[:, k] = 1.0
+        elif key[1] == key[2]:
+            raise CaseError(f"{found.at}: no {key}: a blade must resist bending; add it")
+    stiffness = _full(entries)
+    for i in (int(key[1]) - 1 for key, strain in STRAINS.items() if strain in loose):
+        if np.abs(stiffness[:, i]).sum(1).max() != 1.0:
+            raise CaseError(f"{found.at}: K{i + 1}{i + 1} is not given but couplings with it are: add it")
+    stiffness = _checked(stiffness, fault, found.get("grid"))
+    inertia = elastic.get("inertia_matrix")
+    grids.append(_grid(inertia))
+    mass = _checked(_mass(inertia), mass_fault, inertia.get("mass"))
+    return *_together(grids, [stiffness, mass]), tuple(loose)
+
+
+def _mass(inertia: Field) -> Array:
+    def column(key: str, needed: bool = False) -> Array:
+        field = inertia.get(key) if needed else inertia.find(key)
+        if field is None:
+            return np.zeros(len(inertia.get("grid").numbers()))
+        return _paired(field.numbers(), field, inertia)
+
+    m, cx, cy = column("mass", needed=True), column("cm_x"), column("cm_y")
+    edge, flap, cross = column("i_edge"), column("i_flap"), column("i_cp")
+    out = np.zeros((len(m), 6, 6))
+    out[:, range(3), range(3)] = m[:, None]
+    out[:, 0, 5], out[:, 1, 5], out[:, 2, 3], out[:, 2, 4] = -m * cy, m * cx, m * cy, -m * cx
+    out[:, 3, 4] = -cross
+    out += np.triu(out, 1).swapaxes(1, 2)
+    out[:, 3, 3], out[:, 4, 4] = edge, flap
+    out[:, 5, 5] = column("i_plr") if inertia.find("i_plr") else edge + flap
+    return out
+
+
+def _full(upper: Array) -> Array:
+    out = np.zeros((len(upper), 6, 6))
+    out[:, UPPER[0], UPPER[1]] = out[:, UPPER[1], UPPER[0]] = upper
+    return out
+
+
+def _checked(matrices: Array, wrong: Callable[[Array], str | None], field: Field) -> Array:
+    for k, matrix in enumerate(matrices):
+        if said := wrong(matrix):
+            raise CaseError(f"{field.item(k)}: at station {k + 1}: {said}")
+    return matrices
+
+
+def _together(grids: list[Array], matrices: list[Array]) -> tuple[Array, Array, Array]:
+    """Both on the points of both grids."""
+    eta = np.sort(np.concatenate(grids))
+    eta = eta[np.append(True, np.diff(eta) > SAME)]
+    eta[-1] = 1.0
+    first, second = (make_interp_spline(grid, m, k=1)(eta) for grid, m in zip(grids, matrices, strict=True))
+    return eta, first, second
+
+
+def _tip(elastic: Field) -> Array:
+    """The point mass at the tip, (6, 6)."""
+    found = elastic.find("point_mass")
+    out = np.zeros((6, 6))
+    if found is None:
+        return out
+    field = found.get("mass")
+    at, masses = found.get("grid").numbers(), field.numbers()
+    for k, (where, m) in enumerate(zip(at, masses, strict=True)):
+        if m and abs(where - 1) > SAME:
+            raise CaseError(
+                f"{field.item(k)}: {m:g} kg at grid {where:g}: only the tip's can be held: spread it into mass"
+            )
+        out[range(3), range(3)] += m
+    return out

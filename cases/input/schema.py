@@ -1,0 +1,204 @@
+"""What a case file may say: a frozen schema, unknown keys refused, the unit of every key in its description.
+
+A case asks one question of every code: these blades, at these speeds, compared in these motions, within this target.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+from msgspec import UNSET, Meta, Struct, UnsetType
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import Model
+from ...references import published
+from .blades import BladeData, Dimensionless
+from .errors import CaseError, nearest
+from .toml import convert, document, finite
+
+Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
+Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
+Values = list[Annotated[float, Meta(ge=0)]] | str
+
+
+class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
+    """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends."""
+
+    rad_s: Annotated[Values, Meta(description="rad/s")] | UnsetType = UNSET
+    rpm: Annotated[Values, Meta(description="revolutions per minute")] | UnsetType = UNSET
+    gamma: (
+        Annotated[Values, Meta(description="γ, in units of √(EI/(ρ A L⁴)); dimensionless blades only")] | UnsetType
+    ) = UNSET
+
+
+class Compare(Struct, frozen=True, forbid_unknown_fields=True):
+    """Which modes are compared, and how closely they must agree."""
+
+    modes: Annotated[int, Meta(ge=1, le=100, description="how many, from the lowest, of those that qualify")]
+    motions: Annotated[
+        tuple[Motion, ...],
+        Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
+    ] = get_args(Motion)
+    target: Annotated[float, Meta(gt=0, description="largest difference, relative")] = 1e-3
+    tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+
+
+class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
+    """A discretisation of core's own, shown in a column of its own: usually the source's."""
+
+    elements: Annotated[int, Meta(ge=1, description="number of elements")]
+    mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]
+    stiffness: Annotated[
+        Literal["corotational", "parent"], Meta(description="the frame the beam's stiffness is linear in")
+    ]
+    lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the source leaves out")] = ()
+    tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()
+
+    @property
+    def model(self) -> Model:
+        """The effects kept."""
+        return Model(**dict.fromkeys(self.lacks, False))
+
+    @property
+    def what(self) -> str:
+        """Its name in a sentence."""
+        return f"{self.elements} elements, {self.mass} masses, {self.stiffness} stiffness".replace("_", "-")
+
+
+class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
+    """A case file."""
+
+    name: Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9.-]*$", description="as typed on the command line")]
+    title: Annotated[str, Meta(description="one line, as printed over a table")]
+    description: Annotated[str, Meta(description="what the case shows, and what in it is assumed")]
+    source: Annotated[str, Meta(description="where data and numbers come from")]
+    blade: BladeData
+    speeds: Speeds
+    compare: Compare
+    variants: Annotated[
+        dict[str, dict[str, Any]], Meta(description="name → the keys of ``blade`` that differ; empty: the blade itself")
+    ] = {}
+    discretisation: Discretisation | None = None
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One blade of a case.
+
+    Attributes:
+        name: the case's name, and the variant's after a slash if it has several.
+        blade: as every code is given it.
+        speeds: (k,) rad/s, ascending.
+    """
+
+    name: str
+    blade: Blade
+    speeds: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case file, read: ``text`` as it stands there, and its blades.
+
+    Attributes:
+        path: of the file, for messages.
+        text: the file's contents.
+        variants: one at least.
+    """
+
+    path: str
+    text: CaseFile
+    variants: tuple[Variant, ...]
+
+    @property
+    def name(self) -> str:
+        """As typed on the command line."""
+        return self.text.name
+
+
+def read(path: Path) -> Case:
+    """The case in a TOML file.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    return decode(document(path), str(path), path.parent)
+
+
+def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
+    """The case in a decoded TOML document; ``folder`` holds the tables it names.
+
+    Raises:
+        CaseError: one line with file, field, value, cause and remedy.
+    """
+    finite(data, path)
+    text = convert(data, CaseFile, path)
+    for table in text.compare.tables:
+        if table not in published.names():
+            raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
+    speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
+    variants = []
+    for label, changes in (text.variants or {"": {}}).items():
+        changed = {**data, "blade": {**data["blade"], **changes}}
+        blade = convert(changed, CaseFile, f"{path}: variants.{label}" if label else path).blade
+        name = f"{text.name}/{label}" if label else text.name
+        variants.append(Variant(name, blade.blade(name, folder), speeds))
+    return Case(path, text, tuple(variants))
+
+
+FASTEST, MOST_SPEEDS = 1e6, 10_000
+"""Of a range: the highest speed, in any unit, and the most steps."""
+
+
+def speed_range(text: str) -> NDArray[np.float64]:
+    """Speeds from ``first:last:step``, both ends included (the last step is the shorter where it must be), or from one number.
+
+    Raises:
+        ValueError: saying what is wrong with it.
+    """
+    parts = text.split(":")
+    try:
+        first, last, step = (float(p) for p in (parts if len(parts) == 3 else [*parts, *parts, "1"]))
+    except ValueError:
+        raise ValueError(f"{text!r} is neither a speed nor first:last:step, as in 0:30:5") from None
+    if not (0 <= first <= last < math.inf and 0 < step < math.inf):
+        raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
+    if last > FASTEST:
+        raise ValueError(f"{text!r}: {last:g} is faster than any rotor turns: another unit? give at most {FASTEST:g}")
+    steps = (last - first) / step
+    if steps > MOST_SPEEDS:
+        raise ValueError(f"{text!r}: {steps:.3g} steps: a step too short? give at most {MOST_SPEEDS}, as in 0:30:5")
+    speeds = [first + step * k for k in range(math.floor(steps + 1e-9) + 1)]
+    return np.array([*speeds, last] if last - speeds[-1] > 1e-9 * step else speeds)
+
+
+def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:
+    """The speeds in a file in rad/s, ascending (as they are, where they are γ).
+
+    Raises:
+        CaseError: none or several units, no speeds, or not ascending.
+    """
+    units = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(given, unit)) is not UNSET}
+    if len(units) != 1:
+        listed = ", ".join(units) or "none"
+        raise CaseError(f"{path}: speeds: {listed} given: give exactly one of rad_s, rpm, gamma")
+    ((unit, value),) = units.items()
+    if unit == "gamma" and not dimensionless:
+        raise CaseError(f'{path}: speeds.gamma: it needs blade.kind = "dimensionless": give rad_s or rpm')
+    try:
+        speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)
+    except ValueError as error:
+        raise CaseError(f"{path}: speeds.{unit}: {error}") from error
+    if not len(speeds):
+        raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
+    if speeds.max() > FASTEST:
+        raise CaseError(
+            f"{path}: speeds.{unit}: {speeds.max():g}: no rotor turns so fast: another unit? at most {FASTEST:g}"
+        )
+    if (np.diff(speeds) <= 0).any():
+        raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")
+    return speeds * (np.pi / 30 if unit == "rpm" else 1.0)

@@ -1,0 +1,169 @@
+"""Which mode of one code is which mode of another: by shape weighted with mass, never by number.
+
+The modal assurance criterion (Allemang and Brown, 1982), with the blade's mass as the metric so that metres and radians
+add up: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass per length for the three
+displacements and the rotation about x, times a quadrature weight. Shapes are complex: a gyroscopic lag counts.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import simpson
+from scipy.linalg import eigh, subspace_angles
+from scipy.optimize import linear_sum_assignment
+
+from ...core.blade import Blade, mass_at, twist_at
+from ...core.modes import STATIONS, Modes
+from ...core.participation import DOMINANT
+
+Array = NDArray[np.float64]
+
+MOTIONS = ("axial", "chordwise", "flapwise", "torsion")
+"""What the four columns of a shape are, in a blade that lies along x: motion along x, y, z, and rotation about x."""
+
+LEAST_MAC = 0.8
+"""Below this two shapes are not the same mode (customary; at 0.8 the angle between them is 27°)."""
+
+RIVAL_MAC = 0.5
+"""A second candidate at least this similar makes a pairing ambiguous, and is mentioned."""
+
+DEGENERATE = 2e-3
+"""Relative gap of frequencies below which codes may turn two shapes into each other."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The partner of one mode.
+
+    Attributes:
+        mode: index among the other code's modes; None if there is none.
+        mac: of the two shapes, or of the two subspaces (cos² of the largest principal angle).
+        note: anything a reader should know: compared as a subspace, ambiguous, why there is no partner.
+    """
+
+    mode: int | None
+    mac: float
+    note: str = ""
+
+
+def weights(blade: Blade) -> Array:
+    """``W``: (21, 4, 4) mass at the common stations, kg, kg m and kg m², in blade axes; tip mass included."""
+    s = STATIONS * blade.length
+    angle = twist_at(blade, s) + blade.pitch
+    mass = mass_at(blade, s) * np.asarray(simpson(np.eye(len(s)), x=s, axis=1))[:, None, None]
+    mass[-1] += blade.tip_mass
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn = np.zeros((len(s), 4, 4))  # section axes → blade axes, for (x, y, z, rotation about x)
+    turn[:, 0, 0] = turn[:, 3, 3] = 1.0
+    turn[:, 1, 1] = turn[:, 2, 2] = cos
+    turn[:, 1, 2], turn[:, 2, 1] = -sin, sin
+    return turn @ mass[:, :4, :4] @ turn.swapaxes(1, 2)
+
+
+def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
+    """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape moves no mass."""
+    cross = np.einsum("msi,sij,ksj->mk", a.conj(), weight, b, optimize=True)
+    norms = np.outer(_norm(a, weight), _norm(b, weight))
+    return np.divide(np.abs(cross) ** 2, norms, out=np.zeros_like(norms), where=norms > 0)
+
+
+def _norm(shapes: NDArray[np.complex128], weight: Array) -> Array:
+    return np.einsum("msi,sij,msj->m", shapes.conj(), weight, shapes, optimize=True).real
+
+
+def shares(modes: Modes, weight: Array) -> Array:
+    """Shares (m, 4) of each mode's modal mass that move along x, y, z and about x; each row adds up to 1."""
+    parts = np.einsum("msi,sij,msj->mi", modes.shapes.conj(), weight, modes.shapes, optimize=True).real
+    total = parts.sum(1, keepdims=True)
+    return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
+
+
+def families(modes: Modes, weight: Array) -> tuple[str, ...]:
+    """Name of each mode: the motion that carries at least ``DOMINANT`` of its modal mass, else ``mixed``."""
+    share = shares(modes, weight)
+    return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT else "mixed" for row in share)
+
+
+def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:
+    """Indices of ascending frequencies, neighbours closer than ``gap`` (relative) together."""
+    out: list[list[int]] = []
+    for k, f in enumerate(frequencies):
+        if out and f - frequencies[k - 1] <= gap * f:
+            out[-1].append(k)
+        else:
+            out.append([k])
+    return out
+
+
+def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
+    """The same modes, with shapes of equal frequency turned to move along one axis each where they can.
+
+    Any basis of a degenerate eigenspace is as good as another; the one that diagonalises the flapwise share can be named.
+    """
+    shapes = modes.shapes.copy()
+    for group in groups(modes.frequencies, gap):
+        if len(group) > 1:
+            flap = np.einsum("ms,s,ks->mk", shapes[group, :, 2].conj(), weight[:, 2, 2], shapes[group, :, 2])
+            whole = np.einsum("msi,sij,ksj->mk", shapes[group].conj(), weight, shapes[group], optimize=True)
+            if np.linalg.cond(whole) < 1e12:
+                shapes[group] = np.einsum("mk,msi->ksi", eigh(flap, whole)[1], shapes[group])
+    return replace(modes, shapes=shapes)
+
+
+def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array, least: float = LEAST_MAC) -> list[Pair]:
+    """Partners in ``other`` of the reference's modes ``wanted``.
+
+    All modes of both take part in one assignment that makes the sum of MACs largest. Where a partner found so is too
+    unlike and the reference's mode has close neighbours in frequency, the group is compared as a subspace, and its
+    members are matched in the order of frequency. ``least``: the MAC below which two shapes are not partners.
+    """
+    table = mac(reference.shapes, other.shapes, weight)
+    rows, columns = linear_sum_assignment(-table)
+    partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
+    found: dict[int, Pair] = {}
+    for group in groups(reference.frequencies):
+        if any(table[k, partner[k]] < least for k in group if k in partner):
+            found.update(_as_subspace(group, partner, reference, other, weight, least))
+    return [found.get(k) or _alone(table[k], partner.get(k), other, least) for k in wanted]
+
+
+def _as_subspace(
+    group: list[int], partner: dict[int, int], reference: Modes, other: Modes, weight: Array, least: float
+) -> dict[int, Pair]:
+    if len(group) == 1 or not all(k in partner for k in group):
+        return {}
+    theirs = sorted(partner[k] for k in group)
+    likeness = _subspace(reference.shapes[group], other.shapes[theirs], weight)
+    if likeness < least:
+        return {}
+    note = f"compared as a subspace of {len(group)} close modes"
+    return {k: Pair(mode, likeness, note) for k, mode in zip(group, theirs, strict=True)}
+
+
+def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
+    if not len(row):
+        return Pair(None, 0.0, "no partner: the code gave no modes")
+    if mode is None or row[mode] < least:
+        best = int(row.argmax())
+        nearest = f"its most similar mode, at {other.frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
+        return Pair(None, float(row[best]), f"no partner: {nearest}")
+    rivals = np.delete(row, mode)
+    if rivals.max(initial=0.0) < RIVAL_MAC:
+        return Pair(mode, float(row[mode]))
+    second = np.delete(other.frequencies, mode)[rivals.argmax()]
+    return Pair(mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too")
+
+
+def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:
+    """cos² of the largest principal angle between the spans of as many shapes each (Björck and Golub, 1973).
+
+    Shapes that do not span so many dimensions are like nothing: 0.
+    """
+    values, vectors = np.linalg.eigh(weight)
+    root = np.sqrt(values.clip(0.0))[:, :, None] * vectors.swapaxes(1, 2)  # rootᵀ root = W
+    flat = [np.einsum("sij,msj->msi", root, shapes).reshape(len(shapes), -1).T for shapes in (a, b)]
+    if any(np.linalg.matrix_rank(columns) < len(a) for columns in flat):
+        return 0.0
+    return float(np.cos(subspace_angles(*flat).max()) ** 2)

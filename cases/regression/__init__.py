@@ -1,0 +1,1 @@
+"""One run against an earlier one: the history of runs and the gate."""

@@ -1,0 +1,154 @@
+"""The columns of the matrix: one for each code, for the source's own discretisation, and for each printed table.
+
+A column's work is a picklable function of the speeds and of core's references there, and gives the column's rows.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.metadata import version
+from typing import Any
+
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from ...core.modes import Modes
+from ...references.protocol.interface import Code
+from ...references.protocol.registry import cap
+from ...references.protocol.worker import Answer, Failure, answers
+from ...references.protocol.worker import Run as Asked
+from ..input.schema import Case, Discretisation, Variant
+from ..judge.results import Cell, Level, Verdict
+from . import core_solver
+from .cells import Head, empty, given, refined, same
+from .published_tables import about, rows
+from .reference import Reference, felt
+from .refinement import Refining, Wanted, solve
+
+SAME = 1e-8
+"""Target for two codes given the very same discretisation."""
+
+References = Sequence[tuple[float, Reference]]
+"""Rotor speeds, rad/s, and core's references there."""
+
+Rows = tuple[list[Cell], list[Level]]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of one blade.
+
+    Attributes:
+        name: as shown while it is being solved.
+        model: the effects that its references keep.
+        head: what its cells have in common.
+        work: rows from core's references.
+    """
+
+    name: str
+    model: Model
+    head: Head
+    work: Callable[[Any], Rows]
+
+    def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
+        """Rows at all speeds; without a reference there is nothing to compare with."""
+        pairs = list(zip(speeds, core, strict=True))
+        without = [
+            empty(self.head, omega, "inconclusive", f"core with the same effects: {r.reason}")
+            for omega, r in pairs
+            if isinstance(r, Failure)
+        ]
+        cells, levels = self.work([(omega, r) for omega, r in pairs if not isinstance(r, Failure)])
+        return without + cells, levels
+
+
+def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float) -> list[Column]:
+    """All columns of one blade; ``codes`` by the name or import path they were asked for.
+
+    Codes that take mechanisms only have none, unless there are no others.
+    """
+    target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
+    out = []
+    if source:
+        head = Head(variant.name, "core", version("southwell"), "discretisation", target)
+        out.append(
+            Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
+        )
+    for table in about(blade, case.text.compare.tables):
+        head = Head(variant.name, table.name, "", "table", target, "nothing")
+        computed = source if source and table.name in source.tables else None
+        work = partial(rows, head, table, blade, computed)
+        out.append(Column(table.name, felt(table.series.model, blade), head, work))
+    takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
+    if codes and not takers:
+        out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
+    for name, code in takers.items():
+        head = Head(variant.name, code.name, code.version() or "", "code", target, getattr(code, "shares", ""))
+        out.append(_code(head, name, code, blade, timeout))
+    return out
+
+
+def _mechanisms_only(case: str, code: Any, target: float) -> Column:
+    head = Head(case, code.name, code.version() or "", "code", target)
+    return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
+
+
+def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:
+    if why := code.unsupported(blade):
+        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", why))
+    if not head.version:
+        return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
+    model = felt(code.model, blade)
+    if code.shares == "discretisation":
+        head = replace(head, role="same discretisation", target=SAME)
+        return Column(
+            code.name,
+            model,
+            head,
+            partial(_same, head, name, blade, code.levels[-1], code.model, timeout),
+        )
+    refining = Refining(tuple(code.levels), code.order, cap(code))
+    return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
+
+
+def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
+    return [empty(head, omega, verdict, reason) for omega, _ in core], []
+
+
+def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: float, core: References) -> Rows:
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return answers(name, blade, runs, timeout)
+
+    count = max(r.core.count for _, r in core)
+    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
+    return _join(refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, studies, strict=True))
+
+
+def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return core_solver.answers(blade, runs, source.mass, source.stiffness, source.model)
+
+    n = source.elements
+    refining = Refining((n, 2 * n, 4 * n), 2, 8 * n)
+    count = max(r.core.count for _, r in core)
+    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
+    return _join(
+        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, studies, strict=True)
+    )
+
+
+def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:
+    runs = [(omega, elements, r.core.count) for omega, r in core]
+    theirs = answers(name, blade, runs, timeout)
+    mine = core_solver.answers(blade, runs, "half_end", "parent", model)
+    return _join(same(head, omega, r, a, b) for (omega, r), a, b in zip(core, theirs, mine, strict=True))
+
+
+def _wanted(core: References) -> Callable[[float, Sequence[Modes]], Wanted]:
+    """What a solver is asked for: core's modes, whatever it answered."""
+    by_speed = {omega: r.core.wanted for omega, r in core}
+    return lambda omega, _: by_speed[omega]
+
+
+def _join(parts: Iterable[Rows]) -> Rows:
+    cells, levels = zip(*parts, strict=True)
+    return [c for part in cells for c in part], [v for part in levels for v in part]

@@ -1,0 +1,118 @@
+"""Core as one more solver: its answers in the form of a foreign code's, refined until they can serve as reference."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from ...core.element.discretize import Mass
+from ...core.element.measures import Measure
+from ...core.modes import Modes
+from ...core.solve import modes
+from ...references.protocol.worker import Answer, Failure, Run
+from ..input.errors import NO_STATE, CaseError
+from ..input.schema import Compare
+from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights
+from .refinement import Refining, Settled, Wanted, settle, solve
+
+SURE = 5e-5
+"""Core is refined until its own uncertainty, relative, is no more than this: a quarter of what a code is allowed."""
+
+START, MOST, CAP = 15, 100, 960
+"""Core's coarsest reference discretisation, the most it begins with for a table of many stations, and the finest; elements."""
+
+JUMP = 1e-4
+"""Length of an interval, of the blade's, in which properties jump rather than vary."""
+
+MARGIN = 4
+"""Modes solved beyond the highest one wanted, so that each has a chance of its partner."""
+
+DEEPER = 3
+"""How many times further up to look, once, where too few modes of those solved qualify."""
+
+
+@dataclass(frozen=True)
+class Converged:
+    """Core's modes at one speed: which of them a case compares, their estimates and families, in the same order."""
+
+    wanted: Wanted
+    settled: tuple[Settled, ...]
+    names: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """How many modes another solver should be asked for."""
+        return max(self.wanted.indices) + 1 + MARGIN
+
+
+def answers(
+    blade: Blade,
+    runs: Sequence[Run],
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    model: Model = FULL,
+) -> list[Answer]:
+    """Core's answers to ``runs``; a speed without a stable steady state is a failure that says so."""
+    out: list[Answer] = []
+    for omega, elements, count in runs:
+        try:
+            out.append(modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+        except NO_STATE as error:
+            out.append(Failure("refused", str(error)))
+    return out
+
+
+def refining(blade: Blade) -> Refining:
+    """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations.
+
+    Not those that make a step of a table whose properties jump: elements integrate across them.
+    """
+    intervals = np.diff(blade.stations) / blade.length
+    shortest = float(intervals[intervals > JUMP].min(initial=1.0))
+    start = min(max(START, math.ceil(1.0 / shortest - 1e-9)), MOST)
+    return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
+
+
+def converged(blade: Blade, omega: float, compare: Compare, model: Model) -> Converged | Failure:
+    """Core's converged modes at one speed, with the effects of ``model``.
+
+    Raises:
+        CaseError: if the blade has fewer modes than the case compares.
+    """
+    return _converged(blade, omega, compare, model, weights(blade), 2 * compare.modes + MARGIN)
+
+
+def _converged(
+    blade: Blade, omega: float, compare: Compare, model: Model, weight: Array, count: int
+) -> Converged | Failure:
+    def ask(runs: Sequence[Run]) -> list[Answer]:
+        return answers(blade, runs, model=model)
+
+    def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
+        finest = aligned(solved[-1], weight)
+        return Wanted(finest, qualifying(finest, weight, compare), weight)
+
+    plan = refining(blade)
+    (study,) = solve(ask, [omega], plan, count, wanted)
+    if not study.answers:
+        return study.failure or Failure("refused", "no answer")
+    target = wanted(omega, study.answers)
+    if len(target.indices) < compare.modes:
+        if count > 2 * compare.modes + MARGIN:
+            raise CaseError(
+                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s {len(target.indices)} of the lowest "
+                f"{len(study.answers[-1].frequencies)} modes move so: lower it"
+            )
+        return _converged(blade, omega, compare, model, weight, DEEPER * count)
+    named = families(target.reference, weight)
+    settled = tuple(settle(study.answers, target, plan.order))
+    return Converged(target, settled, tuple(named[k] for k in target.indices))
+
+
+def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:
+    """Indices of the lowest ``compare.modes`` modes with at least half their modal mass in ``compare.motions``."""
+    share = shares(modes, weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
+    return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

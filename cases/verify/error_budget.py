@@ -1,0 +1,152 @@
+"""Where differences come from: discretisation, model form, rounding, each switched on in core alone to show its share.
+
+A difference between two answers has four sources: the discretisation of each, the digits a table prints, what a model leaves
+out, and mistakes. Here the first three are told mode by mode, so that a reader can say what is left for the fourth. Every
+share is the relative change of a frequency of core's with one thing altered, against core with all effects and a fine
+division of its own:
+
+* discretisation, at the source's number of elements or ``ELEMENTS``: mass lumped at the nodes, stiffness linear in one end's
+  frame, both, neither; and the largest uncertainty of the codes after refinement;
+* model form: the steady stretch not followed, no Coriolis force, no rotary inertia, no stretch at all, and shear, switched
+  on where a blade has none and off where it has;
+* rounding: half a unit of the last digit of a printed number.
+
+One switch at a time: effects this small add up, but for products of them.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...core.blade import AXIAL, SHEAR_Y, SHEAR_Z, Blade
+from ...core.chain.steady import SteadyStateError
+from ...core.effects import FULL, Model
+from ...core.eigen import UnstableError
+from ...core.element.discretize import Mass
+from ...core.element.measures import Measure
+from ...core.modes import Modes
+from ...core.solve import modes
+from ..input.schema import Case, Variant
+from ..judge.results import Cell, Share
+from .controls import changed
+from .published_tables import about
+
+ELEMENTS = 50
+"""Of the discretisations compared, where the source names no number: the paper's."""
+
+FINE = 100
+"""Elements of the answer they are compared with; its own error is below 1e-6 for the modes compared."""
+
+SHEAR = 5 / 6 / (2 * (1 + 0.3))
+"""GA/EA of a solid rectangular isotropic section: shear factor 5/6 (Reissner 1945), Poisson's ratio 0.3."""
+
+WAYS: dict[str, tuple[Mass, Measure]] = {
+    "lumped mass": ("half_end", "corotational"),
+    "parent's frame": ("consistent", "parent"),
+    "both": ("half_end", "parent"),
+    "neither": ("consistent", "corotational"),
+}
+"""Ways to discretise."""
+
+EFFECTS = {
+    "no prestretch": Model(prestretch=False),
+    "no Coriolis": Model(coriolis=False),
+    "no rotary inertia": Model(rotary_inertia=False),
+}
+"""Effects left out, one at a time."""
+
+Altered = tuple[str, str, Modes | None]
+"""Cause, part, and core's modes with it."""
+
+
+def solve(case: Case, variant: Variant) -> list[Share]:
+    """The shares in one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
+    blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
+    printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
+    told = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
+    omega, count = max(told or variant.speeds.tolist()), 2 * compare.modes + 2
+    right = _solved(blade, omega, FINE, count)
+    if right is None:
+        return []
+    rows = []
+    for cause, part, found in _altered(blade, omega, source.elements if source else ELEMENTS, count):
+        if found is not None:
+            mine = changed(right, found, blade, compare)
+            rows += [Share(variant.name, omega, mode.name, cause, part, mode.change) for mode in mine]
+    return rows
+
+
+def _altered(blade: Blade, omega: float, elements: int, count: int) -> Iterator[Altered]:
+    for what, (mass, stiffness) in WAYS.items():
+        coarse = _solved(blade, omega, elements, count, mass=mass, stiffness=stiffness)
+        yield "discretisation", f"{what}, {elements} elements", coarse
+    for what, model in EFFECTS.items():
+        yield "model form", what, _solved(blade, omega, FINE, count, model)
+    for what, other in _with_other_strains(blade):
+        yield "model form", what, _solved(other, omega, FINE, count)
+
+
+def _solved(
+    blade: Blade,
+    omega: float,
+    elements: int,
+    count: int,
+    model: Model = FULL,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+) -> Modes | None:
+    """None where there is no answer: what is left out may have held the blade."""
+    try:
+        with np.errstate(invalid="ignore"):
+            return modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+    except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
+        return None
+
+
+def _with_other_strains(blade: Blade) -> Iterator[tuple[str, Blade]]:
+    """The blade without stretch, and with its shear switched the other way, where it is either rigid or not."""
+    shear = [SHEAR_Y, SHEAR_Z]
+    rigid = np.isinf(blade.stiffness[:, shear, shear])
+    axial = blade.stiffness[:, AXIAL, AXIAL]
+    if np.isfinite(axial).all():
+        yield "no stretch", _held(blade, [AXIAL])
+        if rigid.all():
+            stiffness = blade.stiffness.copy()
+            stiffness[:, shear, shear] = SHEAR * axial[:, None]
+            yield "with shear (κ = 5/6, ν = 0.3)", replace(blade, stiffness=stiffness)
+    if not rigid.any():
+        yield "no shear", _held(blade, shear)
+
+
+def _held(blade: Blade, strains: Sequence[int]) -> Blade:
+    stiffness = blade.stiffness.copy()
+    for k in strains:
+        stiffness[:, k, :] = stiffness[:, :, k] = 0.0
+        stiffness[:, k, k] = np.inf
+    return replace(blade, stiffness=stiffness)
+
+
+def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[Share]:
+    """For the modes and speed of ``rows``: the codes' largest numerical uncertainty, and the rounding of printed numbers."""
+    out = []
+    for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
+        here = [c for c in cells if c.omega == omega and c.uncertainty is not None and _name(c, cells) == name]
+        known = [c for c in here if c.verdict in ("pass", "known difference")]
+        for cause, part, role in (
+            ("discretisation", "codes, refined", "code"),
+            ("rounding", "printed digits", "table"),
+        ):
+            sizes = [c.uncertainty or 0.0 for c in known if c.role == role]
+            if role == "code":  # a code's own bracket is no discretisation error
+                sizes = [c.uncertainty or 0.0 for c in known if c.role == role and c.order is not None]
+            if sizes:
+                out.append(Share(case, omega, name, cause, part, max(sizes), bound=True))
+    return out
+
+
+def _name(cell: Cell, cells: Sequence[Cell]) -> str:
+    """``flapwise 2``: the ordinal among all modes that the case compares at that speed with all effects."""
+    whole = [c for c in cells if c.reference == c.full] or cells
+    lower = {c.mode for c in whole if (c.omega, c.family) == (cell.omega, cell.family) and 0 < c.mode <= cell.mode}
+    return f"{cell.family} {len(lower)}"

@@ -1,0 +1,92 @@
+"""A mechanism as a case: turned at several speeds, given to every code that takes mechanisms, held to core's answer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from msgspec import UNSET
+from numpy.typing import NDArray
+
+from ...core import multibody as mb
+from ...core.multibody.mechanism import turned_at
+from ...references.theories import blade_formulae
+from ..input.errors import CaseError, nearest
+from ..input.mechanisms import Described
+from ..input.schema import rad_s
+from ..judge.results import Setting
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The mechanism of a case and its speeds: what a blade's variant is to a case of blades.
+
+    Attributes:
+        name: the case's.
+        described: as read.
+        speeds: (k,) rad/s, ascending.
+        count: modes to compare.
+    """
+
+    name: str
+    described: Described
+    speeds: Array
+    count: int
+
+    def at(self, omega: float) -> mb.Mechanism:
+        """The mechanism with its rotor at ``omega`` (rad/s)."""
+        return turned_at(self.described.mechanism, self.described.text.rotor, omega)
+
+
+@dataclass(frozen=True)
+class MechanismCase:
+    """A mechanism's file with everything a case needs; ``variants`` has the one mechanism."""
+
+    described: Described
+    target: float
+    variants: tuple[Turning]
+
+    @property
+    def name(self) -> str:
+        """As typed on the command line."""
+        return self.described.text.name
+
+
+def case(described: Described) -> MechanismCase:
+    """A mechanism that says at which speeds and how closely it is compared.
+
+    Raises:
+        CaseError: if it does not.
+    """
+    text, path = described.text, described.path
+    if text.speeds is None or text.compare is None:
+        missing = "speeds" if text.speeds is None else "compare"
+        raise CaseError(f"{path}: {missing}: missing: a mechanism is a case with [speeds] and [compare]; add it")
+    try:
+        turned_at(described.mechanism, text.rotor, 0.0)
+    except mb.MechanismError as error:
+        raise CaseError(f"{path}: rotor: {error}") from error
+    if text.closed_form and text.closed_form.formula not in blade_formulae.FORMULAE:
+        advice = nearest(text.closed_form.formula, blade_formulae.FORMULAE)
+        raise CaseError(f"{path}: closed_form.formula: {text.closed_form.formula!r}: no such formula: {advice}")
+    variant = Turning(text.name, described, rad_s(text.speeds, path), text.compare.modes)
+    return MechanismCase(described, text.compare.target, (variant,))
+
+
+def setting(case: MechanismCase) -> Setting:
+    """What a report says of the case."""
+    (variant,), text = case.variants, case.described.text
+    rpm = text.speeds is not None and text.speeds.rpm is not UNSET
+    speeds = variant.speeds * (30 / np.pi if rpm else 1.0)
+    cut = variant.described.solve(1).linear.tree.weld_names
+    facts = {
+        "bodies": f"{len(text.bodies)}",
+        "joints": f"{len(text.joints)}",
+        "joints that close loops": ", ".join(cut) or "none",
+        "speeds": ", ".join(f"{v:.6g}" for v in speeds) + (" rpm" if rpm else " rad/s"),
+        "modes compared": f"the lowest {variant.count}, and their damping ratios",
+        "target": f"{case.target:g}",
+    }
+    return Setting(
+        case.name, text.title, " ".join(text.description.split()), text.source, "rpm" if rpm else "rad_s", facts
+    )

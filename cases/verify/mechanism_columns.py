@@ -1,0 +1,169 @@
+"""The columns of a mechanism's case: codes that take mechanisms, and closed forms, against core at every speed.
+
+A mechanism has no discretisation to refine: codes solve the very same equations, so the target is that of rounding, and
+damping ratios must agree as well as frequencies.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from ...core import multibody as mb
+from ...core.effects import FULL, Model
+from ...core.multibody.dynamics import reduced_mass
+from ...references.protocol.mechanism_interface import MechanismModes, takes_mechanisms
+from ...references.protocol.mechanism_worker import Answer, answers
+from ...references.protocol.worker import Failure
+from ...references.theories import blade_formulae
+from ..input.errors import CaseError
+from ..input.mechanism_schema import ClosedForm
+from ..judge.pairing import LEAST_MAC
+from ..judge.results import Cell, Verdict
+from ..judge.uncertainty import ROUNDING
+from ..judge.verdict import judge, unsigned
+from .cells import FAILED, Head, empty
+from .columns import Column, Rows
+from .mechanism_case import MechanismCase, Turning
+
+Array = NDArray[np.float64]
+References = dict[Model, list["Reference"]]
+Solve = Callable[[Sequence[mb.Mechanism], Sequence[float]], list[Answer]]
+Work = Callable[[Sequence[tuple[float, Any]]], Rows]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Core's modes at one speed; ``weight`` (k, k) is the mass matrix over the coordinates."""
+
+    modes: MechanismModes
+    damping: Array
+    names: tuple[str, ...]
+    weight: Array
+
+
+def references(variant: Turning) -> References:
+    """Core's modes at each speed.
+
+    Raises:
+        CaseError: if core cannot solve it, or has fewer modes than are compared.
+    """
+    return {FULL: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
+
+
+def _reference(variant: Turning, omega: float) -> Reference:
+    text, path = variant.described.text, variant.described.path
+    try:
+        found = mb.solve(variant.at(omega), variant.described.guess, independent=text.independent or None)
+    except mb.MechanismError as error:
+        raise CaseError(f"{path}: speeds: {omega:g} rad/s: {error}") from error
+    if len(found.values) < variant.count:
+        raise CaseError(f"{path}: compare.modes: {variant.count}: it has {len(found.values)}: lower it")
+    state = found.linear.state
+    weight = reduced_mass(state.kinematics, state.cartesian)
+    modes = MechanismModes(found.coordinates, state.q, found.values, found.shapes)
+    return Reference(modes, found.damping, tuple(name.partition(".")[0] for name in found.leading), weight)
+
+
+def columns(case: MechanismCase, codes: Mapping[str, Any], timeout: float) -> list[Column]:
+    """A column for each code and for the closed form; ``codes`` by the name or import path they were asked for.
+
+    Codes that take blades only have none, unless there are no others.
+    """
+    (variant,) = case.variants
+    out = []
+    takers = {name: code for name, code in codes.items() if takes_mechanisms(code)}
+    for name, code in (takers or codes).items():
+        head = Head(case.name, code.name, code.version() or "", "same discretisation", case.target)
+        out.append(Column(code.name, FULL, head, _work(head, variant, name, code, timeout)))
+    if form := variant.described.text.closed_form:
+        head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
+        out.append(Column(head.code, FULL, head, partial(_compared, head, variant, partial(_formula, form))))
+    return out
+
+
+def _work(head: Head, variant: Turning, name: str, code: Any, timeout: float) -> Work:
+    if not takes_mechanisms(code):
+        return partial(_absent, head, "not applicable", "it takes blades, not mechanisms")
+    if why := code.unsupported_mechanism(variant.described.mechanism):
+        return partial(_absent, head, "not applicable", why)
+    if not head.version:
+        return partial(_absent, head, "not run", f"not installed: {code.hint}")
+    return partial(_compared, head, variant, partial(_ask, name, variant.described.guess, timeout))
+
+
+def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[float, Reference]]) -> Rows:
+    return [empty(head, omega, verdict, reason) for omega, _ in core], []
+
+
+def _ask(
+    name: str, guess: Mapping[str, float], timeout: float, mechanisms: Sequence[mb.Mechanism], _: Sequence[float]
+) -> list[Answer]:
+    return answers(name, mechanisms, guess, timeout)
+
+
+def _formula(form: ClosedForm, _: Sequence[mb.Mechanism], speeds: Sequence[float]) -> list[Answer]:
+    try:
+        return [blade_formulae.solve(form.formula, omega, form.parameters) for omega in speeds]
+    except TypeError as error:
+        return [Failure("refused", f"closed_form.parameters: {error}")] * len(speeds)
+
+
+def _compared(head: Head, variant: Turning, solve: Solve, core: Sequence[tuple[float, Reference]]) -> Rows:
+    speeds = [omega for omega, _ in core]
+    found = solve([variant.at(omega) for omega in speeds], speeds)
+    rows = [cells(head, omega, r, a, variant.count) for (omega, r), a in zip(core, found, strict=True)]
+    return [cell for row in rows for cell in row], []
+
+
+def cells(head: Head, omega: float, reference: Reference, answer: Answer, count: int) -> list[Cell]:
+    """A code's cells at one speed: its partner of each of core's ``count`` lowest modes, by mass-weighted MAC."""
+    if isinstance(answer, Failure):
+        return [empty(head, omega, FAILED[answer.kind], answer.reason)]
+    likeness = alike(reference, answer)
+    partners = dict(zip(*(k.tolist() for k in linear_sum_assignment(-likeness)), strict=True))
+    out = []
+    for i in range(count):
+        mine = abs(complex(reference.modes.values[i]))
+        cell = replace(empty(head, omega, "fail", ""), mode=i + 1, family=reference.names[i], full=mine, reference=mine)
+        k = partners.get(i)
+        if k is None or likeness[i, k] < LEAST_MAC:
+            best = f", its most similar has MAC {likeness[i].max():.2f}" if likeness.size else ""
+            out.append(replace(cell, reason=f"no partner{best}"))
+            continue
+        value = complex(answer.values[k])
+        verdict, reason = judge(abs(value) / mine - 1.0, ROUNDING, head.target)
+        ratio, wanted = 0.0 - value.real / abs(value), float(reference.damping[i])
+        if abs(ratio - wanted) > head.target:
+            away = f"damping ratio {ratio:.9g}, core's {wanted:.9g}: more than {unsigned(head.target)} apart"
+            verdict, reason = "fail", f"{reason}; {away}" if reason else away
+        out.append(
+            replace(
+                cell,
+                frequency=abs(value),
+                difference=abs(value) / mine - 1.0,
+                uncertainty=ROUNDING,
+                verdict=verdict,
+                reason=reason,
+                mac=float(likeness[i, k]),
+                seconds=answer.seconds,
+            )
+        )
+    return out
+
+
+def alike(reference: Reference, answer: MechanismModes) -> Array:
+    """MAC (m, k) of core's modes with a code's, over the coordinates both have."""
+    shared = [name for name in answer.coordinates if name in reference.modes.coordinates]
+    ours = [reference.modes.coordinates.index(name) for name in shared]
+    weight = reference.weight[np.ix_(ours, ours)]
+    a, b = reference.modes.shapes[:, ours], answer.shapes[:, [answer.coordinates.index(name) for name in shared]]
+    norms = [np.real(np.einsum("mi,ij,mj->m", x.conj(), weight, x)) for x in (a, b)]
+    cross = np.abs(a.conj() @ weight @ b.T) ** 2
+    size = np.outer(norms[0], norms[1])
+    return np.divide(cross, size, out=np.zeros_like(size), where=size > 0)

@@ -1,0 +1,181 @@
+"""Core made wrong on purpose, one well-known mistake at a time: what a verification that is worth its name must notice.
+
+Each mistake is made from outside: in the blade, in the model, in the chain, or in the pencil that core linearises to; core
+itself knows nothing of them. Those of the pencil take away or turn round ``softening``, what the centrifugal force of a
+displaced point lacks when it is reckoned at its place in the steady state (for a point mass m the matrix ``−Ω² m`` in the
+two directions of the plane of rotation, nothing along the rotor's axis).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...core import solve
+from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
+from ...core.chain import pencil
+from ...core.chain.blocks import Tridiagonal
+from ...core.chain.lanczos import lanczos
+from ...core.chain.mode_shapes import mode_shapes
+from ...core.chain.pencil import Linear, Shape
+from ...core.effects import Model
+from ...core.element.discretize import Chain, Mass, discretize
+from ...core.element.measures import Measure
+from ...core.modes import Modes
+
+OFFSET = 0.25
+"""How far the reference axis is shifted, as a part of the radius of gyration √(EI_z/EA) in the middle of the span."""
+
+STILL = np.zeros(3)
+"""No gravity."""
+
+Solve = Callable[[Blade, float, int, int, Model], Modes]
+"""Modes of a blade at a speed (rad/s), with so many elements, so many of them, with a model's effects."""
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One way to be wrong.
+
+    Attributes:
+        name: short, for a table.
+        what: what such a program does, in a sentence.
+        wrong: its modes.
+        right: those without the mistake, in the same discretisation.
+        seen_in: blades of the package's cases in which it must be noticed.
+        at_rest: whether it changes a blade that does not turn.
+    """
+
+    name: str
+    what: str
+    wrong: Solve
+    right: Solve
+    seen_in: tuple[str, ...]
+    at_rest: bool = False
+
+
+def right(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """Core as it is."""
+    return solve.modes(blade, omega, elements, count, model=model)
+
+
+def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """The steady internal forces do not stiffen."""
+    return right(blade, omega, elements, count, replace(model, geometric=False))
+
+
+def no_coriolis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """No gyroscopic terms."""
+    return right(blade, omega, elements, count, replace(model, coriolis=False))
+
+
+def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """The root lies on the rotor's axis."""
+    return right(replace(blade, hub_radius=0.0), omega, elements, count, model)
+
+
+def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """Sections about an axis ``OFFSET`` beside their own along y, with Steiner's terms but not the couplings they come with.
+
+    About an axis shifted by e, EI_z grows by EA e², GJ by GA_y e² and the moments of inertia by m e², and stretch couples with
+    bending by EA e, motion with turning by m e; leaving out the couplings alone makes the section stiffer than it is. Rigid
+    shear has no such term in torsion here.
+    """
+    middle = stiffness_at(blade, blade.length / 2)[0]
+    square = OFFSET**2 * middle[BEND_Z, BEND_Z] / middle[AXIAL, AXIAL]
+    stiffness, mass = blade.stiffness.copy(), blade.mass.copy()
+    stiffness[:, BEND_Z, BEND_Z] += stiffness[:, AXIAL, AXIAL] * square
+    if np.isfinite(stiffness[:, SHEAR_Y, SHEAR_Y]).all():
+        stiffness[:, TORSION, TORSION] += stiffness[:, SHEAR_Y, SHEAR_Y] * square
+    for turning in (TORSION, BEND_Z):
+        mass[:, turning, turning] += mass[:, AXIAL, AXIAL] * square
+    return right(replace(blade, stiffness=stiffness, mass=mass), omega, elements, count, model)
+
+
+def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """The sign of spin softening is wrong: what should soften stiffens."""
+    return _altered(blade, omega, elements, count, model, softening=-1.0)
+
+
+def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """Linearised in absolute coordinates of a frame that stands still: neither spin softening nor Coriolis terms."""
+    return _altered(blade, omega, elements, count, replace(model, coriolis=False), softening=0.0)
+
+
+def _altered(blade: Blade, omega: float, elements: int, count: int, model: Model, softening: float) -> Modes:
+    """Core with its spin softening multiplied by a factor."""
+    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
+    state = solve.balance(body, omega, STILL, model)
+    p, own = state.linear, spin_softening(body, state.shape, omega)
+    less = Tridiagonal(*(a + (softening - 1.0) * b for a, b in zip(_parts(p.rest), _parts(own), strict=True)))
+    return _modes(body, replace(p, rest=less), state.shape, omega, count)
+
+
+def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
+    """The part of the stiffness that the displaced mass' centrifugal force is: of a model without geometric stiffness, the
+    stiffness at speed less that at rest, about the same shape.
+    """
+    bare = Model(geometric=False)
+    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).rest for speed in (omega, 0.0))
+    return Tridiagonal(*(a - b for a, b in zip(_parts(turning), _parts(standing), strict=True)))
+
+
+def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
+    return t.diagonal, t.upper, t.lower
+
+
+def _modes(body: Chain, p: Linear, shape: Shape, omega: float, count: int) -> Modes:
+    found = lanczos(p, count)
+    return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
+
+
+LUMPED: tuple[Mass, Measure] = ("half_end", "parent")
+"""The paper's discretisation, whose end weight the last mistake gets wrong; its 50 elements are divided as the others."""
+
+
+def lumped(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """Core with point masses, half of each element's mass at either end."""
+    mass, stiffness = LUMPED
+    return solve.modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+
+
+def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """Every node has an element's mass, the tip too, which should have half of one."""
+    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, *LUMPED)
+    lumps = body.lumps.copy()
+    lumps[-1] += lumps[-1] - blade.tip_mass
+    return solve.chain_modes(replace(body, lumps=lumps), omega, count, model=model)
+
+
+PLAIN = ("park-cantilever",)
+
+MISTAKES = (
+    Mistake("no geometric stiffness", "the centrifugal tension does not stiffen", no_geometric_stiffness, right, PLAIN),
+    Mistake("softening's sign", "spin softening is added instead of taken away", softening_reversed, right, PLAIN),
+    Mistake(
+        "frozen frame",
+        "linearised in a frame that stands still: chordwise is read as flapwise",
+        frozen_frame,
+        right,
+        PLAIN,
+    ),
+    Mistake(
+        "axis shifted",
+        f"reference axis shifted by {OFFSET:g} radii of gyration, without the coupling terms",
+        shifted_axis,
+        right,
+        PLAIN,
+        at_rest=True,
+    ),
+    Mistake("no Coriolis", "no Coriolis force", no_coriolis, right, ("yoo-shin-chordwise/delta-0",)),
+    Mistake(
+        "whole end mass",
+        "lumped mass, the tip's a whole element's instead of half",
+        whole_end_mass,
+        lumped,
+        PLAIN,
+        True,
+    ),
+    Mistake("no hub radius", "the root lies on the rotor's axis", no_hub, right, PLAIN),
+)
+"""All of them."""

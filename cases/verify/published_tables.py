@@ -1,0 +1,119 @@
+"""Printed tables as columns of the matrix: the series that are about a case's blade, at the speeds both have."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...core.blade import Blade, sample, uniform
+from ...core.effects import Model
+from ...references.protocol.worker import Failure
+from ...references.published import Datum, Series, load
+from ..input.schema import Discretisation
+from ..judge.pairing import pair
+from ..judge.results import Cell, Level
+from ..judge.uncertainty import from_print
+from ..judge.verdict import unsigned
+from .cells import Head, excused, printed
+from .core_solver import answers
+from .reference import Reference
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A series of printed numbers for one blade.
+
+    Attributes:
+        name: the table's and the series', ``park2010/present``.
+        series: the numbers.
+        unit: what the series' frequencies are multiplied by to be rad/s.
+        speed: what its speeds are multiplied by.
+    """
+
+    name: str
+    series: Series
+    unit: float
+    speed: float
+
+    def at(self, omega: float, families: Sequence[str]) -> list[Datum | None]:
+        """The number for each of a reference's modes, by family and ordinal within it, at rotor speed ``omega``."""
+        here = {(d.family, d.mode): d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)}
+        seen: Counter[str] = Counter()
+        found = []
+        for family in families:
+            seen[family] += 1
+            found.append(here.get((family, seen[family])))
+        return found
+
+
+def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
+    """The series of the tables ``names`` whose beam is this blade.
+
+    Raises:
+        TableError: if there is no such table.
+    """
+    return [
+        Printed(f"{name}/{series.name}", series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
+        for name in names
+        for table in [load(name)]
+        for series in table.series
+        if (series.blade == blade.name if series.blade else _alike(blade, series))
+    ]
+
+
+UNITS = {"rad/s": (1.0, 1.0), "rpm, Hz": (2 * np.pi, np.pi / 30)}
+"""What frequencies and speeds of a table are multiplied by to be rad/s; dimensionless ones by the beam's own rate."""
+
+
+def _rate(blade: Blade) -> float:
+    section = sample(blade, 0.0)
+    return float(np.sqrt(section.EI_z[0] / (section.mass[0] * blade.length**4)))
+
+
+def _alike(blade: Blade, series: Series) -> bool:
+    if series.tapered or not uniform(replace(blade, tip_mass=np.zeros((6, 6)))):
+        return False
+    section = sample(blade, 0.0)
+    point = series.tip_mass_ratio * section.mass[0] * blade.length * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    slenderness = blade.length * np.sqrt(section.EA[0] / section.EI_z[0])
+    return bool(
+        np.allclose(blade.tip_mass, point, rtol=1e-6, atol=1e-12)
+        and np.isclose(series.hub_ratio, blade.hub_radius / blade.length, rtol=1e-6, atol=1e-9)
+        and (series.slenderness is None or np.isclose(series.slenderness, slenderness, rtol=1e-6))
+    )
+
+
+def rows(
+    head: Head, table: Printed, blade: Blade, source: Discretisation | None, core: Sequence[tuple[float, Reference]]
+) -> tuple[list[Cell], list[Level]]:
+    """Cells of every number that the table has for core's modes; ``source``: what it was computed with, if known."""
+    cells = []
+    held = table.series
+    if held.target:
+        head = replace(head, target=max(head.target, held.target))
+    for omega, reference in core:
+        data = table.at(omega, reference.core.names)
+        if any(data):
+            coarse = _coarse(blade, omega, table.series.model, reference, source) if source else [None] * len(data)
+            for i, datum in enumerate(data):
+                if datum:
+                    value = from_print(datum.printed, table.unit)
+                    note = f"suspect print: {datum.evidence}" if datum.suspect else ""
+                    cell = printed(head, omega, i, reference, value, note)
+                    if held.grounds and cell.verdict == "pass":
+                        cell = replace(cell, reason=f"held to {unsigned(head.target)}: {held.grounds}")
+                    cells.append(excused(cell, value, coarse[i], source.what) if source else cell)
+    return cells, []
+
+
+def _coarse(
+    blade: Blade, omega: float, model: Model, reference: Reference, source: Discretisation
+) -> list[float | None]:
+    """Core's frequencies of the reference's modes in the source's discretisation, None where one has no partner."""
+    wanted, run = reference.core.wanted, (omega, source.elements, reference.core.count)
+    (modes,) = answers(blade, [run], source.mass, source.stiffness, model)
+    if isinstance(modes, Failure):
+        return [None] * len(wanted.indices)
+    partners = pair(wanted.reference, modes, wanted.indices, wanted.weight)
+    return [None if p.mode is None else float(modes.frequencies[p.mode]) for p in partners]

@@ -1,0 +1,105 @@
+"""What a code is compared with: core with the effects that the code keeps, and what the missing ones would change."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from ...references.protocol.worker import Failure
+from ..input.errors import CaseError
+from ..input.schema import Compare
+from ..judge.pairing import pair
+from ..judge.verdict import Effect
+from .core_solver import Converged, converged
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Core's modes at one speed with the effects of one model.
+
+    Attributes:
+        core: converged modes.
+        full: the same modes' frequencies with all effects, rad/s; None where no mode with all effects resembles them.
+        likeness: MAC of each mode with the one with all effects.
+        effects: for each mode, what leaving out each effect that the model lacks does to it; empty where all of them
+            together do no more than the target.
+    """
+
+    core: Converged
+    full: tuple[float | None, ...]
+    likeness: tuple[float, ...]
+    effects: tuple[tuple[Effect, ...], ...]
+
+
+MAJORITY = 0.5
+"""Least MAC of core's modes with and without an effect that changes shapes too: at most one mode can be so alike."""
+
+References = dict[Model, list[Reference | Failure]]
+"""By model, at each speed."""
+
+
+def felt(model: Model, blade: Blade, omega: float = 1.0) -> Model:
+    """The model as this blade feels it at this speed: what could make no difference is not lacking.
+
+    A blade without rotary inertia cannot lack it; at rest only rotary inertia is left to lack.
+    """
+    inertia = model.rotary_inertia or not blade.mass[:, 3:, 3:].any()
+    return replace(model if omega else FULL, rotary_inertia=inertia)
+
+
+def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Model]) -> References:
+    """Core's references with all effects, and with those of each of ``models``.
+
+    Raises:
+        CaseError: if with all effects there is no stable steady state at one of the speeds, or too few modes.
+    """
+    models = set(models) | {FULL}
+    by_speed = [_at(blade, omega, compare, models) for omega in speeds]
+    return {model: [solved[model] for solved in by_speed] for model in models}
+
+
+def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Model]) -> dict[Model, Reference | Failure]:
+    @cache
+    def solve(model: Model) -> Converged | Failure:
+        return converged(blade, omega, compare, model)
+
+    full = solve(FULL)
+    if isinstance(full, Failure):
+        raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
+    out: dict[Model, Reference | Failure] = {}
+    for model in models:
+        keeps = felt(model, blade, omega)
+        mine = solve(keeps)
+        out[model] = mine if isinstance(mine, Failure) else _reference(mine, full, compare.target, keeps, solve)
+    return out
+
+
+def _reference(
+    mine: Converged, full: Converged, target: float, model: Model, solve: Callable[[Model], Converged | Failure]
+) -> Reference:
+    whole, likeness = _partners(mine, full)
+    values = [s.estimate.value if s.estimate else None for s in mine.settled]
+    shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
+    effects: list[list[Effect]] = [[] for _ in values]
+    if any(shift is None or abs(shift) > target for shift in shifts):  # each effect alone is worth solving for
+        for name in (f.name for f in fields(model) if not getattr(model, f.name)):
+            without, _ = _partners(mine, solve(replace(FULL, **{name: False})))
+            for found, f, reference in zip(effects, without, whole, strict=True):
+                found.append(Effect(name.replace("_", " "), _change(f, reference)))
+    return Reference(mine, whole, likeness, tuple(map(tuple, effects)))
+
+
+def _change(without: float | None, whole: float | None) -> float | None:
+    return without / whole - 1.0 if without and whole else None
+
+
+def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
+    """Frequencies in ``other`` of the modes of ``mine``, and how alike the shapes are."""
+    if isinstance(other, Failure):
+        return (None,) * len(mine.settled), (0.0,) * len(mine.settled)
+    theirs = dict(zip(other.wanted.indices, other.settled, strict=True))
+    wanted = mine.wanted
+    found = pair(wanted.reference, other.wanted.reference, wanted.indices, wanted.weight, least=MAJORITY)
+    estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in found]
+    return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in found)

@@ -1,0 +1,128 @@
+"""One solver's frequencies of one blade at many speeds, refined until they are sure enough.
+
+Every refinement's modes are paired with the same reference modes, so that a sequence of frequencies belongs to one mode.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.modes import Modes
+from ...references.protocol.worker import Answer, Failure, Run
+from ..judge.pairing import Pair, pair
+from ..judge.uncertainty import Estimate, from_bracket, from_refinement
+
+Array = NDArray[np.float64]
+Ask = Callable[[Sequence[Run]], list[Answer]]
+
+SURE = 2e-4
+"""A code is refined until its own uncertainty, relative, is no more than this."""
+
+
+@dataclass(frozen=True)
+class Refining:
+    """How a solver is refined: ``levels`` first, all of them; then twice the last, up to ``cap``, until ``sure``."""
+
+    levels: tuple[int, ...]
+    order: int
+    cap: int
+    sure: float = SURE
+
+
+@dataclass(frozen=True)
+class Settled:
+    """One mode, followed through the refinements.
+
+    Attributes:
+        estimate: None if no refinement had a partner for the mode.
+        partner: at the finest refinement.
+        history: (elements, frequency in rad/s) of every refinement that had a partner.
+        bracketed: whether the uncertainty is the code's own bracket rather than had by refinement.
+    """
+
+    estimate: Estimate | None
+    partner: Pair
+    history: tuple[tuple[int, float], ...]
+    bracketed: bool = False
+
+
+@dataclass(frozen=True)
+class Study:
+    """A solver's answer at one speed: its modes at every refinement, and why the finest asked for is not there."""
+
+    answers: tuple[Modes, ...]
+    failure: Failure | None = None
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The modes to look for at one speed: ``indices`` among the modes of ``reference``; ``weight`` as in ``pairing``."""
+
+    reference: Modes
+    indices: tuple[int, ...]
+    weight: Array
+
+
+def solve(
+    ask: Ask,
+    speeds: Sequence[float],
+    refining: Refining,
+    count: int,
+    wanted: Callable[[float, Sequence[Modes]], Wanted],
+) -> list[Study]:
+    """Studies at each speed. Coarse refinements are asked for first, so that a time limit costs the fine ones.
+
+    Args:
+        ask: the solver.
+        speeds: rad/s.
+        refining: how it is refined.
+        count: how many modes to ask for.
+        wanted: what must be sure enough at a speed, given the answers there so far (one at least).
+    """
+    levels = list(refining.levels)
+    runs = [(omega, n, count) for n in levels for omega in speeds]
+    solved: dict[float, list[Modes]] = {omega: [] for omega in speeds}
+    failed: dict[float, Failure] = {}
+    while runs:
+        for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
+            if isinstance(answer, Failure):
+                failed[omega] = answer
+            else:
+                failed.pop(omega, None)
+                solved[omega].append(answer)
+        finer = 2 * levels[-1]
+        levels.append(finer)
+        open_ = [omega for omega in speeds if omega not in failed]
+        unsure = [omega for omega in open_ if not _sure(solved[omega], wanted(omega, solved[omega]), refining)]
+        runs = [(omega, finer, count) for omega in unsure] if finer <= refining.cap else []
+    return [Study(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
+
+
+def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
+    return all(
+        s.bracketed
+        or s.estimate is None
+        or (s.estimate.uncertainty is not None and s.estimate.uncertainty <= refining.sure)
+        for s in settle(answers, wanted, refining.order)
+    )
+
+
+def settle(answers: Sequence[Modes], wanted: Wanted, order: int) -> list[Settled]:
+    """Each wanted mode's estimate from a solver's answers at rising refinements."""
+    pairs = [pair(wanted.reference, modes, wanted.indices, wanted.weight) for modes in answers]
+    return [_settle(answers, [level[i] for level in pairs], order) for i in range(len(wanted.indices))]
+
+
+def _settle(answers: Sequence[Modes], partners: Sequence[Pair], order: int) -> Settled:
+    found = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
+    last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code gave no modes")
+    history = tuple((m.elements, float(m.frequencies[k])) for m, k in found)
+    if last.mode is None:
+        return Settled(None, last, history)
+    finest = answers[-1]
+    if len(finest.uncertainty):
+        bracket = from_bracket(history[-1][1], finest.uncertainty[last.mode])
+        return Settled(bracket, last, history, bracketed=True)
+    return Settled(from_refinement([n for n, _ in history], [f for _, f in history], order), last, history)

@@ -1,0 +1,58 @@
+"""What a report says of a case: its words, and the facts of each blade that every code was given."""
+
+from typing import get_args
+
+import numpy as np
+from msgspec import UNSET
+from scipy.integrate import trapezoid
+
+from ...core.blade import Blade
+from ..input.schema import Case, Variant
+from ..judge.pairing import MOTIONS
+from ..judge.results import Setting, Unit
+from ..judge.verdict import unsigned
+from .mechanism_case import MechanismCase, setting
+
+
+def settings(case: Case | MechanismCase) -> tuple[Setting, ...]:
+    """One for each blade of the case, or for its mechanism."""
+    if isinstance(case, MechanismCase):
+        return (setting(case),)
+    return tuple(_setting(case, variant) for variant in case.variants)
+
+
+def _setting(case: Case, variant: Variant) -> Setting:
+    text = case.text
+    (unit,) = (u for u in get_args(Unit) if getattr(text.speeds, u) is not UNSET)
+    speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
+    facts = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
+    facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
+    some = len(text.compare.motions) < len(MOTIONS)
+    moving = f" that move mostly {' or '.join(text.compare.motions)}" if some else ""
+    facts["modes compared"] = f"the lowest {text.compare.modes}{moving}"
+    facts["target"] = unsigned(text.compare.target)
+    if text.discretisation:
+        d = text.discretisation
+        what = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
+        facts["source's discretisation"] = what
+    return Setting(variant.name, text.title, " ".join(text.description.split()), text.source, unit, facts)
+
+
+def _dimensional(blade: Blade) -> dict[str, str]:
+    mass = trapezoid(blade.mass[:, 0, 0], blade.stations)
+    facts = {
+        "length": f"{blade.length:g} m",
+        "hub radius": f"{blade.hub_radius:g} m",
+        "mass": f"{mass + blade.tip_mass[0, 0]:.6g} kg",
+        "stations": f"{len(blade.stations)}",
+    }
+    if blade.twist.any():
+        facts["twist"] = f"{np.degrees(blade.twist[0]):g}° at the root, {np.degrees(blade.twist[-1]):g}° at the tip"
+    if not blade.mass[:, 3:, 3:].any():
+        facts["rotary inertia"] = "none"
+    return facts
+
+
+def _dimensionless(blade: Blade) -> dict[str, str]:
+    axial, bending = blade.stiffness[0, 0, 0], blade.stiffness[0, 5, 5]
+    return {"slenderness": f"{np.sqrt(axial / bending):g}", "hub ratio": f"{blade.hub_radius:g}"}

@@ -1,0 +1,183 @@
+"""A solver that is only a function: its cells, judged in this process as any code's are, and what a miss looks like.
+
+For a test of somebody else's solver, which needs no adapter and no process of its own.
+"""
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from ...core.modes import STATIONS, Modes
+from ...references.protocol.worker import Answer, Failure
+from ...references.protocol.worker import Run as Asked
+from ..input.errors import CaseError
+from ..input.schema import Compare, Variant
+from ..judge.results import Cell
+from ..judge.verdict import judge, percent, unsigned
+from . import published_tables
+from .cells import Head, Rows, empty, refined
+from .controls import NEAR, Wrong
+from .reference import References, felt, references
+from .refinement import Refining, solve
+
+
+@dataclass(frozen=True)
+class Yours:
+    """A solver to be judged.
+
+    Attributes:
+        solve: ``(blade, omega, elements, count)`` or ``(blade, omega)`` → frequencies and shapes. ``omega`` and the (m,)
+            frequencies in rad/s; shapes (m, 21, 4) at ``core.modes.STATIONS``, as in ``Modes``, or (m, 21, 3) without the
+            rotation about the blade's axis; any scale, real or complex, in any order of frequency.
+        name: of its column.
+        lacks: effects it leaves out, see ``Model``: core is compared without them.
+        levels: refinements, coarse to fine; those of a function without ``elements`` count for nothing.
+        order: order of convergence of its frequencies.
+        unsupported: why it cannot solve a blade; None if it can.
+        cases: names of cases, or ``case/blade``; all by default.
+        target: largest relative difference; each case's own by default.
+        known: differences that are known: pattern of a test's name → cause, and the largest that it explains (relative).
+    """
+
+    solve: Callable[..., tuple[Any, Any]]
+    name: str = "yours"
+    lacks: tuple[str, ...] = ()
+    levels: tuple[int, ...] = (10, 20, 40)
+    order: int = 4
+    unsupported: Callable[[Blade], str | None] = lambda blade: None
+    cases: tuple[str, ...] = ()
+    target: float | None = None
+    known: dict[str, tuple[str, float]] = field(default_factory=dict)
+
+    @property
+    def model(self) -> Model:
+        """The effects it keeps."""
+        return replace(FULL, **dict.fromkeys(self.lacks, False))
+
+    @property
+    def refines(self) -> bool:
+        """Whether its function takes ``elements`` and ``count``."""
+        return len(inspect.signature(self.solve).parameters) != 2
+
+
+def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
+    """Its cells of one blade at all the case's speeds: against core, and against printed numbers that core agrees with,
+    with the table's effects and with the solver's.
+
+    Raises:
+        CaseError: if core cannot solve the blade.
+    """
+    target = yours.target or compare.target
+    head = Head(variant.name, yours.name, "", "code", target, "nothing")
+    speeds = variant.speeds.tolist()
+    if why := yours.unsupported(variant.blade):
+        return [empty(head, omega, "not applicable", why) for omega in speeds], []
+    model = felt(yours.model, variant.blade)
+    solved = references(variant.blade, speeds, compare, [model])
+    core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
+    if len(core) < len(speeds):
+        raise CaseError(f"{variant.name}: core without {', '.join(yours.lacks)} has no steady state at every speed")
+    refining = Refining(yours.levels, yours.order, 4 * yours.levels[-1]) if yours.refines else Refining((1,), 0, 1)
+    count = max(r.core.count for _, r in core)
+    by_speed = {omega: r.core.wanted for omega, r in core}
+    studies = solve(
+        lambda runs: _answers(yours, variant.blade, runs), speeds, refining, count, lambda w, _: by_speed[w]
+    )
+    cells, levels = [], []
+    for (omega, reference), study in zip(core, studies, strict=True):
+        new = refined(head, omega, reference, study, refining.order)
+        cells += new[0]
+        levels += new[1]
+    return cells + _printed(cells, variant, compare, solved), levels
+
+
+def _answers(yours: Yours, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
+    """What it answers; a mistake in what it returns is its failure, an exception in it is its author's to see."""
+    out: list[Answer] = []
+    for omega, elements, count in runs:
+        found = yours.solve(blade, omega, elements, count) if yours.refines else yours.solve(blade, omega)
+        try:
+            out.append(_modes(omega, elements, *found, exact=not yours.refines))
+        except (TypeError, ValueError) as error:
+            out.append(Failure("nonsense", f"not (frequencies, shapes): {error}"))
+    return out
+
+
+def _modes(omega: float, elements: int, frequencies: Any, shapes: Any, exact: bool) -> Modes:
+    values, shape = np.asarray(frequencies, dtype=float), np.asarray(shapes).astype(np.complex128)
+    if shape.ndim == 3 and shape.shape[1:] == (len(STATIONS), 3):
+        shape = np.pad(shape, ((0, 0), (0, 0), (0, 1)))
+    if shape.shape != (len(values), len(STATIONS), 4):
+        raise ValueError(f"shapes: {shape.shape}, expected {(len(values), len(STATIONS), 4)}, or 3 instead of 4")
+    if not shape.any(axis=(1, 2)).all() or not len(values):
+        raise ValueError(
+            "no modes, or one whose shape is zero everywhere"
+        )  # neither could be told from a blade it cannot do
+    order = np.argsort(values)
+    sure = np.zeros(len(values)) if exact else np.zeros(0)
+    return Modes(omega, values[order], shape[order], elements, uncertainty=sure)
+
+
+def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: References) -> list[Cell]:
+    """Its frequencies against printed numbers: those that core, with the table's effects, passes."""
+    out = []
+    for table in published_tables.about(variant.blade, compare.tables):
+        model = felt(table.series.model, variant.blade)
+        if model not in solved:
+            solved |= references(variant.blade, variant.speeds.tolist(), compare, [model])
+        core = [
+            (w, r) for w, r in zip(variant.speeds.tolist(), solved[model], strict=True) if not isinstance(r, Failure)
+        ]
+        head = Head(variant.name, table.name, "", "table", compare.target, "nothing")
+        held, _ = published_tables.rows(head, table, variant.blade, None, core)
+        agreed = {(c.omega, c.mode): c for c in held if c.verdict == "pass"}
+        for mine in cells:
+            number = agreed.get((mine.omega, mine.mode))
+            if number and mine.family == number.family and _agrees(mine.reference, number):
+                out.append(_against(mine, number, number.frequency or 0.0))
+    return out
+
+
+def _agrees(reference: float | None, number: Cell) -> bool:
+    """Whether core without what the solver lacks passes a printed number too: else nobody can be held to it."""
+    if reference is None or not number.frequency:
+        return False
+    return judge(reference / number.frequency - 1.0, number.uncertainty, number.target)[0] == "pass"
+
+
+def _against(mine: Cell, number: Cell, printed: float) -> Cell:
+    """One frequency against one printed number; what is known of the first is known here."""
+    difference = (mine.frequency or 0.0) / printed - 1.0
+    unsure = None if mine.uncertainty is None else mine.uncertainty + (number.uncertainty or 0.0)
+    verdict, reason = judge(difference, unsure, max(mine.target, number.target))
+    if verdict != "pass" and mine.verdict == "known difference":
+        verdict, reason = mine.verdict, mine.reason
+    name = f"{mine.code}, {number.code}"
+    return replace(
+        mine, code=name, role="table", reference=printed, difference=difference, uncertainty=unsure,
+        target=max(mine.target, number.target), verdict=verdict, reason=reason,
+    )  # fmt: skip
+
+
+def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
+    """Which deliberate mistake in core gives the frequency that a miss has; empty if none does.
+
+    One that explains nine tenths of the difference, at least.
+    """
+    if cell.frequency is None or cell.reference is None or cell.difference is None:
+        return ""
+    found: list[tuple[float, str]] = []
+    for wrong in wrongs:
+        for m in wrong.modes:
+            same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < NEAR
+            if wrong.omega == cell.omega and same and m.change is not None:
+                rest = cell.frequency / (cell.reference * (1.0 + m.change)) - 1.0
+                if abs(rest) <= 0.1 * abs(cell.difference):
+                    told = f"as core with this mistake: {wrong.mistake} ({percent(m.change)}; {unsigned(rest)} from it)"
+                    found.append((abs(rest), told))
+    return min(found)[1] if found else ""

@@ -1,0 +1,234 @@
+"""The block Lanczos steps of ``lanczos``, compiled. Vectors (x, y) are rows (2n,)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from . import blocks, strained
+from .blocks import Factor, Turned
+from .strained import Strained
+
+Array = NDArray[np.float64]
+
+_CLEAR, _PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
+
+
+class Operator(NamedTuple):
+    """A⁻¹S of A = diag(K, M) and S = [[C, M], [−M, 0]].
+
+    Attributes:
+        factor: of K.
+        exact: K, to refine solutions with, and for products where that is needed.
+        refinements: how often; 0: not needed.
+    """
+
+    M: Turned
+    C: Turned
+    K: Turned
+    factor: Factor
+    exact: Strained
+    refinements: int
+
+
+@compiled
+def noise(factor: Factor, exact: Strained, M: Turned, v: Array) -> float:
+    """Relative error of a solution with K, in the norm of its energy: of M x of the first of the rows v (k, 2n)."""
+    n = v.shape[1] // 2
+    force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
+    blocks.times(M, v[:1], force)
+    for i in range(n):
+        x[0, i] = force[0, i]
+    blocks.solve(factor, x)
+    strained.times(exact, x, back)
+    for i in range(n):
+        more[0, i] = back[0, i] = force[0, i] - back[0, i]
+    blocks.solve(factor, more)
+    left = whole = 0.0
+    for i in range(n):
+        left += back[0, i] * more[0, i]
+        whole += force[0, i] * x[0, i]
+    return np.sqrt(abs(left / whole))
+
+
+@compiled
+def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
+    """w = A⁻¹S v, A w = S v, and M y (k, n), of rows v (k, 2n)."""
+    k, n = len(v), v.shape[1] // 2
+    here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
+    heavy, both = np.empty((k, n)), np.empty((2 * k, n))
+    blocks.times(a.C, v, here)
+    blocks.times(a.M, v.reshape((2 * k, n)), both)  # x and y in turn
+    for m in range(k):
+        for i in range(n):
+            heavy[m, i] = both[2 * m + 1, i]
+            here[m, i] += heavy[m, i]  # C x + M y
+            force[m, i], force[m, n + i] = here[m, i], -both[2 * m, i]
+            w[m, n + i] = -v[m, i]
+    blocks.solve(a.factor, here)
+    for _ in range(a.refinements):
+        strained.times(a.exact, here, more)
+        for m in range(k):
+            for i in range(n):
+                more[m, i] = force[m, i] - more[m, i]
+        blocks.solve(a.factor, more)
+        for m in range(k):
+            for i in range(n):
+                here[m, i] += more[m, i]
+    for m in range(k):
+        for i in range(n):
+            w[m, i] = here[m, i]
+    return w, force, heavy
+
+
+@compiled
+def _dual(a: Operator, w: Array, heavy: Array) -> Array:
+    """A w, of rows w (k, 2n) with M y (k, n)."""
+    k, n = len(w), w.shape[1] // 2
+    out = np.empty(w.shape)
+    if a.refinements:
+        x, force = w[:, :n].copy(), np.empty((k, n))
+        strained.times(a.exact, x, force)
+        for m in range(k):
+            for i in range(n):
+                out[m, i] = force[m, i]
+    else:
+        blocks.times(a.K, w, out)
+    for m in range(k):
+        for i in range(n):
+            out[m, n + i] = heavy[m, i]
+    return out
+
+
+@compiled
+def extend(
+    a: Operator, w: Array, basis: Array, projected: Array, size: int, before: int, look: int
+) -> tuple[Array, Array, int, int, bool]:
+    """Take steps until the basis has ``look`` vectors, or cannot grow.
+
+    Args:
+        a: the operator.
+        w: (k, 2n) what the last step gave; changed.
+        basis: (limit, 2n), whose first ``size`` rows are filled, the last step's from ``before`` on; filled further.
+        projected: (limit, limit) the operator on the basis, zero beyond what is filled; filled further.
+        size, before: see there; both 0 to begin with.
+        look: how many vectors are wanted.
+
+    Returns:
+        w orthogonal to the basis, its Gram matrix (k, k), size and before as they are now, and whether the basis is exhausted.
+    """
+    n = w.shape[1] // 2
+    heavy = np.empty((len(w), n))  # M y of w
+    blocks.times(a.M, w[:, n:].copy(), heavy)
+    of_last = np.empty((size - before, n))  # M y of the last step's vectors
+    blocks.times(a.M, basis[before:size, n:].copy(), of_last)
+    while True:
+        gram, largest = _against(a, w, heavy, basis, projected, size, before)
+        value, turn = _axes(gram)
+        least = 1e-20 * max(value[-1], largest**2, 1e-300)
+        kept = 0
+        for i in range(len(value)):
+            if value[i] > least:
+                kept += 1
+        exhausted = kept == 0 or size + 2 > len(basis) - 2
+        if exhausted or size >= look:
+            return w, gram, size, before, exhausted
+        end = size + kept
+        for m in range(kept):
+            column = len(value) - kept + m
+            scale = 1.0 / np.sqrt(value[column])
+            first, other = scale * turn[0, column], scale * turn[-1, column] if len(w) > 1 else 0.0
+            for j in range(w.shape[1]):
+                basis[size + m, j] = first * w[0, j] + other * w[-1, j]
+        w, force, of_these = forward(a, basis[size:end])
+        overlap = np.dot(basis[before:end], force.T)
+        for i in range(len(overlap)):
+            for j in range(kept):
+                projected[before + i, size + j] = overlap[i, j]
+        _take(w, overlap, basis[before:end])
+        heavy = force[:, n:].copy()  # M y = −M x is known
+        _take(heavy, overlap[: size - before], of_last)
+        _take(heavy, overlap[size - before :], of_these)
+        of_last = of_these
+        before, size = size, end
+
+
+@compiled
+def _against(
+    a: Operator, w: Array, heavy: Array, basis: Array, projected: Array, size: int, before: int
+) -> tuple[Array, float]:
+    """Make w, M y of which is ``heavy``, orthogonal to the basis in the A product; what is taken out goes to the projection.
+
+    Returns w's Gram matrix (k, k) and the largest overlap of the last pass.
+    """
+    gram, largest = np.zeros((len(w), len(w))), 0.0
+    n = heavy.shape[1]
+    for turn in range(_PASSES):
+        if turn > 0:
+            blocks.times(a.M, w[:, n:].copy(), heavy)
+        dual = _dual(a, w, heavy)
+        overlap = np.dot(basis[:size], dual.T)
+        _take(w, overlap, basis[:size])
+        largest = 0.0
+        for i in range(size):
+            for j in range(size - before):
+                projected[i, before + j] += overlap[i, j]
+                largest = max(largest, abs(overlap[i, j]))
+        gram = np.dot(w, dual.T)
+        smallest = gram[0, 0]
+        for i in range(len(w)):
+            smallest = min(smallest, gram[i, i])
+        if largest <= _CLEAR * np.sqrt(max(smallest, 0.0)):
+            break
+    return gram, largest
+
+
+@compiled
+def _take(w: Array, overlap: Array, basis: Array) -> None:
+    """w −= overlapᵀ basis."""
+    less = np.dot(overlap.T, basis)
+    for i in range(w.shape[0]):
+        for j in range(w.shape[1]):
+            w[i, j] -= less[i, j]
+
+
+@compiled
+def _axes(gram: Array) -> tuple[Array, Array]:
+    """Eigenvalues, ascending, and eigenvectors, as columns, of a symmetric matrix (1, 1) or (2, 2)."""
+    if len(gram) == 1:
+        return gram[0].copy(), np.ones((1, 1))
+    a, b, c = gram[0, 0], gram[0, 1], gram[1, 1]
+    angle = 0.5 * np.arctan2(2.0 * b, a - c)
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn, value = np.empty((2, 2)), np.empty(2)
+    turn[0, 0], turn[1, 0], turn[0, 1], turn[1, 1] = -sin, cos, cos, sin
+    value[0], value[1] = a * sin**2 - 2.0 * b * sin * cos + c * cos**2, a * cos**2 + 2.0 * b * sin * cos + c * sin**2
+    return value, turn
+
+
+@compiled
+def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
+    """i times the skew matrix (size, size) whose upper half is given."""
+    out = np.zeros((size, size), np.complex128)
+    for i in range(size):
+        for j in range(i + 1, size):
+            out[i, j], out[j, i] = 1j * projected[i, j], -1j * projected[i, j]
+    return out
+
+
+@compiled
+def quotients(a: Operator, x: Array) -> Array:
+    """(3, m) of complex vectors x (m, 2, n), real and imaginary parts: x*Kx, x*Mx, and ½ i x*Cx, which is real."""
+    m, _, n = x.shape
+    out = np.zeros((3, m))
+    stiff, moving, heavy = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
+    for v in range(m):
+        strained.times(a.exact, x[v], stiff)
+        blocks.times(a.C, x[v], moving)
+        blocks.times(a.M, x[v], heavy)
+        for i in range(n):
+            out[0, v] += x[v, 0, i] * stiff[0, i] + x[v, 1, i] * stiff[1, i]
+            out[1, v] += x[v, 0, i] * heavy[0, i] + x[v, 1, i] * heavy[1, i]
+            out[2, v] += 0.5 * (x[v, 1, i] * moving[0, i] - x[v, 0, i] * moving[1, i])
+    return out

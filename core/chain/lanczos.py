@@ -1,0 +1,95 @@
+"""The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve a step.
+
+A⁻¹S is skew in the A product, A = diag(K, M), so a step's result overlaps with its own and the preceding block only, but for
+rounding; what rounding adds is taken out against the whole basis, again until next to nothing of it is left. Blocks of two
+find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric Eigenvalue
+Problem*, 1998, ch. 13.)
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from .. import eigen
+from ..eigen import Eigen
+from . import blocks
+from .krylov import Operator, extend, forward, hermitian, noise, quotients
+from .pencil import Linear
+
+Array = NDArray[np.float64]
+
+_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
+_SOLVED, _REFINEMENTS = 1e-8, 4  # relative error of a solution with K that is let be, and the most steps to get there
+_FIRST, _EVERY = 26, 12  # when to look whether the modes are there
+
+
+def lanczos(p: Linear, count: int) -> Eigen:
+    """The ``count`` lowest modes of a chain about a state where K is symmetric.
+
+    The assembled K loses digits to cancellation, as it does with many elements: solutions are refined, by way of the strains,
+    as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh quotient,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
+
+    Raises:
+        UnstableError: if K is not positive definite.
+        ArithmeticError: if the basis is full before the modes are there.
+    """
+    try:
+        factor = p.factor
+    except np.linalg.LinAlgError:
+        raise eigen.unstable() from None
+    if not factor.positive:
+        raise eigen.unstable()
+    n, exact = p.K.size, p.strained
+    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.K))
+    w = _start(2 * n)
+    refinements = _refinements(noise(factor, exact, M, w))
+    a = Operator(M, C, K, factor, exact, refinements)
+    w, _, _ = forward(a, w)  # smooth
+    limit = min(2 * n, max(200, 8 * count))
+    basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
+    size, before, look = 0, 0, 3 * count + _FIRST
+    while True:
+        w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
+        if not size:
+            raise ArithmeticError("stiffness and mass are out of all proportion: check their units")
+        look = size + _EVERY
+        wanted = min(count, size // 2)
+        mu, z = eigh(hermitian(projected, size), subset_by_index=[size - wanted, size - 1], check_finite=False)
+        last = z[before:]
+        error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
+        if exhausted or (error < _TOLERANCE).all():
+            break
+    positive = mu > 1e-12 * mu.max(initial=0.0)
+    if not positive.any() or not np.isfinite(mu).all():
+        raise ArithmeticError("Lanczos found no mode: the stiffness is all but singular")
+    if error[positive].max() > 1e-6:
+        raise ArithmeticError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
+    z = z[:, positive].T
+    x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
+    x = x.reshape(len(z), 2, n)
+    kappa, inertia, half = quotients(a, x)
+    frequencies = kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)  # of a loose joint κ is rounding
+    if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
+        raise ArithmeticError(
+            "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
+        )
+    order = np.argsort(frequencies)
+    x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
+    return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
+
+
+@lru_cache(maxsize=4)
+def _start(size: int) -> Array:
+    """Two vectors (2, size) to begin with, of no direction."""
+    return np.random.default_rng(1921).normal(size=(2, size))
+
+
+def _refinements(noise: float) -> int:
+    """How many steps of iterative refinement bring a solution to the accuracy wanted."""
+    for steps in range(_REFINEMENTS):
+        if noise ** (steps + 1) < _SOLVED:
+            return steps
+    return _REFINEMENTS

@@ -1,0 +1,79 @@
+"""A chain's mode shapes at the common stations, where massless points ride on its elements as ``beams`` has it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from ..element.discretize import Chain
+from ..element.pencil import ride
+from ..space import rigid
+from .pencil import Shape
+
+Array = NDArray[np.float64]
+
+
+def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
+    e, d, m = body.samples.element, shape.beta.shape[1] + 6, vectors.shape[1]
+    read = np.empty((len(e), 4, d + 6))
+    p = body.samples
+    beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
+    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, beta, body.beams.law.eta, read)
+    own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
+    first = own[e - 1, -6:]
+    first[e == 0] = 0.0  # the clamped node
+    found = read @ np.concatenate([first, own[e, -6:], own[e, :-6]], axis=1)  # of (ξ_a, ξ_b, β)
+    return found.view(np.complex128).transpose(2, 0, 1)
+
+
+@compiled
+def _readings(
+    element: NDArray[np.intp],
+    rest: Array,
+    shape: Array,
+    bubble: Array,
+    nodes: Array,
+    beta: Array,
+    eta_at_rest: Array,
+    out: Array,
+) -> None:
+    """(q, 4, 12 or 18) a point's displacement and rotation about x in the hub's axes, from (ξ_a, ξ_b, β) in the nodes' own."""
+    back, x, position = np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4))
+    eta, change, zeta = np.empty(6), np.empty(6), np.empty(6)
+    inverse, lever, T, slope, H = (
+        np.empty((6, 6)),
+        np.empty((6, 6)),
+        np.empty((6, 6)),
+        np.empty((6, 12)),
+        np.empty((6, 12)),
+    )
+    moved = np.empty((6, 18))
+    for q in range(len(element)):
+        e = element[q]
+        rigid.inverse(nodes[e], back)
+        rigid.compose(back, nodes[e + 1], x)
+        rigid.log(x, eta)
+        rigid.tangent_inverse(eta, inverse)
+        rigid.adjoint(x, lever)
+        for i in range(6):
+            change[i] = eta[i] - eta_at_rest[e, i]
+        ride(rest[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
+        rigid.exp(zeta, position)
+        for i in range(6):  # the twist in a's axes, at a
+            for j in range(6):
+                moved[i, j] = (1.0 if i == j else 0.0) - H[i, j]
+                moved[i, 6 + j] = 0.0
+                moved[i, 12 + j] = H[i, 6 + j]
+                for k in range(6):
+                    moved[i, 6 + j] += H[i, k] * lever[k, j]
+        for j in range(out.shape[2]):
+            for i in range(3):  # velocity of the point: v + w × p
+                k, m = (i + 1) % 3, (i + 2) % 3
+                moved[i, j] += moved[3 + k, j] * position[m, 3] - moved[3 + m, j] * position[k, 3]
+            for i in range(3):
+                out[q, i, j] = 0.0
+                for k in range(3):
+                    out[q, i, j] += nodes[e, i, k] * moved[k, j]
+            out[q, 3, j] = 0.0
+            for k in range(3):
+                out[q, 3, j] += nodes[e, 0, k] * moved[3 + k, j]

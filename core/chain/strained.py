@@ -1,0 +1,59 @@
+"""A chain's stiffness times vectors by way of the elements' strains: no digits are lost however stiff and many they are."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import apply, compiled
+from . import blocks
+from .blocks import Turned
+
+Array = NDArray[np.float64]
+
+
+class Strained(NamedTuple):
+    """K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
+
+    Attributes:
+        rest: the part on its own, for products.
+        spring, lever: (n, 6, 6), see ``chain.Linear``.
+        held: (6, 6) projector of node 1's twist; zero if nothing is held.
+    """
+
+    rest: Turned
+    spring: Array
+    lever: Array
+    held: Array
+
+
+@compiled
+def times(K: Strained, x: Array, out: Array) -> None:
+    """out = K x of vectors (k, dn)."""
+    n, d = K.rest.diagonal.shape[:2]
+    rho, kept = np.empty(6), np.empty(6)
+    free = x.copy()
+    for v in range(len(x)):
+        apply(K.held, x[v, d - 6 : d], kept)
+        for i in range(6):
+            free[v, d - 6 + i] -= kept[i]
+    blocks.times(K.rest, free, out)
+    for v in range(len(x)):
+        for k in range(n):
+            here = d * k + d - 6
+            for i in range(6):
+                rho[i] = -free[v, here - d + i] if k > 0 else 0.0
+                for j in range(6):
+                    rho[i] += K.lever[k, i, j] * free[v, here + j]
+            for i in range(6):
+                wrench = 0.0
+                for j in range(6):
+                    wrench += K.spring[k, i, j] * rho[j]
+                for j in range(6):
+                    out[v, here + j] += K.lever[k, i, j] * wrench
+                if k > 0:
+                    out[v, here - d + i] -= wrench
+        apply(K.held, out[v, d - 6 : d], rho)
+        apply(K.held, x[v, d - 6 : d], kept)
+        for i in range(6):
+            out[v, d - 6 + i] += kept[i] - rho[i]

@@ -1,0 +1,187 @@
+"""Finite element models as freedoms, and their sections tied to frames: rigidly, or on average.
+
+A freedom is a displacement along, or a rotation about, a coordinate axis at a point. When a frame moves by a small twist
+(in its own axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:
+
+* ``rigid`` (RBE2, MPC beam): every freedom of the section follows its frame. Warping and the contraction of the section
+  are prevented: right where the section really is stiff (a flange, a bulkhead, the clamp of a test rig) and a bound from
+  above everywhere else;
+* ``average`` (RBE3, distributing coupling): the frame moves as the section does on average, by weighted least squares,
+  ``mean = (RᵀWR)⁻¹RᵀW``; its wrench acts on the section as tractions ``WR(RᵀWR)⁻¹``, even for a force, linear for a
+  moment. That is St Venant's own distribution for tension and bending, so these are exact whatever the length; for shear
+  and torsion it is not, and the section is too soft within about its own size. With part of the model on either side
+  (``condensation.segments_in_place``) it only reads the mean, and all is right.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import scipy.sparse
+from numpy.typing import NDArray
+
+from ..space import spatial as sp
+
+Array = NDArray[Any]
+Index = NDArray[np.intp]
+Kind = Literal["rigid", "average"]
+
+ASYMMETRY = 1e-5  # of a stiffness with a unit diagonal: what seven printed digits leave
+ON_SECTION = 1e-6  # distance from its plane, of the model's size
+
+
+class CondensationError(ValueError):
+    """A model, tie or matrix that cannot be condensed: the message names it, the value, the likely cause, the remedy."""
+
+
+@dataclass(frozen=True)
+class FiniteElements:
+    """What condensation needs of a finite element model of n freedoms. SI, all in one set of axes.
+
+    Attributes:
+        name: what to call it in a message.
+        points: (n, 3) where each freedom acts.
+        directions: (n,) 0, 1, 2: displacement along x, y, z; 3, 4, 5: rotation about them.
+        stiffness: (n, n) symmetric, of the model without supports.
+        mass: (n,) lumped at the freedoms, kg (kg m² for rotations); zeros if not known.
+    """
+
+    name: str
+    points: Array
+    directions: Index
+    stiffness: scipy.sparse.csr_array
+    mass: Array
+
+    def __post_init__(self) -> None:
+        n = len(self.directions)
+        shapes = {"points": (n, 3), "stiffness": (n, n), "mass": (n,)}
+        for field, shape in shapes.items():
+            given = getattr(self, field).shape
+            if given != shape:
+                raise CondensationError(
+                    f"{self.name}: {field} has shape {given}, expected {shape} for {n} freedoms: is it from another model?"
+                )
+        if not np.isfinite(self.stiffness.data).all():
+            raise CondensationError(f"{self.name}: stiffness is not finite: a gap or overflow in the exported matrix?")
+        diagonal = self.stiffness.diagonal()
+        unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)))
+        scaled = unit @ self.stiffness @ unit
+        wrong = float(abs(scaled - scaled.T).max()) if n else 0.0
+        if wrong > ASYMMETRY:
+            raise CondensationError(
+                f"{self.name}: stiffness is {wrong:.1e} from symmetric: only one triangle read, or follower loads in it?"
+            )
+
+
+def motion(points: Array, directions: Index, frame: Array) -> Array:
+    """(n, 6): freedoms moved by a unit twist of ``frame`` (4, 4), in its own axes, that they follow rigidly."""
+    axis = np.eye(3)[directions % 3]
+    turning = directions >= 3
+    lever = np.where(turning[:, None], axis, np.cross(points - frame[:3, 3], axis))
+    return np.concatenate([np.where(turning[:, None], 0.0, axis), lever], axis=1) @ np.kron(np.eye(2), frame[:3, :3])
+
+
+@dataclass(frozen=True)
+class Tie:
+    """A section's freedoms tied to a frame; made by ``rigid``, ``average`` or ``section``.
+
+    Attributes:
+        name: what to call it in a message.
+        kind: how they are tied.
+        frame: (4, 4) pose in the model's axes.
+        freedoms: (k,) indices.
+        motion: (k, 6) freedoms from the frame's twist.
+        mean: (6, k) the frame's twist from the freedoms.
+    """
+
+    name: str
+    kind: Kind
+    frame: Array
+    freedoms: Index
+    motion: Array
+    mean: Array
+
+
+def rigid(model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Tie:
+    """Every freedom given follows the frame.
+
+    Raises:
+        CondensationError: no freedoms, or too few to tell the six motions of a frame.
+    """
+    return _tie(model, _some(model, freedoms, name), frame, name, "rigid", np.ones(len(freedoms)))
+
+
+def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
+    """The frame moves as the given freedoms do on average; rotations are left free, but not where a section is one node.
+
+    Args:
+        model: the model.
+        freedoms: (k,) indices.
+        frame: (4, 4) pose in the model's axes.
+        name: what to call it in a message.
+        weights: (k,) share of the section's area each freedom stands for, by default its lumped mass; or (k, k), the
+            section's ∫NᵀN of its shape functions N. Shares do for nodes whose shares also integrate y·N: those of Simpson's
+            rule (9 nodes a face). Faces of 8 nodes have corners of negative share and need the matrix; even weights
+            concentrate the load at their corners, and were seen to soften a square bar's tension by a quarter.
+
+    Raises:
+        CondensationError: no freedoms, too few to tell the six motions of a frame, or no usable weights.
+    """
+    moves = model.directions[_some(model, freedoms, name)] < 3
+    if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
+        return _tie(model, freedoms, frame, name, "average", np.ones(6))
+    shares = (model.mass[freedoms] if weights is None else weights)[moves]
+    if shares.ndim == 1 and not (shares > 0).all():
+        raise CondensationError(
+            f"section {name!r}: weights {'are the lumped masses, which ' if weights is None else ''}reach down to "
+            f"{shares.min(initial=0.0):g}: give each freedom's share of the section, or ∫NᵀN where corners have a negative one"
+        )
+    return _tie(model, freedoms[moves], frame, name, "average", shares if shares.ndim == 1 else shares[:, moves])
+
+
+def _some(model: FiniteElements, freedoms: Index, name: str) -> Index:
+    if not len(freedoms):
+        raise CondensationError(
+            f"section {name!r}: a tie with no nodes: select the nodes of {model.name} that lie on it"
+        )
+    return freedoms
+
+
+def section(model: FiniteElements, frame: Array, name: str, kind: Kind = "average") -> Tie:
+    """Tie the nodes in the frame's own yz plane.
+
+    Raises:
+        CondensationError: if there are none (the message says where the nearest lie), or too few.
+    """
+    away = (model.points - frame[:3, 3]) @ frame[:3, 0]
+    near = np.abs(away) < ON_SECTION * np.ptp(model.points, axis=0).max()
+    if not near.any():
+        nearest = away[np.abs(away).argmin()] if len(away) else np.inf
+        raise CondensationError(
+            f"section {name!r}: no nodes of {model.name} in its plane, the nearest are {nearest:g} m from it: "
+            "wrong station or units? put sections where the mesh has a layer of nodes"
+        )
+    freedoms = np.flatnonzero(near)
+    return rigid(model, freedoms, frame, name) if kind == "rigid" else average(model, freedoms, frame, name)
+
+
+def _tie(model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: Kind, weights: Array) -> Tie:
+    if not len(freedoms):
+        raise CondensationError(
+            f"section {name!r}: a tie with no nodes: select the nodes of {model.name} that lie on it"
+        )
+    R = motion(model.points[freedoms], model.directions[freedoms], frame)
+    weighed = R.T * weights if weights.ndim == 1 else R.T @ weights
+    gram = weighed @ R
+    size = np.sqrt(np.diagonal(gram))
+    if (size <= 0).any() or np.linalg.eigvalsh(gram / np.outer(size, size))[0] < 1e-12:
+        raise CondensationError(
+            f"section {name!r}: its {len(freedoms)} freedoms cannot tell six motions of a frame: "
+            "they lie on one line or point; take all nodes of the section, or of a beam model each node's six freedoms"
+        )
+    return Tie(name, kind, frame, freedoms, R, np.linalg.solve(gram, weighed))
+
+
+def seen(a: Tie, b: Tie) -> Array:
+    """Pose (4, 4) of b's frame in a's."""
+    return sp.inverse(a.frame) @ b.frame

@@ -1,0 +1,229 @@
+"""Beam elements with mass: elastic between their end frames, inertia at points that ride on both ends.
+
+A point inside an element sits at ``exp ζ`` in the frame of end a, with ``ζ = ζ₀ + L (η − η₀)`` and η the logarithm of the
+relative pose of b: the undeformed element's static shape functions, kept in the coordinates in which an arc is straight.
+Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so its inertia couples both ends: a consistent mass. With the
+mass lumped at the nodes there are no such points.
+"""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects import FULL, Model
+from ..space import spatial as sp
+from . import measures
+from .measures import Law, Measure
+from .pencil import BeamArrays, assemble
+
+Array = NDArray[Any]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points riding on the elements' ends, sorted by element; those with mass as many on each element.
+
+    Attributes:
+        element: (q,) the element each rides on.
+        rest: (q, 6) ζ₀, logarithm of the rest pose in the frame of end a.
+        shape: (q, 6, 6) L, ζ from η.
+        bubble: (q, 6, 6) ζ from the element's internal coordinates β.
+        mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
+        force: (q, 3) steady load on it, N, in the axes of the rotating frame; none by default.
+    """
+
+    element: Index
+    rest: Array
+    shape: Array
+    bubble: Array
+    mass: Array
+    force: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+    def __post_init__(self) -> None:
+        if not self.force.size:
+            object.__setattr__(self, "force", np.zeros((len(self.element), 3)))
+
+
+_NONE = np.zeros((0, 6, 6))
+NO_POINTS = Points(np.zeros(0, dtype=np.intp), np.zeros((0, 6)), _NONE, _NONE, _NONE)
+
+
+@dataclass(frozen=True)
+class Beams:
+    """A batch of n elements.
+
+    Attributes:
+        law: how they measure strain.
+        stiffness: (n, 6, 6) for that measure.
+        points: the inertia inside, as many points in each element (see ``alike``).
+        preload: (n, 6) force conjugate to the strain, at zero strain.
+        inner_preload: (n, 6) force conjugate to β, at β = 0.
+    """
+
+    law: Law
+    stiffness: Array
+    points: Points
+    preload: Array
+    inner_preload: Array
+
+    @property
+    def rest(self) -> Array:
+        """(n, 4, 4) rest pose of end b in the frame of end a."""
+        return self.law.rest
+
+    @property
+    def inner(self) -> int:
+        """How many internal coordinates an element has: six where it has mass inside, else none."""
+        return 6 if len(self.points.element) else 0
+
+
+@dataclass(frozen=True)
+class Pencil:
+    """Residual (n, d) on ends a, b and internal coordinates β, and its linearisation M, C, K, each (n, d, d); d = 12 or 18.
+
+    Twists and wrenches are in a snapshot of each element's frame a; variations of wrenches are taken along with the body
+    they act on, and ξ is seen in the rotating frame. K is split into ``rest`` (n, d, d) and the ``spring`` (n, 6, 6) that
+    acts on ρ = ξ_b − ξ_a: kept apart, its energy loses no digits to cancellation.
+    """
+
+    residual: Array
+    M: Array
+    C: Array
+    rest: Array
+    spring: Array
+
+    @property
+    def K(self) -> Array:
+        """The whole stiffness."""
+        K = self.rest.copy()
+        K[:, :12, :12] += on_ends(self.spring, self.spring)
+        return K
+
+
+def end_stiffness(measure: Measure, rest: Array, twist_stiffness: Array) -> Array:
+    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b seen from a, at rest."""
+    a = sp.tangent(sp.log(rest)) if measure == "corotational" else sp.adjoint(rest)
+    return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
+
+
+def riding(rest: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
+    """Points at rest poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b plus ``bubble`` β."""
+    zeta = sp.log(pose)
+    slope = sp.tangent_inverse(zeta)
+    L = slope @ shape @ sp.tangent(sp.log(rest))[element]
+    return Points(element=element, rest=zeta, shape=L, bubble=slope @ bubble, mass=mass)
+
+
+def alike(points: Points, elements: int) -> Points:
+    """The same points, with massless ones added until every element has as many: what ``Beams`` wants."""
+    number = np.bincount(points.element, minlength=elements)
+    most = int(number.max())
+    if (number == most).all():
+        return points
+    rank = np.arange(most)
+    first = np.cumsum(number) - number
+    pick = (first[:, None] + np.minimum(rank, number[:, None] - 1)).ravel()  # the last one again
+    real = (rank < number[:, None]).ravel()
+    return Points(
+        element=np.repeat(np.arange(elements), most),
+        rest=points.rest[pick],
+        shape=points.shape[pick],
+        bubble=points.bubble[pick],
+        mass=points.mass[pick] * real[:, None, None],
+        force=points.force[pick] * real[:, None],
+    )
+
+
+def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational") -> Beams:
+    """One massless element with a given 6×6 stiffness for its strain, between frames at relative pose ``rest`` (4, 4).
+
+    Raises:
+        ValueError: if the stiffness is not a symmetric 6×6 matrix.
+    """
+    k = np.asarray(stiffness, float)
+    if k.shape != (6, 6) or not np.allclose(k, k.T, rtol=1e-9, atol=1e-12 * np.abs(k).max()):
+        raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
+    load = np.zeros(6) if preload is None else np.asarray(preload, float)
+    return Beams(measures.even(measure, rest[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
+
+
+def linear_force(beams: Beams, rho: Array) -> Array:
+    """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, at rest."""
+    rate = measures.response(beams.law, beams.rest, np.zeros((len(rho), 6))).rate[..., :6]
+    return (beams.stiffness @ rate @ rho[..., None])[..., 0]
+
+
+def massless(beams: Beams) -> Beams:
+    """The same elements without the inertia inside."""
+    return replace(beams, points=NO_POINTS)
+
+
+def pencil(
+    beams: Beams,
+    x: Array,
+    beta: Array,
+    frame: Array,
+    gravity: Array,
+    model: Model = FULL,
+    axes: Array | None = None,
+) -> Pencil:
+    """Assemble residual and matrices of all elements.
+
+    Args:
+        beams: the elements.
+        x: (n, 4, 4) pose of b in the frame of a.
+        beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
+        frame: (n, 6) twist of the rotating frame, in a's axes.
+        gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
+        model: the effects kept (``geometric`` matters here).
+        axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
+
+    Raises:
+        ValueError: loads without axes.
+    """
+    if axes is None and beams.points.force.any():
+        raise ValueError("axes: not given, but there are loads on the points in the rotating frame's axes")
+    n, d = len(x), 12 + beams.inner
+    out = Pencil(np.empty((n, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, 6, 6)))
+    assemble(
+        _arrays(beams),
+        np.ascontiguousarray(x),
+        np.ascontiguousarray(beta) if beams.inner else np.zeros((n, 6)),
+        np.ascontiguousarray(frame),
+        np.ascontiguousarray(gravity),
+        np.zeros((n, 3, 3)) if axes is None else np.ascontiguousarray(axes),
+        model.geometric,
+        out.residual,
+        out.M,
+        out.C,
+        out.rest,
+        out.spring,
+    )
+    return out
+
+
+def on_ends(on_a: Array, on_b: Array) -> Array:
+    """(n, 12, 12) from −on_a ρ on end a and on_b ρ on end b, with ρ = ξ_b − ξ_a."""
+    out = np.empty((len(on_a), 12, 12))
+    out[:, :6, :6], out[:, :6, 6:] = on_a, -on_a
+    out[:, 6:, :6], out[:, 6:, 6:] = -on_b, on_b
+    return out
+
+
+def _arrays(beams: Beams) -> BeamArrays:
+    p = beams.points
+    return BeamArrays(
+        law=measures.arrays(beams.law),
+        stiffness=np.ascontiguousarray(beams.stiffness),
+        preload=np.ascontiguousarray(beams.preload),
+        inner_preload=np.ascontiguousarray(beams.inner_preload),
+        rest=np.ascontiguousarray(p.rest),
+        shape=np.ascontiguousarray(p.shape),
+        bubble=np.ascontiguousarray(p.bubble),
+        mass=np.ascontiguousarray(p.mass),
+        force=np.ascontiguousarray(p.force),
+        pushed=bool(p.force.any()),
+    )

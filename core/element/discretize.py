@@ -1,0 +1,183 @@
+"""A blade as a chain: rigid bodies at nodes along the blade, joined by beam elements."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blade import Blade, clamped, mass_at
+from ..modes import STATIONS
+from ..space import spatial as sp
+from . import beams as bm
+from . import sections
+from .beams import Beams, Points
+from .inertia import moved
+from .measures import Law, Measure, even, joined
+from .sections import Segments
+
+Array = NDArray[Any]
+Mass = Literal["consistent", "half_end"]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Nodes and elements of a blade; node 0 is clamped to the hub.
+
+    Attributes:
+        nodes: (n+1, 4, 4) rest poses in the hub's axes.
+        lumps: (n+1, 6, 6) inertia of the rigid body at each node, in its own axes.
+        beams: the n elements, from node k to node k+1.
+        samples: where mode shapes are read, at ``modes.STATIONS``; massless.
+        scale: the blade's length, m.
+        force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
+        held: (6, 6) projector of node 1's twist, in its own axes, on what the root's joint holds, where there is one: the first
+            element then is that joint, without length. Else empty.
+    """
+
+    nodes: Array
+    lumps: Array
+    beams: Beams
+    samples: Points
+    scale: float
+    force: Array
+    held: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @property
+    def elements(self) -> int:
+        """How many beam elements."""
+        return len(self.beams.rest) - (1 if self.held.size else 0)
+
+
+def discretize(
+    blade: Blade,
+    elements: int,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    load: Array | None = None,
+) -> Chain:
+    """Divide a blade into ``elements`` of equal arc length.
+
+    Args:
+        blade: the blade.
+        elements: how many.
+        mass: ``consistent`` keeps the mass where it is (fourth order); ``half_end`` lumps each element's halves at its
+            ends, as Park et al. 2010 do (second order).
+        stiffness: strain measure, see ``elements``.
+        load: (m, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them; linear between
+            the stations.
+
+    Raises:
+        ValueError: if there is not at least one element, or the load is not one row of three a station.
+    """
+    if elements < 1:
+        raise ValueError(f"elements: {elements}: a blade needs at least one element")
+    if load is not None and (load.shape != (len(blade.stations), 3) or not np.isfinite(load).all()):
+        raise ValueError(
+            f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
+        )
+    s = np.linspace(0.0, blade.length, elements + 1)
+    at = STATIONS * blade.length
+    seg = sections.integrate(blade, s, at)
+    nodes = sections.frames(blade, s)
+    rest = sp.inverse(nodes[:-1]) @ nodes[1:]
+    lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
+    if mass == "consistent":
+        mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
+        inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
+        if load is not None:
+            inside = replace(inside, force=seg.weight[:, None] * _at(blade, load, seg.s))
+        inside = bm.alike(inside, elements)
+    else:
+        inside = bm.NO_POINTS
+        lumps += _half_end(blade, s)
+        if load is not None:
+            force += _half_end_force(blade, s, load)
+    lumps[-1] += blade.tip_mass
+    chain = Chain(
+        nodes=nodes,
+        lumps=lumps,
+        beams=Beams(
+            law=Law(stiffness, rest, seg.shortening, seg.mean, seg.slope),
+            stiffness=bm.end_stiffness(stiffness, rest, np.linalg.inv(seg.flexibility)),
+            points=inside,
+            preload=np.zeros((elements, 6)),
+            inner_preload=np.zeros((elements, 6)),
+        ),
+        samples=_samples(blade, seg, at, nodes, rest),
+        scale=blade.length,
+        force=force,
+    )
+    return chain if clamped(blade) else _on_joint(chain, blade)
+
+
+def _on_joint(chain: Chain, blade: Blade) -> Chain:
+    """The chain with the root's joint before its first element."""
+    turn = np.kron(np.eye(2), sp.rotation(0, blade.twist[0]).T)  # from the root's axes to the first section's
+    holds = np.isinf(blade.root)
+    b = chain.beams
+
+    def before(new: Array, old: Array) -> Array:
+        return np.concatenate([new, old])
+
+    none = np.zeros((1, 6, 6))
+    inside = b.points
+    if b.inner:  # one point without mass, for ``alike``
+        e = before(np.zeros(1, dtype=np.intp), inside.element + 1)
+        rows = (before(none[:, 0], inside.rest), *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)))
+        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.rest) + 1)
+    spring = turn @ np.diag(np.where(holds, 0.0, blade.root)) @ turn.T
+    beams = replace(
+        b,
+        law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
+        stiffness=before(spring[None], b.stiffness),
+        points=inside,
+        preload=before(none[:, 0], b.preload),
+        inner_preload=before(none[:, 0], b.inner_preload),
+    )
+    return replace(
+        chain,
+        nodes=before(chain.nodes[:1], chain.nodes),
+        lumps=before(none, chain.lumps),
+        force=before(none[:, 0, :3], chain.force),
+        beams=beams,
+        samples=replace(chain.samples, element=chain.samples.element + 1),
+        held=turn @ np.diag(holds.astype(float)) @ turn.T,
+    )
+
+
+def _at(blade: Blade, values: Array, s: Array) -> Array:
+    """Values (m, 3) at the stations, at arc lengths ``s``."""
+    return np.stack([np.interp(s, blade.stations, column) for column in values.T], axis=-1)
+
+
+def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
+    """(n+1, 3): each node carries the load on the halves of its neighbouring elements."""
+    node, s, weight = _halves(blade, nodes)
+    out = np.zeros((len(nodes), 3))
+    np.add.at(out, node, weight[:, None] * _at(blade, load, s))
+    return out
+
+
+def _half_end(blade: Blade, nodes: Array) -> Array:
+    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
+    node, s, weight = _halves(blade, nodes)
+    turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
+    turn[:, :3, 3] = 0.0
+    lumps = np.zeros((len(nodes), 6, 6))
+    np.add.at(lumps, node, weight[:, None, None] * moved(mass_at(blade, s), turn))
+    return lumps
+
+
+def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]:
+    """Of Gauss points in the elements' halves: the nearest node, the arc length and the weight (q,)."""
+    middle = 0.5 * (nodes[1:] + nodes[:-1])
+    points = sections.quadrature(blade, nodes, middle)
+    node = points.element[:, None] + (points.s > middle[points.element][:, None])
+    return node.ravel(), points.s.ravel(), points.weight.ravel()
+
+
+def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, rest: Array) -> Points:
+    e = seg.at_element
+    pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
+    return bm.riding(rest, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))

@@ -1,0 +1,84 @@
+"""Inertial wrench of bodies carried steadily by a rotating frame, and its linearisation.
+
+With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y; letting the body move by a small
+twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
+
+    δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − cross(MV)  (Coriolis, skew),
+                             K = −V×ᵀ M V× − cross(MV) V×   (centrifugal),
+
+components taken along with the body (Featherstone 2008, eq. 2.72, varied once).
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import apply, compiled, product
+from ..space import rigid
+from ..space import spatial as sp
+
+Array = NDArray[np.float64]
+
+
+@compiled
+def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Array, K: Array) -> None:
+    """Wrench g (6,), C and K (6, 6) of one inertia (6, 6) carried at twist ``frame`` (6,), components following the body.
+
+    ``turn`` is the ``ad`` of ``frame``, and ``fall`` (6,) the acceleration of free fall as a twist (zero angular part), turning
+    with the frame. All may be given in any axes and about any origin, if all are in the same.
+    """
+    mt, rest, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    apply(mass, frame, momentum)
+    rigid.cross(momentum, rest)
+    product(mass, turn, mt)
+    for i in range(6):
+        g[i] = 0.0
+        for j in range(6):
+            g[i] -= turn[j, i] * momentum[j] + mass[i, j] * fall[j]
+            rest[i, j] += mt[j, i]
+            C[i, j] = mt[i, j] - rest[i, j]
+    product(rest, turn, K)
+    for i in range(6):
+        for j in range(6):
+            K[i, j] = -K[i, j]
+        # M fall×, whose angular part is zero
+        K[i, 3] -= mass[i, 1] * fall[2] - mass[i, 2] * fall[1]
+        K[i, 4] -= mass[i, 2] * fall[0] - mass[i, 0] * fall[2]
+        K[i, 5] -= mass[i, 0] * fall[1] - mass[i, 1] * fall[0]
+
+
+@compiled
+def hold_components(g: Array, push: Array, follow: bool, K: Array) -> None:
+    """Take steady forces ``push`` (3,) at the body's origin, fixed in the rotating frame, into g and K, in the body's axes.
+
+    Without ``follow`` the components of all of g are held in the frame, not taken along as the body turns: what a model without
+    geometric stiffness does.
+    """
+    for i in range(3):
+        g[i] -= push[i]
+    turn = np.empty((3, 3))
+    rigid.put_skew(push[0], push[1], push[2], 0, 0, turn)
+    for i in range(3):
+        for j in range(3):
+            K[i, 3 + j] -= turn[i, j]
+    if not follow:
+        for part in range(0, 6, 3):
+            rigid.put_skew(g[part], g[part + 1], g[part + 2], 0, 0, turn)
+            for i in range(3):
+                for j in range(3):
+                    K[part + i, 3 + j] -= turn[i, j]
+
+
+@compiled
+def carried(mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g: Array, C: Array, K: Array) -> None:
+    """``carry`` and ``hold_components`` for n bodies, each in its own axes: g (n, 6), C and K (n, 6, 6)."""
+    turn = np.empty((6, 6))
+    for k in range(len(mass)):
+        rigid.ad(frame[k], turn)
+        carry(mass[k], frame[k], turn, fall[k], g[k], C[k], K[k])
+        hold_components(g[k], push[k], follow, K[k])
+
+
+def moved(mass: Array, x: Array) -> Array:
+    """Inertias (n, 6, 6) given in frames ``x`` (n, 4, 4), expressed in the frame the poses are given in."""
+    a = sp.adjoint(sp.inverse(x))
+    return np.swapaxes(a, -1, -2) @ mass @ a

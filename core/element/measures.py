@@ -1,0 +1,171 @@
+"""Elastic elements between two frames a and b: a strain measure of their relative pose, and its energy ½ εᵀKε.
+
+Variations are twists seen from a snapshot of frame a: with ``X = X_a⁻¹ X_b`` and ``dX = ρ^ X``, ρ = ξ_b − ξ_a, the energy
+gives the wrench ``w = Eᵀ s`` on b (and −w on a), where ``E = ∂ε/∂ρ`` and ``s = K ε + preload``; its derivative with respect
+to ρ is ``Eᵀ K E + ∂(Eᵀ s)/∂ρ``: material and geometric stiffness, both analytic.
+
+Two measures:
+
+* ``corotational``: δ = log X − log X₀ is the helicoidal strain of a frame moving from a to b (Sonneville, Cardona, Brüls 2014,
+  sec. 4), which is the strain where that does not vary along the element: bending into an arc stretches nothing by itself.
+  Where it does vary, by the static shape that belongs to δ and by the internal coordinates β, two terms are added. Magnus'
+  expansion of X′ = X ξ gives log X = ∫ξ + (1/12) ad(∫ξ) ξ′L², so the strain solves ``ε + (1/12) ad(A δ) B (ε, β) = δ``, A and
+  B taking its integral and its slope from it: a stretched element is longer for its bending too. And the axial strain gains
+  δᵀGδ, the shortening by what the static shape deviates from the helicoid, which makes the tension's stiffening that of the
+  cubic beam element. Both are of the square of the element's length; with them it is of fourth order about any steady state;
+* ``parent``: displacement and Cardan angles (x, y, z) of b from its rest pose, in axes fixed in a. Linear in the parent's
+  body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import clear, compiled, product
+from ..space import rigid
+from ..space import spatial as sp
+from . import body_fixed, corotational
+from .corotational import LawArrays
+
+Array = NDArray[np.float64]
+Measure = Literal["corotational", "parent"]
+
+
+@dataclass(frozen=True)
+class Law:
+    """How n elements measure strain.
+
+    Attributes:
+        measure: see the module.
+        rest: (n, 4, 4) relative poses without strain.
+        shortening: (n, 6, 6) G, see ``sections``; of the corotational measure, as what follows.
+        mean: (n, 6, 6) A: A δ is the strain's integral over the element, of the static shape that δ belongs to.
+        slope: (n, 6, 12) B: B (δ, β) is its slope along the element, times the length squared.
+        eta: (n, 6) logarithm of ``rest``.
+    """
+
+    measure: Measure
+    rest: Array
+    shortening: Array
+    mean: Array
+    slope: Array
+    eta: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "eta", sp.log(self.rest))
+
+
+def even(measure: Measure, rest: Array) -> Law:
+    """Elements whose strain is the same all along: bushings, and elements known by their ends only."""
+    n = len(rest)
+    return Law(measure, rest, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
+
+
+def joined(laws: Sequence[Law]) -> Law:
+    """One law for the elements of several, all of one measure."""
+    return Law(laws[0].measure, *(np.concatenate([getattr(law, name) for law in laws]) for name in _ARRAYS))
+
+
+def part(law: Law, at: slice) -> Law:
+    """The law of some of the elements."""
+    return Law(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
+
+
+_ARRAYS = ("rest", "shortening", "mean", "slope")
+
+
+@dataclass(frozen=True)
+class Response:
+    """What an element's relative pose, and its internal coordinates β, give.
+
+    Attributes:
+        strain: (n, 6) ε.
+        rate: (n, 6, 12) E = ∂ε/∂(ρ, β).
+        curvature: (n, 12, 12) from a force s conjugate to ε, and one conjugate to η = log X, the derivative with respect to
+            (ρ, β) of what they make on them, both held: the geometric stiffness.
+    """
+
+    strain: Array
+    rate: Array
+    curvature: Array
+
+
+def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
+    """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6; or 0), and its derivatives; forces (n, 6), none: zero."""
+    n = len(x)
+    beta, force, conjugate = (
+        np.zeros((n, 6)) if v is None or not v.size else np.ascontiguousarray(v) for v in (beta, s, on_eta)
+    )
+    out = Response(np.empty((n, 6)), np.empty((n, 6, 12)), np.empty((n, 12, 12)))
+    _respond(arrays(law), np.ascontiguousarray(x), beta, force, conjugate, out.strain, out.rate, out.curvature)
+    return out
+
+
+def arrays(law: Law) -> LawArrays:
+    """The law for compiled code."""
+    parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
+    return LawArrays(law.measure == "corotational", *parts)
+
+
+@compiled
+def _respond(
+    law: LawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
+) -> None:
+    eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
+    for k in range(len(x)):
+        rigid.log(x[k], eta)
+        rigid.tangent_inverse(eta, back)
+        strains(law, k, x[k], eta, back, beta[k], strain[k], rate[k], J, undo)
+        clear(curvature[k])
+        add_curvature(law, k, eta, back, J, undo, rate[k], strain[k], s[k], on_eta[k], curvature[k])
+
+
+@compiled
+def strains(
+    law: LawArrays,
+    k: int,
+    x: Array,
+    eta: Array,
+    back: Array,
+    beta: Array,
+    strain: Array,
+    rate: Array,
+    J: Array,
+    undo: Array,
+) -> None:
+    """ε (6,) and E (6, 12) of element ``k``, and J (6, 12) = ∂ε/∂(η, β) and (6, 6) (1 + ad(A δ) B_δ/12)⁻¹ for the curvature.
+
+    ``eta`` (6,) is the logarithm of its pose ``x`` (4, 4), and ``back`` (6, 6) = ``tangent_inverse(eta)``.
+    """
+    if law.corotational:
+        corotational.strains(law, k, eta, beta, strain, J, undo)
+        product(J, back, rate)
+        for i in range(6):
+            for j in range(6, 12):
+                rate[i, j] = J[i, j]
+    else:
+        body_fixed.strains(law.rest[k], x, strain, rate)
+
+
+@compiled
+def add_curvature(
+    law: LawArrays,
+    k: int,
+    eta: Array,
+    back: Array,
+    J: Array,
+    undo: Array,
+    rate: Array,
+    strain: Array,
+    s: Array,
+    on_eta: Array,
+    out: Array,
+) -> None:
+    """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments from ``strains``."""
+    if law.corotational:
+        corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
+    else:
+        body_fixed.add_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)

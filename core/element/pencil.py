@@ -1,0 +1,270 @@
+"""The pencils of ``beams``, element by element, compiled."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import apply, clear, compiled, congruence, product, turned_apply
+from ..space import rigid
+from . import inertia, measures
+from .corotational import LawArrays
+
+Array = NDArray[np.float64]
+
+
+class BeamArrays(NamedTuple):
+    """``Beams`` for compiled code; ``pushed``: whether there are loads on the points."""
+
+    law: LawArrays
+    stiffness: Array
+    preload: Array
+    inner_preload: Array
+    rest: Array
+    shape: Array
+    bubble: Array
+    mass: Array
+    force: Array
+    pushed: bool
+
+
+class _Sums(NamedTuple):
+    """One element's force (18,) and matrices (18, 18) on (ξ_a, ρ, β), and the force (6,) conjugate to η."""
+
+    f: Array
+    M: Array
+    C: Array
+    K: Array
+    on_eta: Array
+
+
+@compiled
+def assemble(
+    beams: BeamArrays,
+    x: Array,
+    beta: Array,
+    frame: Array,
+    fall: Array,
+    axes: Array,
+    geometric: bool,
+    residual: Array,
+    M: Array,
+    C: Array,
+    rest: Array,
+    spring: Array,
+) -> None:
+    """Residual (n, d), M, C, rest (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``; arguments as for ``beams.pencil``."""
+    eta, back = np.empty(6), np.empty((6, 6))
+    sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
+    for k in range(len(x)):
+        rigid.log(x[k], eta)
+        rigid.tangent_inverse(eta, back)
+        for i in range(18):
+            sums.f[i] = 0.0
+        for i in range(6):
+            sums.on_eta[i] = 0.0
+        for matrix in (sums.M, sums.C, sums.K, spring[k]):
+            clear(matrix)
+        if len(beams.mass):
+            _add_inertia(beams, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
+            for i in range(6):
+                sums.f[12 + i] += beams.inner_preload[k, i] + beta[k, i]
+                sums.K[12 + i, 12 + i] += 1.0
+        _add_elastic(beams, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
+        _on_ends(sums.M, M[k])
+        _on_ends(sums.C, C[k])
+        _on_ends(sums.K, rest[k])
+        for i in range(len(residual[k])):
+            residual[k, i] = sums.f[i]
+        for i in range(6):
+            residual[k, i] -= sums.f[6 + i]
+
+
+@compiled
+def _on_ends(of_rho: Array, out: Array) -> None:
+    """From (ξ_a, ρ, β) to (ξ_a, ξ_b, β) with ρ = ξ_b − ξ_a."""
+    d = len(out)
+    for i in range(d):
+        for j in range(d):
+            out[i, j] = of_rho[i, j]
+    for i in range(6):
+        for j in range(d):
+            out[i, j] -= of_rho[6 + i, j]
+    for i in range(d):
+        for j in range(6):
+            out[i, j] -= out[i, 6 + j]
+
+
+@compiled
+def _add_elastic(
+    beams: BeamArrays,
+    k: int,
+    x: Array,
+    eta: Array,
+    back: Array,
+    beta: Array,
+    geometric: bool,
+    sums: _Sums,
+    spring: Array,
+) -> None:
+    """The strain's force on (ρ, β), and its material and geometric stiffness; what is between the ends alone to the spring."""
+    strain, s = np.empty(6), np.empty(6)
+    rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
+    measures.strains(beams.law, k, x, eta, back, beta, strain, rate, J, undo)
+    apply(beams.stiffness[k], strain, s)
+    for i in range(6):
+        s[i] += beams.preload[k, i]
+    work, K = np.empty((6, 12)), np.empty((12, 12))
+    congruence(rate, beams.stiffness[k], work, K)
+    if geometric:
+        measures.add_curvature(beams.law, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
+    force = np.empty(12)
+    turned_apply(rate, s, force)
+    for i in range(12):
+        sums.f[6 + i] += force[i]
+    _split(K, spring, sums.K)
+    if geometric:  # −ρ ×* (wrench on b), on b alone
+        crossed = np.empty((6, 6))
+        rigid.cross(sums.f[6:12], crossed)
+        for i in range(6):
+            for j in range(6):
+                sums.K[i, 6 + j] += crossed[i, j]
+                sums.K[6 + i, 6 + j] += crossed[i, j]
+
+
+@compiled
+def _add_inertia(
+    beams: BeamArrays,
+    k: int,
+    eta: Array,
+    back: Array,
+    beta: Array,
+    frame: Array,
+    fall: Array,
+    axes: Array,
+    geometric: bool,
+    sums: _Sums,
+    spring: Array,
+) -> None:
+    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts on ξ_a, and as Hᵀ g on (ρ, β).
+
+    All of it is in a's axes, at a, where all points of an element are carried at one twist.
+    """
+    per = len(beams.mass) // len(beams.stiffness)
+    change, zeta, g, push, turned = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
+    from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
+    T, D = np.empty((6, 6)), np.empty((6, 6))
+    M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
+    slopes, bent = np.empty((6 * per, 12)), np.empty((6 * per, 12))  # of all points, below each other
+    U, MU, CU, KU = (np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)))
+    H, turn = np.empty((6, 12)), np.empty((6, 6))
+    rigid.ad(frame, turn)
+    for i in range(6):
+        change[i] = eta[i] - beams.law.eta[k, i]
+    for p in range(per):
+        point, at = per * k + p, slice(6 * p, 6 * p + 6)
+        shape, slope = beams.shape[point], slopes[at]
+        ride(beams.rest[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
+        rigid.exp(zeta, from_point)
+        rigid.inverse(from_point, pose)
+        rigid.adjoint(pose, to_point)
+        congruence(to_point, beams.mass[point], work, M)
+        inertia.carry(M, frame, turn, fall, g, C, K)
+        if beams.pushed or not geometric:
+            for i in range(3):
+                push[i] = 0.0
+                for j in range(3):
+                    for m in range(3):
+                        push[i] += pose[i, j] * axes[j, m] * beams.force[point, m]
+            _hold_components(to_point, from_point, push, geometric, g, K)
+        for i in range(6):
+            sums.f[i] += g[i]
+            for j in range(12):
+                sums.f[6 + j] += H[i, j] * g[i]
+        _put_twist(H, U[at])
+        product(M, U[at], MU[at])
+        product(C, U[at], CU[at])
+        product(K, U[at], KU[at])
+        if geometric:
+            # D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β, H = T(ζ) ∂ζ/∂(ρ, β)
+            rigid.cross(g, work)
+            product(work, H, bent[at])
+            for i in range(6 * p, 6 * p + 6):
+                for j in range(12):
+                    KU[i, 6 + j] -= bent[i, j]
+            turned_apply(T, g, turned)
+            for i in range(6):
+                for j in range(6):
+                    sums.on_eta[j] += shape[i, j] * turned[i]
+            rigid.tangent_transpose_derivative(zeta, g, D)
+            product(D, slope, bent[at])
+    np.dot(U.T, MU, sums.M)
+    np.dot(U.T, CU, sums.C)
+    np.dot(U.T, KU, sums.K)
+    if geometric:
+        _split(np.dot(slopes.T, bent), spring, sums.K)
+
+
+@compiled
+def ride(
+    rest: Array,
+    shape: Array,
+    bubble: Array,
+    change: Array,
+    back: Array,
+    beta: Array,
+    zeta: Array,
+    slope: Array,
+    T: Array,
+    H: Array,
+) -> None:
+    """Where a point of ``beams.Points`` is in a's frame, and how it moves with (ρ, β).
+
+    From η − η₀ (6,), ``back`` (6, 6) = ``tangent_inverse(η)`` and β (6,): ζ (6,), its slope (6, 12), ``tangent(ζ)`` (6, 6), and
+    H (6, 12), the product of these two.
+    """
+    for i in range(6):
+        zeta[i] = rest[i]
+        for j in range(6):
+            zeta[i] += shape[i, j] * change[j] + bubble[i, j] * beta[j]
+            slope[i, 6 + j] = bubble[i, j]
+    product(shape, back, slope)
+    rigid.tangent(zeta, T)
+    product(T, slope, H)
+
+
+@compiled
+def _put_twist(H: Array, out: Array) -> None:
+    """(1, H) (6, 18): a point's twist from (ξ_a, ρ, β)."""
+    for i in range(6):
+        for j in range(6):
+            out[i, j] = 0.0
+        out[i, i] = 1.0
+        for j in range(12):
+            out[i, 6 + j] = H[i, j]
+
+
+@compiled
+def _split(k: Array, spring: Array, rest: Array) -> None:
+    """Add a stiffness (12, 12) on (ρ, β): what is between the ends alone to ``spring``, else to ``rest`` (18, 18)."""
+    for i in range(12):
+        for j in range(12):
+            if i < 6 and j < 6:
+                spring[i, j] += k[i, j]
+            else:
+                rest[6 + i, 6 + j] += k[i, j]
+
+
+@compiled
+def _hold_components(to_point: Array, pose: Array, push: Array, follow: bool, g: Array, K: Array) -> None:
+    """``inertia.hold_components`` at the point of a pose, whose axes and origin it is for, of g and K at a."""
+    from_point = np.empty((6, 6))
+    rigid.adjoint(pose, from_point)
+    here, more, work, at_a = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
+    turned_apply(from_point, g, here)
+    inertia.hold_components(here, push, follow, more)
+    turned_apply(to_point, here, g)
+    congruence(to_point, more, work, at_a)
+    for i in range(6):
+        for j in range(6):
+            K[i, j] += at_a[i, j]

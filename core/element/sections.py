@@ -1,0 +1,255 @@
+"""From a blade's sections to the elements between its nodes: exact static solution by integrated flexibility.
+
+Clamp frame a and load frame b by a wrench w (at a's origin, in a's axes): the section at s carries ``Ad(F_s)ᵀ w``, strains by
+its compliance, and turns and moves all beyond it, so the twist of the section at s is
+
+    ρ(s) = f(s) w,   f(s) = ∫ Ad(F) c Ad(F)ᵀ ds   from a to s,
+
+for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. What loads
+between the nodes add to that, six bubbles describe: the element clamped at both ends under uniform loads along its sections'
+axes. They do no work with the shape functions, and make axial, torsional and shear motion as accurate as bending. Gauss
+quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, stiffness_at, straight, twist_at
+from ..space import spatial as sp
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+GAUSS = 3
+RIGID_AXIAL = 1e-8  # compliance kept by a rigid axial strain, of L²/EI: a beam 10⁴ times longer than thick
+RIGID_TORSION = 1e-6  # compliance kept by a rigid torsion, of 1/EI
+
+
+def root(blade: Blade) -> Array:
+    """Pose (4, 4) of the clamped root in the hub's axes: precone about −y, then along the blade, then pitch about x."""
+    cone, pitch = sp.rotation(1, np.array(-blade.precone)), sp.rotation(0, np.array(blade.pitch))
+    return sp.pose(cone @ pitch, cone @ np.array([blade.hub_radius, 0.0, 0.0]))
+
+
+def frames(blade: Blade, s: Array) -> Array:
+    """Rest poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist."""
+    turn = sp.rotation(0, twist_at(blade, s))
+    if straight(blade):
+        local = sp.pose(turn, np.outer(s, [1.0, 0.0, 0.0]))
+    else:
+        curve = CubicSpline(blade.stations, blade.curve)
+        t = curve(s, 1)
+        t /= np.linalg.norm(t, axis=1, keepdims=True)
+        w = sp.skew(np.cross([1.0, 0.0, 0.0], t))
+        swing = np.eye(3) + w + w @ w / (1.0 + t[:, 0])[:, None, None]
+        local = sp.pose(swing @ turn, curve(s))
+    return root(blade) @ local
+
+
+def compliance(blade: Blade, s: Array) -> Array:
+    """Section compliance (k, 6, 6); rigid shears have none, rigid axial and torsional strains next to none."""
+    k = stiffness_at(blade, s)
+    soft = np.flatnonzero(np.isfinite(k).all(axis=(0, 2)))
+    out = np.zeros_like(k)
+    out[:, soft[:, None], soft] = np.linalg.inv(k[:, soft[:, None], soft])
+    bend = np.minimum(out[:, BEND_Y, BEND_Y], out[:, BEND_Z, BEND_Z])
+    if AXIAL not in soft:
+        out[:, AXIAL, AXIAL] = RIGID_AXIAL * blade.length**2 * bend
+    if TORSION not in soft:
+        out[:, TORSION, TORSION] = RIGID_TORSION * bend
+    return out
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Gauss points of all elements, in order along the blade, and the elements' static solutions.
+
+    Attributes:
+        element: (q,) which element each point lies in.
+        s, weight: (q,) arc length and quadrature weight, m.
+        pose: (q, 4, 4) rest pose in the frame of the element's first node.
+        flexibility: (n, 6, 6) f(b) of each element.
+        shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
+        bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
+            moves nothing has a zero column.
+        at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the arc lengths asked for.
+        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
+            across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
+            tells.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
+    """
+
+    element: Index
+    s: Array
+    weight: Array
+    pose: Array
+    flexibility: Array
+    shape: Array
+    bubble: Array
+    at_element: Index
+    at_shape: Array
+    at_bubble: Array
+    shortening: Array
+    mean: Array
+    slope: Array
+
+
+@dataclass(frozen=True)
+class Quadrature:
+    """Gauss points between the nodes.
+
+    Attributes:
+        start, length: (i,) arc length where each interval begins, and its length, m; none of them has a station inside.
+        element: (i,) which element it lies in.
+        s, weight: (i, ``GAUSS``) arc length and weight of its points, m.
+    """
+
+    start: Array
+    length: Array
+    element: Index
+    s: Array
+    weight: Array
+
+
+def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadrature:
+    """Gauss points between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
+    ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
+    ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
+    c, b, _ = collocation(GAUSS)
+    h = np.diff(ends)
+    element = np.searchsorted(nodes, ends[:-1] + 0.5 * h, side="right") - 1
+    return Quadrature(ends[:-1], h, element, ends[:-1, None] + h[:, None] * c, h[:, None] * b)
+
+
+def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
+    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,)."""
+    points = quadrature(blade, nodes)
+    h, element, s = points.length, points.element, points.s
+    _, b, a = collocation(GAUSS)
+    at = np.zeros(0) if at is None else at
+    interval = np.clip(np.searchsorted(points.start, at, side="right") - 1, 0, None)
+    until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
+    first = frames(blade, nodes[:-1])
+    pose = sp.inverse(first)[element][:, None] @ frames(blade, s.ravel()).reshape(*s.shape, 4, 4)
+    lever = sp.adjoint(pose)
+    soft = compliance(blade, s.ravel()).reshape(*s.shape, 6, 6)
+    turn = lever @ soft @ np.swapaxes(lever, -1, -2)
+    start = np.searchsorted(element, np.arange(len(nodes) - 1))
+
+    def over(weights: Array, values: Array) -> Array:
+        """Weighted sums over the Gauss points of each interval, times its length: (i, w, k, l)."""
+        sums = weights @ values.reshape(len(values), GAUSS, -1)
+        return h[:, None, None, None] * sums.reshape(len(values), len(weights), *values.shape[2:])
+
+    def whole(values: Array) -> Array:
+        """Integral over each element."""
+        return np.add.reduceat(over(b[None], values)[:, 0], start, axis=0)
+
+    def running(values: Array) -> tuple[Array, Array, Array]:
+        """Integral from the element's start to its Gauss points and to the points ``at``, and over all of it."""
+        parts = over(b[None], values)[:, 0]
+        begun = np.cumsum(parts, axis=0) - parts
+        begun -= begun[start][element]
+        there = begun[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
+        return begun[:, None] + over(a, values), there, np.add.reduceat(parts, start, axis=0)
+
+    within, there, flexibility = running(turn)
+    stiffness = np.linalg.inv(flexibility)
+    q, at_element = np.repeat(element, GAUSS), element[interval]
+    shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], there @ stiffness[at_element]
+    size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
+    load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
+    inside, _, total = running(load)
+    carried = total[element][:, None] - inside  # beyond each point
+    loose, there, tip = running(turn @ carried)
+    bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
+    at_bubble = there - at_shape @ tip[at_element]
+    work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
+    unit = _unit_stiffness(work)
+    local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
+    static = local @ stiffness[element][:, None]
+    loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
+    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
+    length = np.diff(nodes)[element][:, None, None]
+    part = (s - nodes[element][:, None])[..., None] / length
+    rate = turn @ stiffness[element][:, None]
+    uneven = _uneven(pose, part, length, last[element][:, None], shape.reshape(turn.shape), rate, static, loaded)
+    shortening, mean, slope = (whole(v) for v in uneven)
+    return Segments(
+        element=q,
+        s=s.ravel(),
+        weight=points.weight.ravel(),
+        pose=pose.reshape(-1, 4, 4),
+        flexibility=flexibility,
+        shape=shape,
+        bubble=bubble @ unit[q],
+        at_element=at_element,
+        at_shape=at_shape,
+        at_bubble=at_bubble @ unit[at_element],
+        shortening=shortening,
+        mean=mean,
+        slope=slope,
+    )
+
+
+def _uneven(
+    pose: Array, part: Array, length: Array, last: Array, shape: Array, rate: Array, static: Array, loaded: Array
+) -> tuple[Array, Array, Array]:
+    """What G, A and B of ``elements`` integrate, at the Gauss points (i, q, …).
+
+    Args:
+        pose: (i, q, 4, 4) of the points in the element's frame.
+        part: (i, q, 1) of the element's length that lies before them.
+        length: (i, 1, 1) of the elements, m.
+        last: (i, 1, 6) logarithm of the elements' rest poses.
+        shape, rate: (i, q, 6, 6) the points' twists from that of b, and their rates along the arc.
+        static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
+    """
+    ends_move = sp.tangent(last)
+    along = part * last
+    displaced = _across(pose, shape @ ends_move, rate @ ends_move)
+    helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
+    strain = static @ ends_move
+    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear
+    bow = 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(slip))
+    return bow, strain, 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
+
+
+def _squared(slope: Array) -> Array:
+    return np.swapaxes(slope, -1, -2) @ slope
+
+
+def _across(pose: Array, moved: Array, rate: Array) -> Array:
+    """(…, 2, 6) slope across the axis of the displaced reference curve, from twists at a and their rates along the arc."""
+    p, x = pose[..., :3, 3], pose[..., :3, 0]
+    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ moved[..., 3:, :]
+    return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
+
+
+def _unit_stiffness(work: Array) -> Array:
+    """(n, 6, 6) T with Tᵀ work T = 1 over the loads that do work, zero columns for those that do none."""
+    value, vector = np.linalg.eigh(0.5 * (work + np.swapaxes(work, -1, -2)))
+    active = value > 1e-9 * value[:, -1:]
+    return vector * np.where(active, 1.0 / np.sqrt(np.where(active, value, 1.0)), 0.0)[:, None, :]
+
+
+@lru_cache
+def collocation(n: int) -> tuple[Array, Array, Array]:
+    """Gauss points c and weights b on [0, 1], and the matrix ∫₀^{c_q} ℓ_j of their Lagrange polynomials."""
+    x, w = np.polynomial.legendre.leggauss(n)
+    c = 0.5 * (x + 1.0)
+    return c, 0.5 * w, _up_to(c, c)
+
+
+def partial_weights(n: int, x: Array) -> Array:
+    """(m, n) weights of Gauss's n points on [0, 1] for the integrals from 0 to x (m,)."""
+    return _up_to(collocation(n)[0], x)
+
+
+def _up_to(c: Array, x: Array) -> Array:
+    powers = np.arange(len(c))
+    return (x[:, None] ** (powers + 1) / (powers + 1)) @ np.linalg.inv(c[:, None] ** powers)

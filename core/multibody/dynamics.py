@@ -1,0 +1,252 @@
+"""Cartesian equations of a tree and their projection M* v̇ = Q* (Park et al. 2010, eq. 1, 5–11).
+
+All wrenches are on the bodies at the ground's origin, in its axes. What the bodies feel is gathered as a ``Cartesian`` pencil:
+the total wrench g that inertia and forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` along with the bodies,
+block by block, ξ the bodies' small twists.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..element.beams import Pencil, on_ends
+from ..element.beams import pencil as beam_pencil
+from ..element.measures import response
+from ..space import spatial as sp
+from .kinematics import Kinematics
+from .mechanism import MechanismError, Spring
+from .tree import Batch, Tree
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Cartesian:
+    """Total wrench g (b + m, 6) and its linearisation M, C, K, sparse; rows as those of B, beams' internal forces last.
+
+    ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground: kept out of K, for
+    ``B_b − B_a`` is exact where the difference of their products would cancel.
+    """
+
+    g: Array
+    M: csr_array
+    C: csr_array
+    K: csr_array
+    ends: NDArray[np.intp]
+    stiffness: Array
+
+
+class _Sum:
+    """Wrenches and 6×6 blocks as they come in."""
+
+    def __init__(self, rows: int) -> None:
+        self.g = np.zeros((rows, 6))
+        self.blocks: list[tuple[NDArray[np.intp], NDArray[np.intp], tuple[Array, Array, Array]]] = []
+        self.springs: list[tuple[NDArray[np.intp], Array]] = []
+
+    def add(self, ends: NDArray[np.intp], pencil: Pencil) -> None:
+        """e elements' wrenches (e, d) and matrices (e, d, d) on d/6 rows ``ends`` each; the ground takes what acts on it."""
+        self.springs.append((ends[:, :2], pencil.spring))
+        for i in range(ends.shape[1]):
+            acts = ends[:, i] >= 0
+            row = slice(6 * i, 6 * i + 6)
+            np.add.at(self.g, ends[acts, i], pencil.residual[acts, row])
+            for j in range(ends.shape[1]):
+                both = acts & (ends[:, j] >= 0)
+                column = slice(6 * j, 6 * j + 6)
+                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.rest))
+                self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
+
+    def total(self) -> Cartesian:
+        """All of it, added up."""
+        row, column = (np.concatenate([part[k] for part in self.blocks]) for k in (0, 1))
+        six = np.arange(6)
+        where = np.broadcast_arrays((6 * row[:, None] + six)[:, :, None], (6 * column[:, None] + six)[:, None, :])
+        at = where[0].ravel(), where[1].ravel()
+        size = self.g.size
+        M, C, K = (
+            csr_array((np.concatenate([part[2][k] for part in self.blocks]).ravel(), at), shape=(size, size))
+            for k in range(3)
+        )
+        ends, stiffness = zip(*self.springs, strict=True) if self.springs else (_NO_ENDS, _NO_SPRINGS)
+        return Cartesian(self.g, M, C, K, np.concatenate(ends), np.concatenate(stiffness))
+
+
+_NO_ENDS, _NO_SPRINGS = (np.zeros((0, 2), dtype=np.intp),), (np.zeros((0, 6, 6)),)
+
+
+def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Cartesian:
+    """Gather inertia, gravity, springs, beams and the reactions of cut joints.
+
+    Args:
+        tree: the mechanism.
+        k: its kinematics.
+        multipliers: (w, 6) wrench each weld needs on the body, reversed on the copy; none: zero.
+
+    Raises:
+        MechanismError: a beam with mass whose ends do not move together in the steady state.
+    """
+    out = _Sum(len(k.B))
+    _bodies(tree, k, out)
+    for spring in tree.mechanism.springs:
+        _spring(tree, k, spring, out)
+    for batch in tree.batches:
+        _beams(tree, k, batch, out)
+    if multipliers is not None:
+        for (body, copy), w in zip(tree.welds, multipliers, strict=True):
+            _weld(body, copy, w, out)
+    return out.total()
+
+
+def inertias(tree: Tree, k: Kinematics) -> Array:
+    """(b, 6, 6) inertias of the bodies at the ground's origin, in its axes."""
+    a = sp.adjoint(sp.inverse(k.poses))
+    return np.swapaxes(a, -1, -2) @ tree.inertia @ a
+
+
+def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
+    """g = M (A − a_g) + Y ×* M Y; along with the body δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇ − M a_g × ξ."""
+    M = inertias(tree, k)
+    fall = np.concatenate([tree.mechanism.gravity, np.zeros(3)])
+    turn = sp.ad(k.Y)
+    momentum = (M @ k.Y[..., None])[..., 0]
+    out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
+    mt = M @ turn
+    C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
+    each = np.arange(len(M))
+    out.blocks.append((each, each, (M, C, -M @ sp.ad(fall))))
+
+
+def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Array, Array]:
+    """Poses (e, 4, 4) of frames ``at`` in bodies, and the bodies' twists and their rates (e, 6); −1 is the ground."""
+    still = np.zeros((1, 6))
+    x = np.concatenate([k.poses, np.eye(4)[None]])[body] @ at
+    return x, np.concatenate([k.Y, still])[body], np.concatenate([k.A, still])[body]
+
+
+def _between(w: Array, k: Array, c: Array) -> Pencil:
+    """w on b and −w on a, both at one point in one set of axes: with ρ = ξ_b − ξ_a, δw = k ρ + c ρ̇ + ξ_a ×* w."""
+    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # taken along with b: −ρ ×* w
+    damping = on_ends(c[None], c[None])
+    return Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
+
+
+def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
+    ends = np.array([tree.body(s.body_a), tree.body(s.body_b)])
+    x, (ya, yb), _ = _state(k, ends, sp.pose(np.eye(3), np.array([s.point_a, s.point_b])))
+    pa, pb = x[:, :3, 3]
+    d = pb - pa
+    length = float(np.linalg.norm(d))
+    if length == 0.0:
+        raise MechanismError(f"spring {s.body_a!r}–{s.body_b!r}: its ends coincide: it has no direction; move one")
+    n = d / length
+    velocity = np.hstack([np.eye(3), -sp.skew(pb)])  # of the point at p_b, from a twist at the origin
+    line = np.concatenate([n, np.cross(pb, n)])  # wrench of a unit force along the spring
+    # seen from a: δd = velocity ρ, its direction turns by the part across
+    across = (np.eye(3) - np.outer(n, n)) / length
+    seen = yb - ya
+    slip = seen[:3] + np.cross(seen[3:], pb)  # velocity of b's point seen from a
+    tension = s.stiffness * (length - s.rest) + s.damping * float(n @ slip)
+    # δ(rate) seen from a = slip·δn + n·δslip, with δslip = velocity ρ̇ + ρ_ω × slip
+    tilt = across @ velocity
+    rate_k = slip @ tilt
+    rate_k[3:] -= n @ sp.skew(slip)
+    force_k = np.outer(n, s.stiffness * (n @ velocity) + s.damping * rate_k) + tension * tilt
+    moment = np.vstack([np.eye(3), sp.skew(pb)])
+    kk = moment @ force_k
+    kk[3:] += tension * (-sp.skew(n)) @ velocity  # the arm p_b moves with b
+    # ρ̇ is the relative twist's rate seen from a
+    c = s.damping * np.outer(line, n @ velocity)
+    kk = kk - c @ sp.ad(ya)
+    out.add(ends[None], _between(tension * line, kk, c))
+
+
+def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
+    a, b = batch.ends.T
+    (xa, ya, aa), (xb, yb, _) = _state(k, a, batch.at_a), _state(k, b, batch.at_b)
+    massive = batch.beams.inner > 0
+    if massive:
+        _check_steady(tree, batch, ya, yb, aa)
+    to_a = sp.adjoint(sp.inverse(xa))
+    frame = (to_a @ ya[..., None])[..., 0]
+    fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
+    x = sp.inverse(xa) @ xb
+    beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
+    p = beam_pencil(batch.beams, x, beta, frame, fall)
+    M, C, K = p.M, p.C, p.rest
+    if batch.damping.any():
+        E = response(batch.beams.law, x, beta).rate[..., :6]
+        d = np.swapaxes(E, -1, -2) @ batch.damping @ E
+        C = C.copy()
+        C[:, :12, :12] += on_ends(d, d)
+    # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
+    turn, own = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
+    turn[:, :6, :6] = turn[:, 6:12, 6:12] = sp.ad(frame)
+    own[:, :6, :6] = own[:, 6:12, 6:12] = to_a
+    K = K - C @ turn + M @ turn @ turn
+    C = C - 2.0 * M @ turn
+    back = np.swapaxes(own, -1, -2)
+    ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
+    spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
+    out.add(
+        ends, Pencil((back @ p.residual[..., None])[..., 0], back @ M @ own, back @ C @ own, back @ K @ own, spring)
+    )
+
+
+def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> None:
+    scale = np.maximum(np.abs(ya).max(1), 1e-30)
+    bad = (np.abs(yb - ya).max(1) > 1e-9 * scale) | (np.abs(aa).max(1) > 1e-9 * scale**2)
+    if bad.any():
+        beam = tree.mechanism.beams[batch.index[int(bad.argmax())]]
+        raise MechanismError(
+            f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, so its ends must turn together and steadily; lump its mass, "
+            "or fix the motion between its ends"
+        )
+
+
+def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
+    """Equal and opposite reactions, taken along with the bodies; what else they vary by is left to the multipliers."""
+    out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
+
+
+def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
+    """M* = Bᵀ M B (eq. 10)."""
+    B = k.B.reshape(-1, k.B.shape[-1])
+    return B.T @ c.M @ B
+
+
+def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> Array:
+    """τ = M* v̇ − Q* (n,): the generalised forces that would be needed (eq. 8, 11)."""
+    out = np.einsum("bin,bi->n", k.B, c.g)
+    for s in tree.mechanism.coordinate_springs:
+        j = tree.coordinate(s.coordinate)
+        out[j] += s.stiffness * (q[j] - s.rest) + s.damping * v[j]
+    return out
+
+
+def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Array]:
+    """Analytic M*, C*, K* (n, n) of τ with respect to accelerations, velocities and coordinates.
+
+    M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + G with G_kj = −(J_j × J_k)ᵀ f_j for j beyond k, f_j the
+    total wrench on all that coordinate j carries: the turning of the screws against the forces they pass on.
+    """
+    n = k.J.shape[1]
+    B, B1, B2 = (b.reshape(-1, n) for b in (k.B, k.B1, k.B2))
+    MB1 = c.M @ B1
+    M = B.T @ c.M @ B
+    C = B.T @ (2.0 * MB1 + c.C @ B)
+    carried = tree.carries.T.astype(float) @ c.g[: len(tree.bodies)]  # f_j
+    force = -(np.swapaxes(sp.ad(k.J.T), -1, -2) @ carried[..., None])[..., 0]  # J_j ×* f_j
+    below = (tree.above.astype(float) - np.eye(n)).T  # below[k, j]: j hangs beyond k
+    K = B.T @ (c.M @ B2 + c.C @ B1 + c.K @ B) + below * (k.J.T @ force.T)
+    if len(c.ends):
+        padded = np.concatenate([k.B, np.zeros((1, 6, n))])
+        stretch = padded[c.ends[:, 1]] - padded[c.ends[:, 0]]
+        K = K + stretch.reshape(-1, n).T @ (c.stiffness @ stretch).reshape(-1, n)
+    for s in tree.mechanism.coordinate_springs:
+        j = tree.coordinate(s.coordinate)
+        K[j, j] += s.stiffness
+        C[j, j] += s.damping
+    return M, C, K

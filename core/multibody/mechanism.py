@@ -1,0 +1,171 @@
+"""A mechanism: bodies, joints (tree and cut), prescribed motion, force elements, gravity. Any of them, not only a blade.
+
+Poses, twists and inertias follow ``core.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
+through the tree and once through a massless copy beyond the cut joint, and the two are welded. One kind of constraint (six
+equations Φᶜ, the joint's own coordinates kept) then serves a cut joint of every kind (Park et al. 2010, eq. 2).
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..element.beams import Beams
+from ..space import spatial as sp
+from .joints import SCREWS, Joint
+from .motion import Law, Motion, instant
+
+Array = NDArray[np.float64]
+
+GROUND = "ground"
+
+
+class MechanismError(ValueError):
+    """A mechanism that cannot be: the message names the element, the value, the likely cause and the remedy."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body with its 6×6 inertia about its own frame's origin (see ``inertia``)."""
+
+    name: str
+    inertia: Array = field(default_factory=lambda: np.zeros((6, 6)))
+
+
+def inertia(mass: float, moments: ArrayLike = 0.0, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
+    """Inertia (6, 6) of a rigid body about its frame's origin.
+
+    Args:
+        mass: kg.
+        moments: about the centre of mass, kg m²: one number, three principal ones, or a (3, 3) tensor.
+        centre: (3,) centre of mass, m.
+    """
+    m = np.asarray(moments, float)
+    tensor = m if m.ndim == 2 else np.eye(3) * m
+    out = np.zeros((6, 6))
+    out[:3, :3] = mass * np.eye(3)
+    out[3:, 3:] = tensor
+    shift = sp.adjoint(sp.inverse(sp.pose(np.eye(3), np.asarray(centre, float))))
+    return shift.T @ out @ shift
+
+
+@dataclass(frozen=True)
+class CoordinateSpring:
+    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − rest) + damping q̇``."""
+
+    coordinate: str
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring and damper between points of two bodies: tension ``stiffness (length − rest) + damping × its rate``."""
+
+    body_a: str
+    body_b: str
+    point_a: Array
+    point_b: Array
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A batch of one beam or bushing between the frames of two bodies; see ``beams.Beams``. ``damping`` as stiffness."""
+
+    body_a: str
+    body_b: str
+    beams: Beams
+    damping: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    at_a: Array = field(default_factory=lambda: np.eye(4))
+    at_b: Array = field(default_factory=lambda: np.eye(4))
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """What a mechanism is made of; ``tree.compile_tree`` makes it ready to solve."""
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    motions: tuple[Motion, ...] = ()
+    coordinate_springs: tuple[CoordinateSpring, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    beams: tuple[Beam, ...] = ()
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def at_time(mechanism: Mechanism, time: float) -> Mechanism:
+    """The mechanism with every motion that follows a law as it is at ``time`` (s).
+
+    Raises:
+        MechanismError: a law without derivatives, or beside numbers that it would override.
+    """
+    for m in mechanism.motions:
+        if m.law is None:
+            continue
+        if not isinstance(m.law, Law):
+            raise MechanismError(
+                f"motion {m.coordinate!r}: its law {m.law!r} has no derivatives: give a numpy Polynomial, a Harmonic, or "
+                "an object with deriv()"
+            )
+        if m.position is not None or m.rate or m.acceleration:
+            raise MechanismError(f"motion {m.coordinate!r}: both a law and numbers are given: leave the numbers out")
+    return replace(mechanism, motions=tuple(instant(m, time) for m in mechanism.motions))
+
+
+def turned_at(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
+    """The mechanism with the motion of one coordinate, its rotor's, at another rate (rad/s or m/s).
+
+    Raises:
+        MechanismError: if that coordinate has no motion, or follows a law.
+    """
+    mine = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
+    if not mine:
+        raise MechanismError(f"coordinate {coordinate!r}: no motion at a rate is given for it: add one")
+    motions = tuple(replace(m, rate=rate) if m in mine else m for m in mechanism.motions)
+    return replace(mechanism, motions=motions)
+
+
+def check(m: Mechanism) -> None:
+    """Refuse what cannot be.
+
+    Raises:
+        MechanismError: names used twice or unknown, an inertia that is not one, a motion given twice.
+    """
+    names = [b.name for b in m.bodies]
+    for what, given in (("body", names), ("joint", [j.name for j in m.joints])):
+        twice = sorted({n for n in given if given.count(n) > 1})
+        if twice:
+            raise MechanismError(f"{what} {twice[0]!r}: given twice; names must be unique")
+    if GROUND in names:
+        raise MechanismError("body 'ground': the name of the inertial frame; choose another")
+    known = {GROUND, *names}
+    used = [(f"joint {j.name!r}", n) for j in m.joints for n in (j.parent, j.child)]
+    used += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
+    used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b)]
+    for what, name in used:
+        if name not in known:
+            raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
+    held = [x.coordinate for x in m.motions]
+    if len(set(held)) < len(held):
+        raise MechanismError(f"motion {max(held, key=held.count)!r}: given twice; one coordinate moves one way")
+    for x in m.motions:
+        if x.law is not None:
+            raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: take at_time(mechanism, time)")
+    for j in m.joints:
+        if j.kind not in SCREWS:
+            raise MechanismError(f"joint {j.name!r}: kind {j.kind!r} is unknown; there are {', '.join(SCREWS)}")
+        if j.parent == j.child:
+            raise MechanismError(f"joint {j.name!r}: parent and child are both {j.parent!r}")
+    for b in m.bodies:
+        if b.inertia.shape != (6, 6) or not np.isfinite(b.inertia).all() or not np.allclose(b.inertia, b.inertia.T):
+            raise MechanismError(
+                f"body {b.name!r}: its inertia must be a finite symmetric 6×6 matrix; build it with inertia()"
+            )
+        if np.linalg.eigvalsh(b.inertia)[0] < -1e-9 * max(np.abs(b.inertia).max(), 1e-300):
+            raise MechanismError(
+                f"body {b.name!r}: its inertia is not positive: negative mass or moments about the wrong point?"
+            )

@@ -1,0 +1,124 @@
+"""Coordinate partitioning of a tree closed by cut joints (Park et al. 2010, eq. 12–22).
+
+A weld makes a body and its copy one, ``Φ = log(X_copy⁻¹ X_body) = 0``; from the ground its Jacobian is ``B_body − B_copy``,
+so its rates are differences of Ḃ and B̈. Which coordinates depend on the others a pivoted QR factorisation decides.
+"""
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ..space import spatial as sp
+from .kinematics import Kinematics
+from .mechanism import MechanismError
+from .tree import Tree
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+_RANK = 1e-8
+
+
+def misfit(tree: Tree, poses: Array) -> Array:
+    """Φ (6w,) of all welds at the ground's origin, in its axes."""
+    out = []
+    for body, copy in tree.welds:
+        x = np.eye(4) if body < 0 else poses[body]
+        gap = sp.log((sp.inverse(poses[copy]) @ x)[None])[0]
+        out.append(sp.adjoint(poses[copy]) @ gap)
+    return np.concatenate(out) if out else np.zeros(0)
+
+
+def jacobian(tree: Tree, B: Array) -> Array:
+    """Φ_q (6w, n) from B, or its rates from Ḃ and B̈ (b, 6, n)."""
+    rows = [(0.0 if body < 0 else B[body]) - B[copy] for body, copy in tree.welds]
+    return np.concatenate(rows) if rows else np.zeros((0, B.shape[-1]))
+
+
+@dataclass(frozen=True)
+class Partition:
+    """δq = R δq_I over the free coordinates, and the rates of R along the motion.
+
+    Attributes:
+        free: (f,) indices of coordinates whose motion is not prescribed.
+        independent: (i,) indices of q_I.
+        dependent: indices of q_D.
+        R, R1, R2: (f, i) and its first and second rates; rows as ``free``.
+        redundant: constraint equations that say nothing new, as ``joint: component``.
+    """
+
+    free: Index
+    independent: Index
+    dependent: Index
+    R: Array
+    R1: Array
+    R2: Array
+    redundant: tuple[str, ...]
+
+
+def held(tree: Tree) -> Index:
+    """Coordinates whose motion is prescribed."""
+    return np.array(sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held), dtype=np.intp)
+
+
+def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = None) -> Partition:
+    """Split the free coordinates (eq. 12) and express the dependent ones by the independent (eq. 14–16, 18).
+
+    Args:
+        tree: the mechanism.
+        k: its kinematics at an assembled configuration.
+        independent: names to use as q_I; chosen numerically if not given.
+
+    Raises:
+        MechanismError: names that cannot serve as independent coordinates.
+    """
+    free = np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))
+    J = jacobian(tree, k.B)[:, free]
+    rank, order = _rank(J)
+    if independent is None:
+        dependent, chosen = np.sort(order[:rank]), np.sort(order[rank:])
+    else:
+        wanted = [tree.coordinate(name) for name in independent]
+        chosen = np.flatnonzero(np.isin(free, wanted))
+        dependent = np.setdiff1d(np.arange(len(free)), chosen)
+        if len(chosen) != len(free) - rank or _rank(J[:, dependent])[0] < rank:
+            raise MechanismError(
+                f"independent: {', '.join(independent)} do not determine the rest: {len(free) - rank} are needed, free and not "
+                "tied to each other by a loop; or leave the choice to the solver"
+            )
+    R = np.zeros((len(free), len(chosen)))
+    R[chosen, np.arange(len(chosen))] = 1.0
+    R1, R2 = np.zeros_like(R), np.zeros_like(R)
+    if rank:
+        solve = np.linalg.pinv(J[:, dependent], rcond=_RANK)
+        J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
+        R[dependent] = -solve @ J[:, chosen]
+        R1[dependent] = -solve @ (J1 @ R)
+        R2[dependent] = -solve @ (J2 @ R + 2.0 * J1 @ R1)
+    return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, J, rank))
+
+
+def freedom(tree: Tree, B: Array) -> int:
+    """How many ways the free coordinates can move at a configuration with velocity transformation B."""
+    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))]
+    return J.shape[1] - _rank(J)[0]
+
+
+def _rank(J: Array) -> tuple[int, Index]:
+    if not J.size:
+        return 0, np.arange(J.shape[1])
+    r, order = cast(tuple[Array, Index], scipy.linalg.qr(J, mode="r", pivoting=True))
+    size = np.abs(np.diagonal(r))
+    return int((size > _RANK * max(size[0], 1e-300)).sum()), order.astype(np.intp)
+
+
+def _redundant(tree: Tree, J: Array, rank: int) -> tuple[str, ...]:
+    """Rows that depend on others, at the copies' origins in the ground's axes."""
+    if rank == len(J):
+        return ()
+    order = _rank(J.T)[1]
+    parts = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
+    return tuple(sorted(f"{tree.weld_names[r // 6]}: {parts[r % 6]}" for r in order[rank:]))

@@ -1,0 +1,130 @@
+"""Steady state and modes of a mechanism in one call."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blade import uniform_blade
+from ..eigen import Damped
+from ..element.beams import Beams, bushing
+from ..element.discretize import discretize
+from .joints import Joint, at
+from .linearize import Linear, linearize, modes
+from .mechanism import Beam, Body, CoordinateSpring, Mechanism, MechanismError, Motion, Spring, inertia
+from .motion import Harmonic, Sum
+
+__all__ = [
+    "Beam",
+    "Body",
+    "CoordinateSpring",
+    "Harmonic",
+    "Joint",
+    "Mechanism",
+    "MechanismError",
+    "Motion",
+    "Solution",
+    "Spring",
+    "Sum",
+    "at",
+    "bushing",
+    "inertia",
+    "solve",
+    "straight_beam",
+]
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A mechanism's steady state and its modes.
+
+    Attributes:
+        values: (m,) complex eigenvalues λ, 1/s, by modulus: one of each conjugate pair, and real ones.
+        shapes: (m, n) motion of all coordinates in each mode, the largest 1; zero where motion is prescribed.
+        coordinates: names of the n coordinates.
+        steady: their values in the steady state, m or rad, by name.
+        independent: the coordinates chosen to vibrate about it; the others follow.
+        redundant: constraint equations that say nothing new, as ``joint: component``.
+        linear: M̂, Ĉ, K̂ over the independent coordinates, and all that led to them.
+    """
+
+    values: Complex
+    shapes: Complex
+    coordinates: tuple[str, ...]
+    steady: dict[str, float]
+    independent: tuple[str, ...]
+    redundant: tuple[str, ...]
+    linear: Linear
+
+    @property
+    def frequencies(self) -> Array:
+        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its size."""
+        return np.abs(self.values)
+
+    @property
+    def damping(self) -> Array:
+        """(m,) damping ratios −Re λ/|λ|: negative grows, ±1 does not oscillate; 0 for a rigid mode."""
+        size = np.abs(self.values)
+        return 0.0 - np.divide(self.values.real, size, out=np.zeros_like(size), where=size > 0)
+
+    @property
+    def leading(self) -> tuple[str, ...]:
+        """For each mode the independent coordinate with the largest share in its kinetic energy."""
+        x = self.shapes[:, self.linear.partition.independent]
+        share = np.real(x.conj() * (x @ self.linear.M.T))
+        return tuple(self.independent[row.argmax()] for row in share)
+
+
+def solve(
+    mechanism: Mechanism,
+    guess: Mapping[str, float] | None = None,
+    *,
+    count: int | None = None,
+    independent: tuple[str, ...] | None = None,
+    time: float = 0.0,
+) -> Solution:
+    """Find the steady state of a mechanism and its modes about it.
+
+    Args:
+        mechanism: the mechanism.
+        guess: coordinates to start from, by name; others start at 0.
+        count: how many modes, from the lowest; all by default.
+        independent: coordinates to vibrate; chosen numerically if not given.
+        time: s, where motions follow laws of time: the instant frozen (see ``linearize``).
+
+    Raises:
+        MechanismError: for whatever cannot be assembled, balanced or partitioned; the message says what.
+    """
+    linear = linearize(mechanism, guess, independent, time)
+    found = modes(linear, count)
+    values: Complex = np.asarray(found.values if isinstance(found, Damped) else 1j * found.frequencies, np.complex128)
+    tree, part = linear.tree, linear.partition
+    shapes: Complex = np.zeros((len(values), len(tree.coordinates)), np.complex128)
+    shapes[:, part.free] = (part.R @ found.vectors).T
+    if len(values):
+        shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
+    return Solution(
+        values=values,
+        shapes=shapes,
+        coordinates=tree.coordinates,
+        steady=dict(zip(tree.coordinates, linear.state.q.tolist(), strict=True)),
+        independent=linear.names,
+        redundant=part.redundant,
+        linear=linear,
+    )
+
+
+def straight_beam(length: float, **section: Any) -> Beams:
+    """One uniform beam element along x, for a ``Beam``; ``section`` as for ``blade.uniform_blade``: EA, GJ, EI_y, EI_z, mass …
+
+    Its mass is inside it, consistent: its ends must then turn together in the steady state. Without ``mass`` it has none.
+    """
+    massless = not section.get("mass")
+    section["mass"] = section.get("mass") or 1.0
+    made = discretize(uniform_blade("beam", length, 0.0, **section), 1, "half_end" if massless else "consistent")
+    return made.beams

@@ -1,0 +1,226 @@
+"""A mechanism's spanning tree, compiled to arrays: the topology, before any state."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..element.beams import Beams, Points
+from ..element.measures import joined
+from ..space import spatial as sp
+from .joints import SCREWS, Joint, coordinate_names
+from .mechanism import GROUND, Mechanism, MechanismError, check
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Beams that are treated at once: of one measure, with mass at as many points each, or at none.
+
+    Attributes:
+        index: (e,) which of the mechanism's beams.
+        ends: (e, 2) body indices, −1 for the ground.
+        inner: (e,) the first of six internal coordinates, −1 if there are none.
+        inside: (e,) row of the internal coordinates behind the bodies', −1 if there are none.
+        beams: the elements.
+        at_a, at_b: (e, 4, 4) poses of their end frames in the bodies.
+        damping: (e, 6, 6) on the strain's rate.
+    """
+
+    index: NDArray[np.intp]
+    ends: NDArray[np.intp]
+    inner: NDArray[np.intp]
+    inside: NDArray[np.intp]
+    beams: Beams
+    at_a: Array
+    at_b: Array
+    damping: Array
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A mechanism's spanning tree as arrays, one link a coordinate.
+
+    The internal coordinates of beams with mass come last, as links that move nothing.
+
+    Attributes:
+        mechanism: where it comes from.
+        coordinates: (n) names.
+        before: (n,) the link each coordinate's link hangs on, −1 for the ground.
+        fixed: (n, 4, 4) pose of the screw's frame in that link.
+        screw: (n, 6) unit twist in that frame.
+        bodies: (b) names, copies beyond cut joints last.
+        link: (b,) link each body rides on, −1 for the ground.
+        on_link: (b, 4, 4) pose of the body's frame in its link.
+        inertia: (b, 6, 6) in the bodies' own frames.
+        welds: pairs (body, copy) of body indices that a cut joint makes one.
+        weld_names: the cut joints' names.
+        inner: (i,) the first of the six internal coordinates of each beam that has them.
+        batches: the beams.
+        above: (n, n) above[j, k]: link k lies on the way from the ground to link j, or is j.
+        carries: (b, n) carries[i, k]: coordinate k moves body i.
+    """
+
+    mechanism: Mechanism
+    coordinates: tuple[str, ...]
+    before: NDArray[np.intp]
+    fixed: Array
+    screw: Array
+    bodies: tuple[str, ...]
+    link: NDArray[np.intp]
+    on_link: Array
+    inertia: Array
+    welds: tuple[tuple[int, int], ...]
+    weld_names: tuple[str, ...]
+    inner: NDArray[np.intp]
+    batches: tuple[Batch, ...]
+    above: NDArray[np.bool_]
+    carries: NDArray[np.bool_]
+
+    def body(self, name: str) -> int:
+        """Index of a body; −1 is the ground."""
+        return -1 if name == GROUND else self.bodies.index(name)
+
+    def coordinate(self, name: str) -> int:
+        """Index of a coordinate.
+
+        Raises:
+            MechanismError: if there is none of that name.
+        """
+        if name not in self.coordinates:
+            raise MechanismError(f"coordinate {name!r}: no joint has it; there are {', '.join(self.coordinates)}")
+        return self.coordinates.index(name)
+
+
+def compile_tree(mechanism: Mechanism) -> Tree:
+    """Choose a spanning tree from the ground outwards, in the order the joints are given; the rest become cut joints.
+
+    Raises:
+        MechanismError: names used twice or unknown, a body no joint reaches, an inertia that is not one.
+    """
+    check(mechanism)
+    names = [b.name for b in mechanism.bodies]
+    own = dict(zip(names, (b.inertia for b in mechanism.bodies), strict=True))
+    place: dict[str, tuple[int, Array]] = {GROUND: (-1, np.eye(4))}
+    before: list[int] = []
+    fixed: list[Array] = []
+    screw: list[Array] = []
+    coordinates: list[str] = []
+
+    def hang(joint: Joint, forward: bool) -> tuple[int, Array]:
+        """Lay the joint's screws from whichever end is placed; return where its other end sits."""
+        near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
+        link, pose = place[joint.parent if forward else joint.child]
+        pose = pose @ near
+        steps = list(zip(coordinate_names(joint), SCREWS[joint.kind], strict=True))
+        for name, (_, s) in steps if forward else reversed(steps):
+            before.append(link)
+            fixed.append(pose)
+            screw.append(s if forward else -s)
+            coordinates.append(name)
+            link, pose = len(before) - 1, np.eye(4)
+        return link, pose @ sp.inverse(far)
+
+    waiting = [j for j in mechanism.joints if not j.cut]
+    cuts = [j for j in mechanism.joints if j.cut]
+    while True:
+        ready = next((j for j in waiting if (j.parent in place) or (j.child in place)), None)
+        if ready is None:
+            break
+        waiting.remove(ready)
+        if ready.parent in place and ready.child in place:
+            cuts.append(ready)
+        elif ready.parent in place:
+            place[ready.child] = hang(ready, True)
+        else:
+            place[ready.parent] = hang(ready, False)
+    lost = [n for n in names if n not in place]
+    if lost:
+        raise MechanismError(
+            f"body {lost[0]!r}: no joint leads to it from the ground; add one (a free joint if it is loose)"
+        )
+    bodies, welds = list(names), []
+    inertias = [own[n] for n in names]
+    links = [place[n] for n in names]
+    for joint in cuts:
+        links.append(hang(joint, True))
+        inertias.append(np.zeros((6, 6)))
+        bodies.append(f"{joint.child} beyond {joint.name}")
+        welds.append((names.index(joint.child) if joint.child != GROUND else -1, len(bodies) - 1))
+    inner = []
+    for i, beam in enumerate(mechanism.beams):
+        inner.append(len(before) if beam.beams.inner else -1)
+        for j in range(beam.beams.inner):
+            before.append(-1)
+            fixed.append(np.eye(4))
+            screw.append(np.zeros(6))
+            coordinates.append(f"beam {i + 1}.{j + 1}")
+    n = len(before)
+    above = np.zeros((n, n), bool)
+    for j in range(n):
+        if before[j] >= 0:
+            above[j] = above[before[j]]
+        above[j, j] = True
+    link = np.array([k for k, _ in links], dtype=np.intp)
+    return Tree(
+        mechanism=mechanism,
+        coordinates=tuple(coordinates),
+        before=np.array(before, dtype=np.intp),
+        fixed=np.array(fixed).reshape(n, 4, 4),
+        screw=np.array(screw).reshape(n, 6),
+        bodies=tuple(bodies),
+        link=link,
+        on_link=np.array([x for _, x in links]),
+        inertia=np.array(inertias),
+        welds=tuple(welds),
+        weld_names=tuple(j.name for j in cuts),
+        inner=np.array([j for j in inner if j >= 0], dtype=np.intp),
+        batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
+        above=above,
+        carries=np.vstack([above, np.zeros((1, n), bool)])[link],
+    )
+
+
+def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
+    """Beams that are alike together; ``inner``: of each beam the first internal coordinate, or −1."""
+    rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
+    alike: dict[tuple[str, int], list[int]] = {}
+    for k, beam in enumerate(mechanism.beams):
+        alike.setdefault((beam.beams.law.measure, len(beam.beams.points.element)), []).append(k)
+    out = []
+    for index in alike.values():
+        some = [mechanism.beams[k] for k in index]
+        ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in some]
+        out.append(
+            Batch(
+                index=np.array(index, dtype=np.intp),
+                ends=np.array(ends, dtype=np.intp),
+                inner=np.array([inner[k] for k in index], dtype=np.intp),
+                inside=rows[index],
+                beams=_together([b.beams for b in some]),
+                at_a=np.array([b.at_a for b in some]),
+                at_b=np.array([b.at_b for b in some]),
+                damping=np.array([b.damping for b in some]),
+            )
+        )
+    return tuple(out)
+
+
+def _together(some: list[Beams]) -> Beams:
+    """Single elements as one batch."""
+
+    def each(name: str) -> Array:
+        return np.concatenate([getattr(b, name) for b in some])
+
+    parts = [b.points for b in some]
+    points = Points(
+        element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
+        rest=np.concatenate([p.rest for p in parts]),
+        shape=np.concatenate([p.shape for p in parts]),
+        bubble=np.concatenate([p.bubble for p in parts]),
+        mass=np.concatenate([p.mass for p in parts]),
+        force=np.concatenate([p.force for p in parts]),
+    )
+    names = ("stiffness", "preload", "inner_preload")
+    return Beams(joined([b.law for b in some]), points=points, **{name: each(name) for name in names})

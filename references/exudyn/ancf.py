@@ -1,0 +1,131 @@
+"""Exudyn's ANCF cable in a co-rotating frame: a geometrically nonlinear beam that shares nothing with core.
+
+The cable has cubic positions between nodes that carry position and slope, ``r`` and ``r' = ∂r/∂s``, and the energy
+``½ EA (|r'| − 1)² + ½ EI (|r' × r''| / |r'|²)²`` (J. Gerstmayr, H. Irschik, "On the correct representation of bending
+and axial deformation in the absolute nodal coordinate formulation with an elastic line approach", J. Sound Vib. 318,
+2008, eq. 17–25). Positions are linear in the coordinates, so the mass matrix M is constant, and in axes that turn with
+the hub the inertia forces are exactly
+
+    M q̈ + 2Ω M B q̇ + Ω² M B² q,   B = e_z × on every position and slope.
+
+Exudyn provides M, the steady state and the tangent stiffness there; the frame's terms are made here from its M.
+"""
+
+import time
+from itertools import pairwise
+
+import numpy as np
+from scipy import sparse
+from scipy.interpolate import CubicHermiteSpline
+
+from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
+from ...core.effects import Model
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError, Shares
+from ..protocol.quadratic import gyroscopic_modes
+from . import system as ex
+
+ROUNDING = 2e-15
+"""What rounding leaves of an axial force, of EA times the number of elements (their stiffness is EA over their length)."""
+
+CLAMPED = [0, 1, 2, 4, 5]
+"""Coordinates of the root node that a clamp holds: position, and the slope across; the slope along is free to stretch."""
+
+SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+class ExudynAncf:
+    """See the module; one bending stiffness, no torsion, no rotary inertia, no shear."""
+
+    name = "exudyn-ancf"
+    title = "Exudyn, ANCF cable"
+    shares: Shares = "nothing"
+    model = Model(rotary_inertia=False)
+    levels = (10, 20, 40)
+    order = 4
+    hint = ex.HINT
+
+    def version(self) -> str | None:
+        """Version of Exudyn."""
+        return ex.version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason unless the blade is uniform and straight, bends alike both ways, stretches, and does not shear."""
+        flap, chord = blade.stiffness[:, BEND_Y, BEND_Y], blade.stiffness[:, BEND_Z, BEND_Z]
+        if (flap != chord).any():
+            k = int(np.argmax(flap != chord))
+            return (
+                f"EI_y = {flap[k]:g}, EI_z = {chord[k]:g} N m² at station {k}: an ANCF cable has one bending stiffness"
+            )
+        if not uniform(blade):
+            return "sections couple or vary, or there is curvature, twist, precone, pitch or tip mass: this cable is uniform"
+        section = sample(blade, 0.0)
+        if np.isinf(section.EI_y[0]) or np.isinf(section.EA[0]):
+            return "rigid in bending or stretch: an ANCF cable needs a finite EI and EA"
+        if np.isfinite(section.GA_y[0]) or np.isfinite(section.GA_z[0]):
+            return "shear: an ANCF cable has none (Euler–Bernoulli)"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        matrices = _matrices(blade, omega, elements)
+        place = np.delete(np.eye(len(matrices[0])), CLAMPED, axis=1)
+        M, C, K = (sparse.csc_array(place.T @ matrix @ place) for matrix in matrices)
+        frequencies, vectors = gyroscopic_modes(M, C, K, count)
+        q = place @ vectors
+        return Modes(omega, frequencies, _shapes(q, blade.length), elements, seconds=time.perf_counter() - begun)
+
+
+def _matrices(blade: Blade, omega: float, elements: int):
+    """M, C, K (n, n) of all coordinates, node by node (r, r'), about the steady state in co-rotating axes."""
+    exu, _container, mbs = ex.system()
+    items, section = exu.itemInterface, sample(blade, 0.0)
+    x = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
+    nodes = [mbs.AddNode(items.NodePointSlope1(referenceCoordinates=[at, 0, 0, 1, 0, 0])) for at in x]
+    for pair in pairwise(nodes):
+        mbs.AddObject(
+            items.ObjectANCFCable(
+                length=blade.length / elements,
+                massPerLength=section.mass[0],
+                bendingStiffness=section.EI_y[0],
+                axialStiffness=section.EA[0],
+                nodeNumbers=list(pair),
+            )
+        )
+    ex.hold(exu, mbs, nodes[0], CLAMPED)
+    mbs.Assemble()
+    M, _, K = ex.linearized(exu, mbs)
+    B = np.kron(np.eye(2 * len(nodes)), SPIN)
+    if omega:
+        centrifugal = omega**2 * M @ B @ B
+        reference = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Reference)
+        mbs.AddObject(  # the coordinates are displacements: positions are these plus the reference
+            items.ObjectGenericODE2(
+                nodeNumbers=nodes,
+                massMatrix=np.zeros_like(M),
+                stiffnessMatrix=centrifugal,
+                forceVector=-centrifugal @ reference,
+            )
+        )
+        mbs.Assemble()
+        ex.settle(exu, mbs, omega, rounding=ROUNDING * section.EA[0] * elements)
+        _, _, K = ex.linearized(exu, mbs)
+    return M, 2 * omega * M @ B, K
+
+
+def _shapes(q, length: float):
+    """(m, 21, 4) from coordinates (n, m), by the elements' own cubics; a cable has no rotation about its axis."""
+    node = q.reshape(-1, 2, 3, q.shape[1])
+    cubic = CubicHermiteSpline(np.linspace(0.0, length, len(node)), node[:, 0], node[:, 1])
+    moved = cubic(STATIONS * length)
+    return np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1).transpose(2, 0, 1)
+
+
+CODE = ExudynAncf()

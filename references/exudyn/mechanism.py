@@ -1,0 +1,188 @@
+"""A mechanism in Exudyn: a kinematic tree in relative coordinates, each loop closed by a generic joint.
+
+What is shared with core is the description: which joints make the tree, and their frames. Motion, inertia forces, springs,
+the steady state and its linearisation are Exudyn's own, and a loop is closed by the joint itself (its locked axes as
+algebraic equations), not by core's weld beyond a copy of the body.
+
+Exudyn leaves the constraints' curvature, ∂(Jλ)/∂q, out of its stiffness matrix: Newton's method does without. A modal analysis
+does not (a hanging pendulum on a joint would have no stiffness at all), so it is added here from differences of Exudyn's own
+constraint Jacobian. Modes are those in the null space of the constraints (García de Jalón and Bayo 1994, ch. 5).
+"""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ...core.effects import FULL
+from ...core.multibody.mechanism import Mechanism
+from ...core.multibody.tree import Tree, compile_tree
+from ..protocol.damped import damped_modes
+from ..protocol.interface import CodeError, Shares
+from ..protocol.mechanism_interface import MechanismModes
+from . import system as ex
+from .loops import System, own_coordinates, system, velocity
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Stages:
+    """The linearised tree and its loops, over the n coordinates of the tree's own joints.
+
+    Attributes:
+        coordinates: their names.
+        q: (n,) values in the steady state.
+        M, C: (n, n) mass, and damping and gyroscopic matrix.
+        K: (n, n) stiffness, the constraints' curvature not in it.
+        curvature: (n, n) stiffness from the constraints' curvature under their reactions.
+        J: (n, c) constraint directions: the equations of motion have ``J @ multipliers`` on their right.
+        multipliers: (c,).
+        free: indices of the coordinates whose motion is not prescribed.
+    """
+
+    coordinates: tuple[str, ...]
+    q: Array
+    M: Array
+    C: Array
+    K: Array
+    curvature: Array
+    J: Array
+    multipliers: Array
+    free: NDArray[np.intp]
+
+    @property
+    def null(self) -> Array:
+        """(f, i) orthonormal directions in which the free coordinates can move."""
+        return scipy.linalg.null_space(self.J[self.free].T, rcond=1e-9) if self.J.size else np.eye(len(self.free))
+
+    def reduced(self, basis: Array) -> tuple[Array, Array, Array]:
+        """M, C, K over a basis (f, i) of the free coordinates' motion."""
+        pick = np.ix_(self.free, self.free)
+        M, C, K = (basis.T @ a[pick] @ basis for a in (self.M, self.C, self.K + self.curvature))
+        return M, C, K
+
+
+class ExudynMechanism:
+    """See the module: rigid bodies, any joints, springs on the tree's coordinates and between points, steady rotation."""
+
+    name = "exudyn-loops"
+    title = "Exudyn, kinematic tree with loop joints"
+    shares: Shares = "mechanical model"
+    model = FULL
+    hint = ex.HINT
+
+    def version(self) -> str | None:
+        """Version of Exudyn."""
+        return ex.version()
+
+    def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
+        """A reason if there are beams, accelerations, or springs or motions on a cut joint."""
+        if mechanism.beams:
+            return "beams or bushings: its elastic elements measure strain otherwise"
+        if any(m.acceleration for m in mechanism.motions):
+            return "an accelerating motion: its static solver knows rates only"
+        tree = compile_tree(mechanism)
+        own = own_coordinates(tree)
+        for what in (*mechanism.motions, *mechanism.coordinate_springs):
+            if tree.coordinate(what.coordinate) >= own:
+                return f"{what.coordinate}: a spring or motion on a joint that closes a loop: cut another joint"
+        return None
+
+    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        """All modes; see ``mechanism_interface.MechanismCode``.
+
+        Raises:
+            CodeError: an unsupported mechanism, no steady state near the guess, or loops that move in it.
+        """
+        if reason := self.unsupported_mechanism(mechanism):
+            raise CodeError(reason)
+        begun = time.perf_counter()
+        stages = linearize(compile_tree(mechanism), guess)
+        null = stages.null
+        values, x = damped_modes(*stages.reduced(null))
+        shapes = np.zeros((len(values), len(stages.q)), np.complex128)
+        shapes[:, stages.free] = (null @ x).T
+        return MechanismModes(stages.coordinates, stages.q, values, shapes, time.perf_counter() - begun)
+
+
+def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
+    """Settle a mechanism in Exudyn and linearise it there.
+
+    Raises:
+        CodeError: no steady state near the guess, or loops that move in it.
+    """
+    q = np.zeros(own_coordinates(tree))
+    for name, value in guess.items():
+        if (j := tree.coordinate(name)) < len(q):
+            q[j] = value
+    for m in tree.mechanism.motions:
+        if m.position is not None:
+            q[tree.coordinate(m.coordinate)] = m.position
+    made = system(tree)
+    return stages(tree, made, _settle(tree, made, q))
+
+
+def stages(tree: Tree, made: System, q: Array) -> Stages:
+    """The linearisation at given coordinates q (n,), with the reactions that balance it best there.
+
+    Raises:
+        CodeError: loops that move in the steady state.
+    """
+    v = velocity(tree)
+    held = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held]
+    free = np.setdiff1d(np.arange(len(q)), held)
+    force, _, J = made.balance(q)
+    if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
+        raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
+    multipliers = _least(J[free], -force[free])
+    M, C, K = made.matrices(q)
+    return Stages(tree.coordinates[: len(q)], q, M, C, K, made.curvature(q, multipliers), J, multipliers, free)
+
+
+def _settle(tree: Tree, made: System, q: Array) -> Array:
+    """Newton's method on Exudyn's residual: close the loops, then balance along what they leave free.
+
+    Exudyn's own static solver leaves the constraints' curvature out of its Jacobian and stops at 1e-8.
+
+    Raises:
+        CodeError: no steady state near q.
+    """
+    fixed = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
+    free = np.setdiff1d(np.arange(len(q)), fixed)
+    before = np.inf
+    for _ in range(60):
+        force, gap, J = made.balance(q)
+        force, J = force[free], J[free]
+        close = -_least(J.T, gap)
+        if np.abs(gap).max(initial=0.0) > 1e-3:  # assemble first
+            q = q.copy()
+            q[free] += close * min(1.0, 0.5 / max(float(np.abs(close).max()), 0.5))
+            continue
+        multipliers = _least(J, -force)
+        K = made.matrices(q)[2] + made.curvature(q, multipliers)
+        null = scipy.linalg.null_space(J.T, rcond=1e-9) if J.shape[1] else np.eye(len(free))
+        K = K[np.ix_(free, free)]
+        along = _least(null.T @ K @ null, null.T @ (force - K @ close), 1e-13)
+        step = close + null @ along
+        change = float(np.abs(step).max(initial=0.0))
+        q = q.copy()
+        q[free] += step * min(1.0, 0.3 / max(change, 0.3))
+        if change < 1e-12 or (change < 1e-9 and change > 0.3 * before):
+            rest = np.abs(null.T @ force).max(initial=0.0)
+            if rest <= 1e-7 * max(float(np.abs(force).max(initial=0.0)), float(np.abs(K).max()) * 1e-2):
+                return q
+            break
+        before = change
+    raise CodeError("Exudyn finds no steady state near the guess: give a better one")
+
+
+def _least(a: Array, b: Array, rank: float = 1e-9) -> Array:
+    """The smallest x with the smallest a x − b."""
+    return np.asarray(np.linalg.lstsq(a, b, rcond=rank)[0], np.float64)
+
+
+CODE = ExudynMechanism()

@@ -1,0 +1,77 @@
+"""What both Exudyn codes need: a silent system, its steady state, and its linearisation about that.
+
+Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multibody systems", Multibody System Dynamics
+60 (2024) 533–561.
+"""
+
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..protocol.interface import CodeError
+
+Array = NDArray[np.float64]
+
+HINT = "pip install 'southwell[codes]'"
+
+
+def version() -> str | None:
+    """Version of Exudyn, without importing it; None if it is not installed."""
+    try:
+        return metadata.version("exudyn")
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def system() -> tuple[Any, Any, Any]:
+    """Exudyn itself, printing nothing, with an empty system in its container (to be kept alive as long as it)."""
+    import exudyn
+
+    exudyn.config.printToConsole = False
+    container = exudyn.SystemContainer()
+    return exudyn, container, container.AddSystem()
+
+
+def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:
+    """Fix coordinates of a node to their reference values."""
+    items = exu.itemInterface
+    ground = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
+    for coordinate in coordinates:
+        held = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, held]))
+
+
+def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:
+    """Move an assembled system to its static equilibrium, and its initial values with it.
+
+    The initial values matter: it is about them that Exudyn linearises. ``rounding`` (N or N m) is what rounding leaves of
+    the stiffest forces: a residual below it cannot be had, and Newton's method would not end.
+
+    Raises:
+        CodeError: Newton's method found none.
+    """
+    try:
+        settings = _settings(exu)
+        settings.staticSolver.newton.absoluteTolerance = max(settings.staticSolver.newton.absoluteTolerance, rounding)
+        mbs.SolveStatic(settings, updateInitialValues=True, showCausingItems=False)
+    except exu.ExudynError as error:
+        raise CodeError(f"omega: {omega:g} rad/s: Exudyn finds no steady state ({error}): lower the speed") from error
+
+
+def linearized(exu: Any, mbs: Any) -> tuple[Array, Array, Array]:
+    """Mass, damping and gyroscopic, and stiffness matrix (n, n) about the initial values; constraints are not applied."""
+    mass, stiffness, damping = mbs.ComputeLinearizedSystem(_settings(exu))[:3]
+    return np.array(mass), np.array(damping), np.array(stiffness)
+
+
+def _settings(exu: Any) -> Any:
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.staticSolver.verboseMode = 0
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    # where Exudyn differentiates numerically it steps by relativeEpsilon × max(|q|, this): 1e-7 rad or m instead of
+    # 1e-9, which leaves 1e-10 of rounding in the matrices
+    settings.staticSolver.newton.numericalDifferentiation.minimumCoordinateSize = 1.0
+    return settings

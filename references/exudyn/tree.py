@@ -1,0 +1,160 @@
+"""Exudyn's kinematic tree: a blade as rigid segments on elastic hinges, in relative coordinates.
+
+The model is ``hinged_segments``'. Exudyn's recursive equations of motion (R. Featherstone, *Rigid Body Dynamics
+Algorithms*, 2008) make the large motions, hence the steady tension's stiffening, and all inertia forces.
+
+Where the blade has no moments of inertia the segments have none about their own line, and torsion has no modes: M and C
+vanish there, and a semi-definite M is all the eigenproblem asks for.
+"""
+
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
+from ...core.effects import FULL
+from ...core.modes import STATIONS, Modes
+from ...core.space.spatial import rotation
+from ..protocol.interface import CodeError, Shares
+from ..protocol.quadratic import gyroscopic_modes
+from . import system as ex
+from .hinged_segments import SLIDE, TURN, Tree, plant
+
+Array = NDArray[np.float64]
+
+JOINT = ("PrismaticX", "PrismaticY", "PrismaticZ", "RevoluteX", "RevoluteY", "RevoluteZ")
+"""Exudyn's joint for each strain; also axis 0, 1, 2, 0, 1, 2."""
+
+
+class ExudynTree:
+    """See the module; straight blades with twist, taper, shear, precone, pitch and tip mass."""
+
+    name = "exudyn-tree"
+    title = "Exudyn, kinematic tree"
+    shares: Shares = "nothing"
+    model = FULL
+    levels = (24, 48, 96)
+    order = 2
+    hint = ex.HINT
+
+    def version(self) -> str | None:
+        """Version of Exudyn."""
+        return ex.version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped, the sections couple, or the blade is curved or rigid in bending."""
+        if not clamped(blade):
+            return "the root is not clamped: the first segment is the hub's"
+        if coupled(blade):
+            return "sections couple (off-diagonal entries): the hinges' joints have a spring each"
+        if not straight(blade):
+            return "prebend or sweep: the hinges are laid along a straight line"
+        if np.isinf(blade.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any():
+            return "rigid in bending: a hinge without joints"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        tree = plant(blade, elements)
+        M, C, K, q = linearize(tree, omega)
+        frequencies, vectors = gyroscopic_modes(M, C, K, count)
+        shapes = _shapes(blade, tree, q, vectors)
+        return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+
+
+def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
+    """M, C, K (n, n) about the steady state at ``omega``, and the joints' coordinates (n,) there.
+
+    The hub is a turning link whose angle is held and whose rate is given; being prescribed, it has no row.
+    """
+    exu, _container, mbs = ex.system()
+    items, n = exu.itemInterface, len(tree.strain) + 1
+    mass, centre, inertia = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
+    carrier = tree.segment + 1
+    mass[carrier], centre[carrier], inertia[carrier] = tree.mass, tree.centre, tree.inertia
+    zero = np.zeros(n)
+    node = mbs.AddNode(
+        items.NodeGenericODE2(
+            numberOfODE2Coordinates=n,
+            referenceCoordinates=zero,
+            initialCoordinates=zero,
+            initialCoordinates_t=np.append(omega, zero[1:]),
+        )
+    )
+    mbs.AddObject(
+        items.ObjectKinematicTree(
+            nodeNumber=node,
+            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in (BEND_Z, *tree.strain)],
+            linkParents=np.arange(-1, n - 1),
+            jointTransformations=exu.Matrix3DList([np.eye(3), *tree.turn]),
+            jointOffsets=exu.Vector3DList([np.zeros(3), *tree.offset]),
+            linkMasses=mass,
+            linkCOMs=exu.Vector3DList(list(centre)),
+            linkInertiasCOM=exu.Matrix3DList(list(inertia)),
+            jointPControlVector=np.append(0.0, tree.stiffness),
+            jointDControlVector=zero,
+            jointPositionOffsetVector=zero,
+            jointVelocityOffsetVector=zero,
+        )
+    )
+    ex.hold(exu, mbs, node, [0])
+    mbs.Assemble()
+    if omega:
+        ex.settle(exu, mbs, omega)
+    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs))
+    return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
+
+
+def jacobian(tree: Tree, q: Array, point: Array) -> Array:
+    """(e, 6, n): velocity of the point at ``point`` (m) along each segment and its angular velocity, per joint rate.
+
+    In the axes of the first link's parent, with the joints at ``q`` (n,).
+    """
+    n = len(q)
+    to = np.repeat(point, np.diff(tree.segment, prepend=-1))
+    R, p = np.eye(3), np.zeros(3)
+    axis, origin, where = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
+    for k, strain in enumerate(tree.strain):
+        p = p + R @ tree.offset[k]
+        R = R @ tree.turn[k]
+        axis[k], origin[k] = R[:, strain % 3], p
+        if strain in SLIDE:
+            p = p + axis[k] * q[k]
+        else:
+            R = R @ rotation(strain % 3, q[k])
+        where[k] = p + R[:, 0] * to[k]
+    turns = np.isin(tree.strain, TURN)[:, None]
+    out = np.zeros((len(tree.segment), 6, n))
+    for row, k in zip(out, tree.segment, strict=True):
+        inner = slice(0, k + 1)
+        swept = np.where(turns[inner], np.cross(axis[inner], where[k] - origin[inner]), axis[inner])
+        row[:3, inner], row[3:, inner] = swept.T, np.where(turns[inner], axis[inner], 0.0).T
+    return out
+
+
+def _shapes(blade: Blade, tree: Tree, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) at the common stations: a spline through the elements' ends, level at the root across the blade."""
+    moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
+    cone = rotation(1, np.array(-blade.precone))
+    moved[:, :3] = cone.T @ moved[:, :3]
+    ends = np.concatenate([np.zeros((1, *moved.shape[1:])), moved])
+    s = np.linspace(0.0, blade.length, len(ends))
+    along = CubicSpline(s, ends[:, [0, 3]])(STATIONS * blade.length)
+    level: Any = ((1, np.zeros_like(ends[0, 1:3])), "not-a-knot")
+    across = CubicSpline(s, ends[:, 1:3], bc_type=level)(STATIONS * blade.length)
+    shapes = np.stack([along[:, 0], across[:, 0], across[:, 1], along[:, 1]], axis=1)
+    shapes[:, :3] = cone @ shapes[:, :3]
+    return shapes.transpose(2, 0, 1)
+
+
+CODE = ExudynTree()

@@ -1,0 +1,123 @@
+"""Codes whose dependencies conflict with ours, in environments of their own: pinned, made once in a cache, spoken to in JSON.
+
+A script in this folder is all of ours that runs there, and it imports nothing but the code.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ..protocol.interface import CodeError
+
+
+class EnvironmentMissingError(RuntimeError):
+    """An environment that cannot be made: which, and what pip says."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """One code's environment.
+
+    Attributes:
+        name: of the code.
+        requires: what it needs, pinned.
+        bare: what is installed without the dependencies it asks for, pinned; the code itself comes first.
+        script: of this folder, without ``.py``: answers one request.
+    """
+
+    name: str
+    requires: tuple[str, ...]
+    bare: tuple[str, ...]
+    script: str
+
+    @property
+    def folder(self) -> Path:
+        """Where it is, or would be: another for other pins or another Python."""
+        pins = sha256("\n".join((sys.version, *self.requires, *self.bare)).encode()).hexdigest()[:12]
+        return cache() / f"{self.name}-{pins}"
+
+    @property
+    def python(self) -> Path:
+        """Its interpreter."""
+        return self.folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+    def version(self) -> str | None:
+        """The code's version, or None if the environment has not been made."""
+        return self.bare[0].partition("==")[2] if (self.folder / READY).exists() else None
+
+
+READY = "ready"
+"""A file in a folder whose environment is complete."""
+
+SHARPY = Environment(
+    "sharpy", ("numpy==1.26.4", "scipy==1.13.1", "colorama==0.4.6"), ("ic-sharpy==2.4",), "sharpy_worker"
+)
+
+FRAME3DD = Environment("frame3dd", ("numpy==1.26.4",), ("wisdem==4.2.9",), "frame3dd_worker")
+
+ENVIRONMENTS = {e.name: e for e in (SHARPY, FRAME3DD)}
+"""By the code's name."""
+
+
+def cache() -> Path:
+    """Folder of all environments: ``SOUTHWELL_CACHE``, or ``southwell`` in the user's cache folder."""
+    if own := os.environ.get("SOUTHWELL_CACHE"):
+        return Path(own)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "southwell"
+
+
+def install(environment: Environment) -> Path:
+    """Make an environment, replacing what is left of an earlier attempt; its folder.
+
+    Raises:
+        EnvironmentMissingError: pip could not install it.
+    """
+    folder = environment.folder
+    shutil.rmtree(folder, ignore_errors=True)
+    venv.create(folder, with_pip=True)
+    pip = [str(environment.python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    for arguments in (environment.requires, ("--no-deps", *environment.bare)):
+        done = subprocess.run([*pip, *arguments], capture_output=True, text=True, check=False)
+        if done.returncode:
+            said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
+            raise EnvironmentMissingError(f"{environment.name}: pip install {' '.join(arguments)}: {said[-1]}")
+    (folder / READY).write_text(f"southwell {version('southwell')}\n", encoding="utf-8")
+    return folder
+
+
+def ask(environment: Environment, request: dict[str, Any], timeout: float) -> dict[str, Any]:
+    """What the environment's script answers.
+
+    Raises:
+        CodeError: the environment has not been made, or the script crashed, took longer than ``timeout`` seconds, or says
+            that it could not answer.
+    """
+    if environment.version() is None:
+        raise CodeError(f"{environment.name} is not installed: southwell codes install {environment.name}")
+    script = Path(__file__).with_name(f"{environment.script}.py")
+    try:
+        done = subprocess.run(
+            [str(environment.python), "-I", str(script)],
+            input=json.dumps(request),
+            capture_output=True,
+            text=True,
+            timeout=timeout,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise CodeError(f"{environment.name}: no answer within {timeout:g} s") from None
+    if done.returncode or not done.stdout:
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise CodeError(f"{environment.name}: its process ended with {done.returncode}: {last}")
+    answer = json.loads(done.stdout)
+    if "error" in answer:
+        raise CodeError(f"{environment.name}: {answer['error']}")
+    return answer

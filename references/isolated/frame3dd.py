@@ -1,0 +1,145 @@
+"""Frame3DD, of WISDEM: straight frame elements with the geometric stiffness of their axial force, masses at the nodes.
+
+H. P. Gavin, "Frame3DD: static and dynamic structural analysis of 2D and 3D frames" (2010), in NREL's WISDEM, in an environment
+of its own. Turning is told it as a static load, the centrifugal force of every node. When a node moves in the plane of rotation
+that force grows, as by a spring of stiffness −m Ω². Frame3DD's first step has no tension yet and would buckle under them; it is
+given +m Ω² across the plane instead and none within, so that all its ω² are higher by Ω², which is taken off.
+
+What it leaves out: the Coriolis force; the steady stretch, as masses stay where they were; the sections' inertia. Its mass
+matrix has sections of one material, whose inertia goes as EI / EA: EA is therefore given ten thousand times as large, which
+bending does not feel, and there are no axial or torsional modes. Elements have the mean compliance and mass of their stretch of
+the blade: of second order.
+"""
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
+from ...core.effects import Model
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError, Shares
+from ..theories.grading import element_ends
+from ..theories.spectral import gauss, intervals
+from . import FRAME3DD, ask
+
+Array = NDArray[np.float64]
+
+SECTIONS = 10
+"""Intervals between stations that the coarsest level can follow: two elements in each."""
+
+STIFF = 1e4
+"""How many times too stiff against stretch and torsion."""
+
+POINTS = 4
+"""Of Gauss in an element."""
+
+MOST = 120
+"""Elements: the time grows as their cube, and is a quarter of a minute at this many."""
+
+TIMEOUT = 300.0
+
+STIFFNESSES = ("EA", "EI_y", "EI_z", "GJ")
+
+
+class Frame3DD:
+    """See the module; straight blades, uncoupled, shear-free and clamped; twist, taper, pitch, a point mass at the tip."""
+
+    name = "frame3dd"
+    title = "Frame3DD, frame elements"
+    shares: Shares = "nothing"
+    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
+    order = 2
+    digits = 8  # it iterates, on equations that ``STIFF`` makes ill-conditioned
+    hint = "southwell codes install frame3dd"
+
+    def version(self) -> str | None:
+        """Version of WISDEM in its environment."""
+        return FRAME3DD.version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if a frame of elements on a line has no place for something of this blade's."""
+        if coupled(blade):
+            return "sections couple (off-diagonal entries): elements have principal axes through the reference curve"
+        if not straight(blade) or blade.precone:
+            return "prebend, sweep or precone: the springs that stand for the rotation are those of a line in its plane"
+        if not clamped(blade):
+            return "the root is not clamped: the first node is held"
+        if np.diagonal(blade.tip_mass)[3:].any() or (blade.tip_mass - np.diag(np.diagonal(blade.tip_mass))).any():
+            return "tip_mass: a body with inertia or offset; nodes here have mass alone"
+        if (parts := len(intervals(blade)) - 1) > SECTIONS:
+            return f"{parts} intervals between stations: uniform elements converge on more than {MOST}, where the time ends"
+        if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
+            return "mass differs with direction: a node has one"
+        at = sample(blade, blade.stations)
+        if np.isfinite([at.GA_y, at.GA_z]).any():
+            return "finite shear stiffness: elements are used shear-free (Euler–Bernoulli)"
+        for name in ("EA", "GJ", "EI_y", "EI_z"):
+            if np.isinf(getattr(at, name)).any():
+                return f"{name} is infinite: an element's is finite"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``. There may be more elements, between kinks: ``Modes.elements``.
+
+        Raises:
+            CodeError: an unsupported blade, too many elements, Frame3DD missing or failing, or no stable steady state.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        ends = element_ends(blade, elements, elements)
+        n = len(ends) - 1
+        if n > MOST:
+            raise CodeError(f"elements: {n}: the time grows as their cube; at most {MOST}")
+        answer = ask(FRAME3DD, request(blade, omega, ends, count), TIMEOUT)
+        squares, shapes = np.array(answer["frequencies"]) ** 2 - omega**2, np.array(answer["shapes"])
+        if not (np.isfinite(squares).all() and (squares > 0).all()):
+            raise CodeError(
+                f"{blade.name}: squares of frequencies {squares.tolist()}: no stable steady state; lower the speed"
+            )
+        order = np.argsort(squares)
+        shapes[:, [0, 3]] = 0.0  # along and about the axis it is all but rigid: rounding
+        at_stations = CubicSpline(ends / blade.length, shapes, axis=2)(STATIONS).transpose(0, 2, 1)
+        return Modes(
+            omega, np.sqrt(squares[order]), at_stations[order].astype(complex), n, seconds=time.perf_counter() - begun
+        )
+
+
+def request(blade: Blade, omega: float, ends: Array, count: int) -> dict[str, object]:
+    """What the script in Frame3DD's environment is asked; elements lie between arc lengths ``ends`` (n+1,)."""
+    h = np.diff(ends)
+    s, weight = gauss(ends, POINTS)
+    at = sample(blade, s)
+    share = weight.reshape(-1, POINTS) / h[:, None]
+    mean = {name: 1 / np.sum(share / getattr(at, name).reshape(-1, POINTS), axis=1) for name in STIFFNESSES}
+    mean["EA"], mean["GJ"] = STIFF * mean["EA"], STIFF * mean["GJ"]
+    mass = mass_at(blade, s)[:, 0, 0]
+    x = blade.hub_radius + s
+    spring, force = (_at_nodes(ends, s, weight * mass * omega**2 * arm) for arm in (np.ones_like(x), x))
+    tip = float(blade.tip_mass[0, 0])
+    spring[-1] += tip * omega**2
+    force[-1] += tip * omega**2 * (blade.hub_radius + blade.length)
+    arrays = {
+        **mean,
+        "x": blade.hub_radius + ends,
+        "mass": np.sum(share * mass.reshape(-1, POINTS), axis=1),
+        "twist": np.sum(share * at.twist.reshape(-1, POINTS), axis=1) + blade.pitch,
+        "force": force,
+        "spring": spring,
+    }
+    return {"count": count, "tip": tip, **{name: value.tolist() for name, value in arrays.items()}}
+
+
+def _at_nodes(ends: Array, s: Array, amount: Array) -> Array:
+    """(n+1,) what acts in each element at ``s``, shared between its nodes so that sum and moment stay."""
+    along = (s.reshape(-1, POINTS) - ends[:-1, None]) / np.diff(ends)[:, None]
+    amount = amount.reshape(-1, POINTS)
+    left, right = np.sum(amount * (1 - along), axis=1), np.sum(amount * along, axis=1)
+    return np.append(left, 0.0) + np.append(0.0, right)
+
+
+CODE = Frame3DD()

@@ -1,0 +1,158 @@
+"""SHARPy: a geometrically exact beam with everything a section can have, in an environment of its own.
+
+A. del Carre, A. Muñoz-Simón, N. Goizueta and R. Palacios, "SHARPy: A dynamic aeroelastic simulation toolbox for very flexible
+aircraft and wind turbines", Journal of Open Source Software 4 (2019) 1885. Elements have three nodes, displacements and
+rotation vectors quadratic in between, reduced integration, and one 6×6 of stiffness and of mass each: of fourth order for
+uniform blades, of second where properties vary. Each has the mean compliance and mass of its stretch of the blade.
+
+Core says where the sections are (``core.sections.frames``: that is what a blade's description means); beam, inertia, steady
+state and linearisation are SHARPy's. Twist is in the elements' stiffness and mass and not in their axes, as SHARPy lets no axes
+jump between elements and a blade's may. Rigid shears are given a large stiffness.
+"""
+
+import base64
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
+
+from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, mass_at, stiffness_at
+from ...core.effects import FULL
+from ...core.element import sections
+from ...core.modes import STATIONS, Modes
+from ...core.space.spatial import skew
+from ..protocol.interface import CodeError, Shares
+from ..protocol.quadratic import gyroscopic_modes
+from ..theories.spectral import gauss, intervals
+from . import SHARPY, ask
+
+Array = NDArray[np.float64]
+
+RIGID = 1e7
+"""Shear stiffness of sections that are rigid in shear, in EI/L²: shear then lowers the fifth frequency by 1e-5, the first by
+less than 1e-6."""
+
+INTERVALS = 12
+"""Between kinks, that the coarsest level can follow without more elements."""
+
+JUMP = 1e-4
+"""Of the length: stations closer than this are the two sides of a jump, and no element lies between."""
+
+MOST = 200
+"""Elements: dense matrices of 12 rows each."""
+
+TIMEOUT = 120.0
+
+
+class Sharpy:
+    """See the module; coupled, curved, twisted blades with shear, precone, pitch and tip mass."""
+
+    name = "sharpy"
+    title = "SHARPy, geometrically exact beam"
+    shares: Shares = "nothing"
+    model = FULL
+    levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
+    order = 2
+    digits = 8  # its steady state is iterated to a tolerance
+    hint = "southwell codes install sharpy"
+
+    def version(self) -> str | None:
+        """Version of SHARPy in its environment."""
+        return SHARPY.version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped, or a strain other than shear is rigid."""
+        if not clamped(blade):
+            return "the root is not clamped: the beam's first node is held"
+        rigid = {int(strain) for strain in np.argwhere(np.isinf(blade.stiffness))[:, 1]} - {SHEAR_Y, SHEAR_Z}
+        if rigid:
+            return f"infinite stiffness against strain {min(rigid)}: only shears can be rigid here"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``. Elements end at kinks, so there may be more: ``Modes.elements``.
+
+        Raises:
+            CodeError: an unsupported blade, too many elements, SHARPy missing or failing, or no stable steady state.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        spans = _spans(blade, elements)
+        n = len(spans)
+        if n > MOST:
+            raise CodeError(f"elements: {n}: dense matrices; at most {MOST}")
+        s = nodes(spans)
+        answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
+        q = _unpacked(answer["q"])
+        M, C, K = (_unpacked(answer[name]).reshape(len(q), -1) for name in "MCK")
+        frequencies, vectors = gyroscopic_modes(M, C, K, count)
+        shapes = _shapes(s / blade.length, q, vectors)
+        return Modes(omega, frequencies, shapes, n, seconds=time.perf_counter() - begun)
+
+
+def _spans(blade: Blade, elements: int) -> Array:
+    """Ends of each element (e, 2): as many elements in every interval between kinks, none in a jump."""
+    kinks = intervals(blade)
+    between = np.column_stack([kinks[:-1], kinks[1:]])
+    between = between[np.diff(kinks) > JUMP * blade.length]
+    pieces = -(-elements // min(len(between), INTERVALS))
+    cut = between[:, :1] + np.diff(between) * np.arange(pieces + 1) / pieces
+    return np.stack([cut[:, :-1], cut[:, 1:]], axis=-1).reshape(-1, 2)
+
+
+def nodes(spans: Array) -> Array:
+    """Arc lengths of the nodes (2e+1,): ends and middles of elements."""
+    return np.append(np.column_stack([spans[:, 0], spans.mean(1)]).ravel(), spans[-1, 1])
+
+
+def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
+    """What the script in SHARPy's environment is asked; ``spans`` (e, 2) are the arc lengths of the elements' ends."""
+    untwisted = replace(blade, twist=np.zeros_like(blade.twist))
+    frame = sections.frames(untwisted, nodes(spans))
+    place, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
+    length = np.diff(spans).ravel()
+    at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
+    share = (weight / np.repeat(length, 3))[:, None, None]
+    twist = np.kron(np.eye(2), (sections.frames(untwisted, at).mT @ sections.frames(blade, at))[:, :3, :3])
+    stiffness = stiffness_at(blade, at)
+    bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
+    stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
+    chord = np.linalg.norm(np.diff(place[::2], axis=0), axis=1)
+    longer = (length / chord)[:, None, None]  # SHARPy measures an element by its chord
+    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
+    mass = longer * (share * (twist @ mass_at(blade, at) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
+    arrays = {
+        "nodes": place,
+        "turn": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
+        "stiffness": np.linalg.inv(compliance),
+        "mass": mass,
+        "tip": blade.tip_mass,
+    }
+    return {"omega": omega, **{name: value.tolist() for name, value in arrays.items()}}
+
+
+def _unpacked(text: str) -> Array:
+    return np.frombuffer(base64.b64decode(text), dtype="<f8")
+
+
+def _shapes(s: Array, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) by a spline through the nodes; a change of a rotation vector ψ turns by J(ψ) times it.
+
+    J = 1 + (1 − cos θ)/θ² ψ× + (θ − sin θ)/θ³ ψ×ψ×, θ = |ψ| (M. Géradin and A. Cardona, *Flexible Multibody Dynamics*,
+    2001, §4.12).
+    """
+    psi, moved = q.reshape(-1, 6)[:, 3:], vectors.reshape(len(q) // 6, 6, -1)
+    angle = np.linalg.norm(psi, axis=1).clip(1e-8)[:, None, None]
+    cross = skew(psi)
+    J = np.eye(3) + (1 - np.cos(angle)) / angle**2 * cross + (angle - np.sin(angle)) / angle**3 * cross @ cross
+    nodes = np.zeros((len(s), 4, vectors.shape[1]), complex)
+    nodes[1:, :3], nodes[1:, 3] = moved[:, :3], (J @ moved[:, 3:])[:, 0]
+    return CubicSpline(s, nodes)(STATIONS).transpose(2, 0, 1)
+
+
+CODE = Sharpy()

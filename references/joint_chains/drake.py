@@ -1,0 +1,164 @@
+"""Drake: core's own lumped discretisation as a chain of joints (see ``joint_chain``), differentiated automatically.
+
+R. Tedrake and the Drake Development Team, *Drake: Model-based design and verification for robotics*, 2019. Inverse dynamics in
+numbers that carry their derivatives gives the inertial forces' by coordinates and rates, to rounding. Drake's joint of six
+coordinates turns about z, y, x in this order and not, as the elements' strain, about x, y, z: six joints of one coordinate
+take its place, on links without mass.
+"""
+
+from dataclasses import dataclass
+from importlib import import_module, metadata
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import FULL
+from ...core.element.discretize import Chain
+from ...core.modes import Modes
+from ..protocol.interface import Shares
+from .joint_chain import chain_modes, check, places, refusal, rigid
+
+Array = NDArray[np.float64]
+
+MOST = 80
+"""Elements: every number in the recursion over 6·elements joints carries 12·elements derivatives."""
+
+SYMMETRIC = 1e-9
+"""Relative departure from symmetry of Drake's derivatives that counts as rounding."""
+
+
+class DrakeChain:
+    """See the module; every blade that core can discretise, coupled and curved ones too."""
+
+    name = "drake"
+    title = "Drake, chain of joints"
+    shares: Shares = "discretisation"
+    model = FULL
+    levels = (10, 20, 40)
+    order = 2
+    hint = "pip install 'southwell[more-codes]'"
+
+    def version(self) -> str | None:
+        """Version of Drake, without importing it."""
+        try:
+            return metadata.version("drake")
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
+        return refusal(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+        """
+        return chain_modes(blade, omega, elements, count, MOST, plant)
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Drake's plant; see ``joint_chain.Plant``.
+
+    Attributes:
+        plant, context: in floating point.
+        auto, auto_context: the same in numbers with derivatives.
+        bodies: (elements,) the last link of each node's joints.
+        position, velocity: (n,) where Drake has each coordinate and its rate; ``hub`` where it has the hub's rate.
+    """
+
+    plant: Any
+    context: Any
+    auto: Any
+    auto_context: Any
+    bodies: list[Any]
+    position: NDArray[np.intp]
+    velocity: NDArray[np.intp]
+    hub: int
+
+    def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
+        """Force and derivatives by inverse dynamics at acceleration zero."""
+        ad = _drake("autodiffutils")
+        n, state = len(q), self._state(q, omega)
+        seeds = np.zeros((len(state), 2 * n))
+        seeds[self.position, range(n)] = 1.0
+        seeds[self.auto.num_positions() + self.velocity, range(n, 2 * n)] = 1.0
+        self.auto.SetPositionsAndVelocities(self.auto_context, ad.InitializeAutoDiff(state, seeds).ravel())
+        still = np.array([ad.AutoDiffXd(0.0)] * self.auto.num_velocities())
+        none = _drake("multibody.tree").MultibodyForces_[ad.AutoDiffXd](self.auto)
+        force = self.auto.CalcInverseDynamics(self.auto_context, still, none)[self.velocity].reshape(-1, 1)
+        stiffness, gyroscopic = np.split(ad.ExtractGradient(force), 2, axis=1)
+        check(stiffness, gyroscopic, SYMMETRIC, "Drake")
+        return ad.ExtractValue(force).ravel(), stiffness, gyroscopic
+
+    def mass(self, q: Array) -> Array:
+        """(n, n), by composite rigid bodies."""
+        self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
+        return self.plant.CalcMassMatrix(self.context)[np.ix_(self.velocity, self.velocity)]
+
+    def jacobian(self, q: Array) -> Array:
+        """(elements, 4, n)."""
+        rates = _drake("multibody.tree").JacobianWrtVariable.kV
+        self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
+        world, origin = self.plant.world_frame(), np.zeros(3)
+        whole = [
+            self.plant.CalcJacobianSpatialVelocity(self.context, rates, body.body_frame(), origin, world, world)
+            for body in self.bodies
+        ]
+        return np.array(whole)[:, [3, 4, 5, 0]][:, :, self.velocity]  # Drake has rotation first
+
+    def _state(self, q: Array, omega: float) -> Array:
+        state = np.zeros(self.plant.num_positions() + self.plant.num_velocities())
+        state[self.position] = q
+        state[self.plant.num_positions() + self.hub] = omega
+        return state
+
+
+def _drake(module: str) -> Any:
+    return import_module(f"pydrake.{module}")
+
+
+def plant(chain: Chain) -> Bodies:
+    """A hub turning about z, then six links on joints of one coordinate for every node but the clamped one."""
+    tree, pose = _drake("multibody.tree"), _drake("math").RigidTransform
+    made = _drake("multibody.plant").MultibodyPlant(0.0)
+    made.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+    nothing = tree.SpatialInertia.Zero()
+    link = made.AddRigidBody("hub", nothing)
+    hub = made.AddJoint(tree.RevoluteJoint("hub", made.world_frame(), link.body_frame(), [0, 0, 1]))
+    joints, bodies = [], []
+    for k, (place, lump) in enumerate(zip(places(chain), chain.lumps[1:], strict=True), 1):
+        frame = made.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(place)))
+        for i, axis in enumerate(np.tile(np.eye(3), (2, 1))):
+            link = made.AddRigidBody(f"{k} {i}", _inertia(lump) if i == 5 else nothing)
+            kind = tree.PrismaticJoint if i < 3 else tree.RevoluteJoint
+            joints.append(made.AddJoint(kind(f"{k} {i}", frame, link.body_frame(), axis)))
+            frame = link.body_frame()
+        bodies.append(link)
+    made.Finalize()
+    auto = made.ToAutoDiffXd()
+    return Bodies(
+        plant=made,
+        context=made.CreateDefaultContext(),
+        auto=auto,
+        auto_context=auto.CreateDefaultContext(),
+        bodies=bodies,
+        position=np.array([j.position_start() for j in joints]),
+        velocity=np.array([j.velocity_start() for j in joints]),
+        hub=hub.velocity_start(),
+    )
+
+
+def _inertia(lump: Array) -> Any:
+    """Drake's form of an inertia (6, 6), which no solid need have: moments over mass about the node, not checked."""
+    tree = _drake("multibody.tree")
+    mass, centre, moments = rigid(lump)
+    xx, yy, zz, xy, xz, yz = (moments / mass)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    return tree.SpatialInertia(mass, centre, tree.UnitInertia(xx, yy, zz, xy, xz, yz), skip_validity_check=True)
+
+
+CODE = DrakeChain()

@@ -1,0 +1,161 @@
+"""Core's own lumped discretisation as a chain of joints, for any code that can move and differentiate one.
+
+Core gives the nodes, the bodies at them and the elements' stiffness, all as plain numbers (``half_end`` masses, stiffness
+linear in the parent body's frame: the discretisation of Park et al. 2010). Each body hangs on the one before by a
+translation and then rotations about x, y, z, whose coordinates are the element's six strains; kinematics, dynamics and the
+derivatives of the inertial forces are the other code's. Agreement to rounding shows that core solves its model, not that
+the model is right.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.linalg import block_diag
+
+from ...core.blade import Blade, clamped
+from ...core.element.discretize import Chain, discretize
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError
+from ..protocol.quadratic import gyroscopic_modes
+
+Array = NDArray[np.float64]
+
+STEPS, SMALLEST_RAMP = 40, 2.0**-8
+"""Of Newton's method for the steady state; of the load, where Newton fails with all of it at once."""
+
+
+class Plant(Protocol):
+    """A chain in another code: a hub that turns about z, then a body on six joints for every node but the clamped one.
+
+    Coordinates q (n,) are all but the hub's: x, y, z, then about x, y, z, of one body after the other.
+    """
+
+    def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
+        """Generalised inertial force (n,) of steady turning, and its derivatives (n, n) by q and by q̇.
+
+        Raises:
+            CodeError: by q they are not symmetric, or by q̇ not skew, as they must be.
+        """
+        ...
+
+    def mass(self, q: Array) -> Array:
+        """M (n, n)."""
+        ...
+
+    def jacobian(self, q: Array) -> Array:
+        """(e, 4, n) by q̇: velocity of each body's origin and rate of turning about x, in the hub's axes."""
+        ...
+
+
+def refusal(blade: Blade) -> str | None:
+    """Why a blade is not such a chain: its root moves, or its inertias are not those of rigid bodies."""
+    if not clamped(blade):
+        return "the root is not clamped: the chain begins at the hub"
+    for name, inertia in (("mass", blade.mass), ("tip_mass", blade.tip_mass[None])):
+        if not _rigid(inertia):
+            return f"{name} is not a rigid body's: one mass in all directions, antisymmetric in its offset"
+    return None
+
+
+def chain_modes(
+    blade: Blade, omega: float, elements: int, count: int, most: int, plant: Callable[[Chain], Plant]
+) -> Modes:
+    """The lowest modes; see ``interface.Code``.
+
+    Raises:
+        CodeError: an unsupported blade, more than ``most`` elements, or no stable steady state at this speed.
+    """
+    if reason := refusal(blade):
+        raise CodeError(f"{blade.name}: {reason}")
+    if elements > most:
+        raise CodeError(f"elements: {elements}: the code's time or memory grows as their cube; at most {most}")
+    begun = time.perf_counter()
+    chain = discretize(blade, elements, "half_end", "parent")
+    body = plant(chain)
+    elastic = cast(Array, block_diag(*chain.beams.stiffness))
+    q = steady(body, elastic, omega, chain.scale)
+    _, stiffness, gyroscopic = body.inertial(q, omega)
+    frequencies, vectors = gyroscopic_modes(body.mass(q), gyroscopic, elastic + stiffness, count)
+    moved = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
+    shapes = CubicSpline(np.linspace(0.0, 1.0, elements + 1), moved)(STATIONS).transpose(2, 0, 1)
+    return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+
+
+def places(chain: Chain) -> Array:
+    """(e, 4, 4) rest pose of each body in the frame of the one before, the first's in the hub's."""
+    return np.concatenate([chain.nodes[1:2], chain.beams.rest[1:]])
+
+
+def rigid(lump: Array) -> tuple[float, Array, Array]:
+    """Mass, centre (3,) and moments of inertia about the node (3, 3) of a rigid body's inertia (6, 6)."""
+    return float(lump[0, 0]), lump[[1, 2, 0], [5, 3, 4]] / lump[0, 0], lump[3:, 3:]
+
+
+def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:
+    """Hold a code's derivatives by q and by q̇ to the symmetry they must have, relative ``rounding`` aside.
+
+    Raises:
+        CodeError: they have not.
+    """
+    for name, matrix, sign in (("dtau_dq", stiffness, 1), ("dtau_dv", gyroscopic, -1)):
+        wrong = np.abs(matrix - sign * matrix.T).max()
+        if not wrong <= rounding * np.abs(matrix).max():
+            kind = "symmetric" if sign == 1 else "skew"
+            raise CodeError(
+                f"{name}: {wrong:.1e} from {kind}: {code}'s derivatives are wrong for some joint of the chain"
+            )
+
+
+def _rigid(inertia: Array) -> bool:
+    """Whether inertias (k, 6, 6) have the form [[m, −m c×], [m c×, J]]."""
+    linear, offset = inertia[:, :3, :3], inertia[:, :3, 3:]
+    wrong = [
+        linear - inertia[:, :1, :1] * np.eye(3),
+        offset + np.swapaxes(offset, 1, 2),
+        inertia - np.swapaxes(inertia, 1, 2),
+    ]
+    return max(np.abs(w).max() for w in wrong) <= 1e-12 * np.abs(inertia).max()
+
+
+def steady(plant: Plant, elastic: Array, omega: float, length: float) -> Array:
+    """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial ones.
+
+    The load, Ω², is raised in steps only if all of it at once is too much for Newton's method.
+
+    Raises:
+        CodeError: no steady state near the undeformed chain.
+    """
+    q, done, step = np.zeros(len(elastic)), 0.0, 1.0
+    while done < 1.0:
+        load = min(1.0, done + step)
+        found = _newton(plant, elastic, omega * load**0.5, q, length)
+        if found is not None:
+            q, done = found, load
+        elif step > SMALLEST_RAMP:
+            step /= 2
+        else:
+            raise CodeError(f"omega: {omega:g} rad/s: no steady state past {done:.0%} of Ω²; lower the speed")
+    return q
+
+
+def _newton(plant: Plant, elastic: Array, omega: float, q: Array, length: float) -> Array | None:
+    size = np.tile(np.repeat([length, 1.0], 3), len(q) // 6)
+    before = np.inf
+    for _ in range(STEPS):
+        force, stiffness, _ = plant.inertial(q, omega)
+        try:
+            step = np.linalg.solve(elastic + stiffness, -force - elastic @ q)
+        except np.linalg.LinAlgError:
+            return None
+        change = np.abs(step / size).max()
+        if not change < 1.0:
+            return None
+        q = q + step
+        if change < 1e-10 or 0.1 * before < change < 1e-7:  # converged, or down to rounding
+            return q
+        before = change
+    return None

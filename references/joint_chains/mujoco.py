@@ -1,0 +1,172 @@
+"""MuJoCo: core's own lumped discretisation as a chain of joints (see ``joint_chain``), differentiated numerically.
+
+E. Todorov, T. Erez and Y. Tassa, "MuJoCo: A physics engine for model-based control", IEEE/RSJ IROS 2012, 5026–5033. Its
+recursive Newton–Euler algorithm gives the inertial forces. They are quadratic in the rates, so that a central difference by
+these has no error; by coordinates it is extrapolated (Richardson), with steps so wide that rounding stays at 1e-12.
+"""
+
+from dataclasses import dataclass
+from importlib import import_module, metadata
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import FULL
+from ...core.element.discretize import Chain
+from ...core.modes import Modes
+from ..protocol.interface import Shares
+from .joint_chain import chain_modes, check, places, refusal, rigid
+
+Array = NDArray[np.float64]
+
+MOST = 80
+"""Elements: differences take time that grows as their square, the eigenproblem as their cube."""
+
+STEP = 2e-3
+"""Of a coordinate, rad or elements' lengths, in a central difference; the truncation left is of fourth order in it."""
+
+
+SYMMETRIC = 1e-8
+"""Relative departure from symmetry of the differences that counts as rounding."""
+
+
+class MujocoChain:
+    """See the module; every blade that core can discretise, coupled and curved ones too."""
+
+    name = "mujoco"
+    title = "MuJoCo, chain of joints"
+    shares: Shares = "discretisation"
+    model = FULL
+    levels = (10, 20, 40)
+    order = 2
+    hint = "pip install 'southwell[more-codes]'"
+
+    def version(self) -> str | None:
+        """Version of MuJoCo, without importing it."""
+        try:
+            return metadata.version("mujoco")
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
+        return refusal(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+        """
+        return chain_modes(blade, omega, elements, count, MOST, plant)
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """MuJoCo's model and state; see ``joint_chain.Plant``.
+
+    Attributes:
+        model, data: MuJoCo's; coordinate 0 is the hub's.
+        step: (n,) of each coordinate in a difference.
+    """
+
+    model: Any
+    data: Any
+    step: Array
+
+    def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
+        """Force and derivatives by differences."""
+        n, turning = len(q), np.append(omega, np.zeros(len(q)))
+        unit = np.eye(n)
+        stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
+        for k, h in enumerate(self.step):
+            one, two = (
+                (self._force(q + s * h * unit[k], turning) - self._force(q - s * h * unit[k], turning)) / (2 * s * h)
+                for s in (1, 2)
+            )
+            stiffness[:, k] = (4 * one - two) / 3
+        self._place(q)
+        rate = max(abs(omega), 1.0)
+        for k in range(n):
+            change = np.append(0.0, rate * unit[k])
+            gyroscopic[:, k] = (self._of_rates(turning + change) - self._of_rates(turning - change)) / (2 * rate)
+        check(stiffness, gyroscopic, SYMMETRIC, "MuJoCo")
+        return self._of_rates(turning), stiffness, gyroscopic
+
+    def mass(self, q: Array) -> Array:
+        """(n, n), by composite rigid bodies."""
+        self._place(q)
+        mujoco = _mujoco()
+        mujoco.mj_crb(self.model, self.data)
+        full = np.zeros((len(q) + 1, len(q) + 1))
+        mujoco.mj_fullM(self.model, self.data, full)
+        return full[1:, 1:]
+
+    def jacobian(self, q: Array) -> Array:
+        """(elements, 4, n)."""
+        self._place(q)
+        mujoco = _mujoco()
+        out = np.zeros((self.model.nbody - 2, 6, len(q) + 1))
+        for k, (along, about) in enumerate(zip(out[:, :3], out[:, 3:], strict=True)):
+            mujoco.mj_jacBody(self.model, self.data, along, about, k + 2)
+        return out[:, :4, 1:]
+
+    def _force(self, q: Array, rates: Array) -> Array:
+        self._place(q)
+        return self._of_rates(rates)
+
+    def _place(self, q: Array) -> None:
+        mujoco = _mujoco()
+        self.data.qpos[:] = np.append(0.0, q)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+
+    def _of_rates(self, rates: Array) -> Array:
+        mujoco = _mujoco()
+        self.data.qvel[:] = rates
+        mujoco.mj_comVel(self.model, self.data)
+        force = np.zeros(len(rates))
+        mujoco.mj_rne(self.model, self.data, 0, force)
+        return force[1:]
+
+
+def _mujoco() -> Any:
+    return import_module("mujoco")
+
+
+def plant(chain: Chain) -> Bodies:
+    """A hub turning about z, then a body on six joints for every node but the clamped one.
+
+    MuJoCo's compiler wants inertias that a solid can have; the chain's, which may be point masses, are set after it.
+    """
+    mujoco = _mujoco()
+    spec = mujoco.MjSpec()
+    spec.option.gravity = np.zeros(3)
+    spec.compiler.degree = False
+    body = spec.worldbody.add_body(name="hub", mass=1.0, inertia=np.ones(3))
+    body.add_joint(type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
+    for place in places(chain):
+        quaternion = np.zeros(4)
+        mujoco.mju_mat2Quat(quaternion, place[:3, :3].ravel())
+        body = body.add_body(pos=place[:3, 3], quat=quaternion, mass=1.0, inertia=np.ones(3))
+        for kind in (mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE):
+            for axis in np.eye(3):
+                body.add_joint(type=kind, axis=axis)
+    model = spec.compile()
+    for k, lump in enumerate(chain.lumps[1:], 2):
+        mass, centre, moments = rigid(lump)
+        moments, axes = np.linalg.eigh(moments - mass * (centre @ centre * np.eye(3) - np.outer(centre, centre)))
+        axes[:, 0] *= np.sign(np.linalg.det(axes))
+        model.body_mass[k], model.body_ipos[k], model.body_inertia[k] = mass, centre, moments
+        mujoco.mju_mat2Quat(model.body_iquat[k], axes.ravel())
+    model.body_simple[:] = 0
+    model.body_sameframe[:] = 0
+    model.body_subtreemass[:] = np.append(model.body_mass[1:].sum(), np.cumsum(model.body_mass[:0:-1])[::-1])
+    lengths = np.linalg.norm(chain.beams.rest[:, :3, 3], axis=1)
+    step = STEP * np.concatenate([np.repeat([length, 1.0], 3) for length in lengths])
+    return Bodies(model, mujoco.MjData(model), step)
+
+
+CODE = MujocoChain()

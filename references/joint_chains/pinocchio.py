@@ -1,0 +1,134 @@
+"""Pinocchio: core's own lumped discretisation as a chain of joints (see ``joint_chain``).
+
+J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", Robotics: Science and Systems 14, 2018.
+One joint of six coordinates would be shorter, but the derivatives of Pinocchio's composite joint are wrong where it
+translates and rotates; hence four joints a body, and the symmetries are checked.
+"""
+
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import FULL
+from ...core.element.discretize import Chain
+from ...core.modes import Modes
+from ..protocol.interface import Shares
+from .joint_chain import chain_modes, check, places, refusal
+
+Array = NDArray[np.float64]
+
+MOST = 60
+"""Elements: Pinocchio's workspace holds four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
+
+SYMMETRIC = 1e-9
+"""Relative departure from symmetry of Pinocchio's derivatives that counts as rounding."""
+
+
+class PinocchioChain:
+    """See the module; every blade that core can discretise, coupled and curved ones too."""
+
+    name = "pinocchio"
+    title = "Pinocchio, chain of joints"
+    shares: Shares = "discretisation"
+    model = FULL
+    levels = (10, 20, 40)
+    order = 2
+    hint = "pip install 'southwell[codes]'"
+
+    def version(self) -> str | None:
+        """Version of Pinocchio, without importing it."""
+        try:
+            return metadata.version("pin")
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
+        return refusal(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+        """
+        return chain_modes(blade, omega, elements, count, MOST, tree)
+
+
+@dataclass(frozen=True)
+class Tree:
+    """Pinocchio's model and workspace; see ``joint_chain.Plant``."""
+
+    model: Any
+    data: Any
+    elements: int
+
+    def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
+        """See ``inertial``."""
+        return inertial(self.model, self.data, q, omega)
+
+    def mass(self, q: Array) -> Array:
+        """(n, n), by composite rigid bodies."""
+        return _pinocchio().crba(self.model, self.data, np.append(0.0, q))[1:, 1:]
+
+    def jacobian(self, q: Array) -> Array:
+        """(elements, 4, n)."""
+        pin = _pinocchio()
+        pin.computeJointJacobians(self.model, self.data, np.append(0.0, q))
+        last = (1 + 4 * k for k in range(1, self.elements + 1))
+        axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        return np.array([pin.getJointJacobian(self.model, self.data, k, axes)[:4, 1:] for k in last])
+
+
+def tree(chain: Chain) -> Tree:
+    """The chain in Pinocchio."""
+    model = plant(chain)
+    return Tree(model, model.createData(), chain.elements)
+
+
+def _pinocchio() -> Any:
+    import pinocchio
+
+    return pinocchio
+
+
+def plant(chain: Chain) -> Any:
+    """Pinocchio's model: a hub turning about z, then a body on four joints for every node but the clamped one."""
+    pin = _pinocchio()
+    model = pin.Model()
+    model.gravity.setZero()
+    here = pin.SE3.Identity()
+    link = model.addJoint(0, pin.JointModelRZ(), here, "hub")
+    for k, (place, lump) in enumerate(zip(places(chain), chain.lumps[1:], strict=True), 1):
+        link = model.addJoint(link, pin.JointModelTranslation(), pin.SE3(place), f"{k} x y z")
+        for axis, turn in (("x", pin.JointModelRX), ("y", pin.JointModelRY), ("z", pin.JointModelRZ)):
+            link = model.addJoint(link, turn(), here, f"{k} about {axis}")
+        model.appendBodyToJoint(link, pin.Inertia.FromDynamicParameters(_parameters(lump)), here)
+    return model
+
+
+def _parameters(inertia: Array) -> Array:
+    """Mass, first and second moments (10,) of an inertia (6, 6), in Pinocchio's order; second moments about the node."""
+    row, column = [0, 1, 2, 0, 3, 3, 4, 3, 4, 5], [0, 5, 3, 4, 3, 4, 4, 5, 5, 5]
+    return inertia[row, column]
+
+
+def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Array, Array]:
+    """Generalised inertial force (n,) of steady turning, and its derivatives (n, n) by q and by q̇, the hub's row left out.
+
+    Raises:
+        CodeError: by q it is not symmetric, or by q̇ not skew, as both must be.
+    """
+    pin = _pinocchio()
+    q, v = np.append(0.0, q), np.append(omega, np.zeros_like(q))
+    pin.computeRNEADerivatives(model, data, q, v, np.zeros_like(v))
+    force, stiffness, gyroscopic = data.tau[1:].copy(), data.dtau_dq[1:, 1:].copy(), data.dtau_dv[1:, 1:].copy()
+    check(stiffness, gyroscopic, SYMMETRIC, "Pinocchio")
+    return force, stiffness, gyroscopic
+
+
+CODE = PinocchioChain()

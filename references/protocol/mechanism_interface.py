@@ -1,0 +1,75 @@
+"""What a code that solves mechanisms must offer; a code may solve blades (``interface.Code``), mechanisms, or both."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.effects import Model
+from ...core.multibody.mechanism import Mechanism
+from .interface import Shares
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class MechanismModes:
+    """A mechanism's modes about its steady state.
+
+    Attributes:
+        coordinates: names of the k coordinates the code has; cut joints' own need not be among them.
+        steady: (k,) their values, m or rad.
+        values: (m,) eigenvalues λ, 1/s, by modulus: one of each conjugate pair, and real ones.
+        shapes: (m, k) motion of the coordinates in each mode, any scale.
+        seconds: wall time.
+    """
+
+    coordinates: tuple[str, ...]
+    steady: NDArray[np.float64]
+    values: Complex
+    shapes: Complex
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        m, k = len(self.values), len(self.coordinates)
+        if self.shapes.shape != (m, k) or self.steady.shape != (k,):
+            raise ValueError(f"shapes: {self.shapes.shape}, steady: {self.steady.shape}, expected {(m, k)} and {(k,)}")
+        if not (np.isfinite(self.values).all() and np.isfinite(self.shapes).all() and np.isfinite(self.steady).all()):
+            raise ValueError("eigenvalues, shapes or steady state are not finite")
+
+
+class MechanismCode(Protocol):
+    """One source of a mechanism's modes; laws as for ``interface.Code``.
+
+    Attributes:
+        name, title, shares, model, hint: as for ``interface.Code``.
+    """
+
+    name: str
+    title: str
+    shares: Shares
+    model: Model
+    hint: str
+
+    def version(self) -> str | None:
+        """Version of the foreign code, or None if it is not installed."""
+        ...
+
+    def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
+        """Why this code cannot solve this mechanism, or None if it can."""
+        ...
+
+    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        """All modes about the steady state near ``guess``.
+
+        Raises:
+            CodeError: if the code ran and could not answer (no steady state, no convergence).
+        """
+        ...
+
+
+def takes_mechanisms(code: Any) -> bool:
+    """Whether a code solves mechanisms."""
+    return hasattr(code, "solve_mechanism")

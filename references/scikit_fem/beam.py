@@ -1,0 +1,255 @@
+"""scikit-fem: a prestressed rotating beam by finite elements in the textbook's sense, sparse and of fourth order.
+
+Bending fields are cubic (Hermite), stretch and torsion quadratic; the weak forms and their derivation are in
+``scikit_fem_forms``. First the steady stretch and twist, then the matrices about them. Nothing is shared with core.
+scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
+"""
+
+import time
+from dataclasses import dataclass, fields
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import dia_array
+
+from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
+from ...core.effects import FULL
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError, Shares
+from ..protocol.quadratic import gyroscopic_modes
+from ..theories.grading import element_ends
+from . import forms as forms
+
+Array = NDArray[np.float64]
+
+COARSEST = 20
+"""Elements of the coarsest level, and how many intervals between stations it can follow without more."""
+
+QUADRATURE = 9
+"""Degree integrated exactly: products of cubics with linear properties, and two to spare for twist and stretch."""
+
+
+NEWTON = 30
+"""Steps allowed for the steady twist."""
+
+
+class ScikitFemBeam:
+    """See the module; straight blades, uncoupled and shear-free, with twist, taper, pitch and a centred tip mass."""
+
+    name = "scikit-fem"
+    title = "scikit-fem, prestressed beam"
+    shares: Shares = "nothing"
+    model = FULL
+    levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
+    order = 4
+    hint = "pip install 'southwell[codes]'"
+
+    def version(self) -> str | None:
+        """Version of scikit-fem, without importing it."""
+        try:
+            return metadata.version("scikit-fem")
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the blade's steady state is not straight, its sections couple or shear, or a strain is rigid."""
+        if coupled(blade):
+            return (
+                "sections couple (off-diagonal entries): the weak form has principal axes through the reference curve"
+            )
+        if not straight(blade):
+            return "prebend or sweep: the weak form is linearised about a straight steady state"
+        if blade.precone:
+            return f"precone = {blade.precone:g} rad: it bends the blade, and the weak form is about a straight steady state"
+        if (blade.tip_mass != _rigid_body(blade.tip_mass)).any():
+            return "tip_mass is not a mass and moments of inertia about the tip's axes: off centre, it would bend the blade"
+        if np.isfinite(blade.root[:4]).any():
+            return "the root can slide or twist: the weak form holds its displacements and the sections there"
+        if not clamped(blade) and blade.pitch:
+            return f"pitch = {blade.pitch:g} rad with a joint at the root: its axes would not be the fields'"
+        section = sample(blade, blade.stations)
+        if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
+            return "mass differs with direction: the weak form has one mass per length"
+        if np.isfinite([section.GA_y, section.GA_z]).any():
+            return "finite shear stiffness: the weak form is shear-free (Euler–Bernoulli)"
+        for name in ("EA", "GJ", "EI_y", "EI_z"):
+            if np.isinf(getattr(section, name)).any():
+                return f"{name} is infinite: the weak form needs it finite"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Every interval between the blade's kinks is divided into the same number of elements, so that properties are smooth
+        within each and the order of convergence survives: at least ``elements`` in all; ``Modes.elements`` says how many.
+        A blade of more than ``COARSEST`` intervals gets more in proportion, so that refinements stay distinct.
+
+        Raises:
+            CodeError: an unsupported blade, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        basis = _basis(element_ends(blade, elements, COARSEST))
+        matrices = _matrices(blade, omega, basis)
+        held = basis.get_dofs("root").flatten()
+        free = basis.complement_dofs(np.setdiff1d(held, list(_hinges(blade, basis))))
+        M, C, K = (matrix[free][:, free] for matrix in matrices)
+        frequencies, vectors = gyroscopic_modes(M, C, K, count)
+        q = np.zeros((basis.N, len(frequencies)), complex)
+        q[free] = vectors
+        shapes = _shapes(basis, q, blade.length)
+        return Modes(omega, frequencies, shapes, basis.mesh.nelements, seconds=time.perf_counter() - begun)
+
+
+def _skfem() -> Any:
+    import skfem
+
+    return skfem
+
+
+def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
+    """The slopes at the root that its joint leaves free, and the springs on them."""
+    slopes = basis.get_dofs("root").nodal
+    about = {int(slopes["u_x^3"][0]): BEND_Y, int(slopes["u_x^2"][0]): BEND_Z}
+    return {slope: blade.root[axis] for slope, axis in about.items() if np.isfinite(blade.root[axis])}
+
+
+def _rigid_body(inertia: Array) -> Array:
+    """What of a 6×6 inertia is a mass and three moments of inertia."""
+    return np.diag([inertia[0, 0]] * 3 + list(np.diag(inertia)[3:]))
+
+
+def _basis(nodes: Array) -> Any:
+    """Fields u, v, w, φ: quadratic, cubic (Hermite), cubic, quadratic.
+
+    Hermite elements remember the mesh they are first used on, hence new ones here.
+    """
+    fem = _skfem()
+    ends = {"root": lambda x: x[0] == nodes[0], "tip": lambda x: x[0] == nodes[-1]}
+    mesh = fem.MeshLine(nodes).with_boundaries(ends)
+    along, across = fem.ElementLineP2, fem.ElementLineHermite
+    return fem.Basis(mesh, fem.ElementComposite(along(), across(), across(), along()), intorder=QUADRATURE)
+
+
+@dataclass(frozen=True)
+class Part:
+    """What has inertia: the line, with properties per length, or the tip, with lumped ones.
+
+    Attributes:
+        basis: of the fields u, v, w, φ.
+        steady: of the steady stretch and twist, cubic: their derivatives are wanted.
+        x: (elements, points) arc length, m.
+        mass, I_x, I_y, I_z: (elements, points) in section axes.
+        angle: (elements, points) from the axes y, z to the sections' at rest, rad.
+    """
+
+    basis: Any
+    steady: Any
+    x: Array
+    mass: Array
+    I_x: Array
+    I_y: Array
+    I_z: Array
+    angle: Array
+
+
+def _parts(blade: Blade, basis: Any) -> list[Part]:
+    """The line, and the tip if it has a mass."""
+    fem = _skfem()
+    steady = basis.with_element(fem.ElementLineHermite())
+    x, at = _sections(blade, basis)
+    parts = [Part(basis, steady, x, at.mass, at.I_x, at.I_y, at.I_z, at.twist + blade.pitch)]
+    if blade.tip_mass.any():
+        tip = basis.boundary("tip")
+        x, at = _sections(blade, tip)
+        mass, _, _, I_x, I_y, I_z = np.diag(blade.tip_mass)[:, None, None]
+        parts.append(Part(tip, steady.boundary("tip"), x, mass, I_x, I_y, I_z, at.twist + blade.pitch))
+    return parts
+
+
+def _sections(blade: Blade, basis: Any) -> tuple[Array, Sections]:
+    """The quadrature points and the properties there (elements, points)."""
+    x = np.array(basis.global_coordinates())[0]
+    at = sample(blade, x.ravel())
+    return x, Sections(**{f.name: getattr(at, f.name).reshape(x.shape) for f in fields(at)})
+
+
+def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Array:
+    """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, linear however large."""
+    fem = _skfem()
+    spring, bedding, load = (
+        fem.BilinearForm(forms.spring),
+        fem.BilinearForm(forms.bedding),
+        fem.LinearForm(forms.load),
+    )
+    steady = parts[0].steady
+    K, f = spring.assemble(steady, k=at.EA), steady.zeros()
+    for p in parts:
+        K = K - omega**2 * bedding.assemble(p.steady, k=p.mass)
+        f = f + omega**2 * load.assemble(p.steady, k=p.mass * (blade.hub_radius + p.x))
+    return fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
+
+
+def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
+    """Steady turn of the sections about x: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, the propeller moment, by Newton."""
+    fem = _skfem()
+    spring, bedding, load = (
+        fem.BilinearForm(forms.spring),
+        fem.BilinearForm(forms.bedding),
+        fem.LinearForm(forms.load),
+    )
+    steady = parts[0].steady
+    torsion, turn = spring.assemble(steady, k=at.GJ), steady.zeros()
+    for _ in range(NEWTON):
+        K, f = torsion, -torsion @ turn
+        for p in parts:
+            J_yy, J_zz, J_yz = forms.turned(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+            K = K - omega**2 * bedding.assemble(p.steady, k=J_yy - J_zz)
+            f = f + omega**2 * load.assemble(p.steady, k=J_yz)
+        step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
+        turn = turn + step
+        if np.abs(step).max() < 1e-8:  # and the next would be its square
+            return turn
+    raise CodeError(f"omega: {omega:g} rad/s: no steady twist of the sections in {NEWTON} steps; lower the speed")
+
+
+def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
+    """M, C, K of all coordinates about the steady state, in axes that turn with the hub."""
+    fem = _skfem()
+    parts, at = _parts(blade, basis), _sections(blade, basis)[1]
+    stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
+    U, turned = (parts[0].steady.interpolate(field) for field in (stretch, turn))
+    if not (U.grad[0] > -1).all():
+        raise CodeError(
+            f"omega: {omega:g} rad/s: no steady stretch, the centrifugal force outgrows EA; lower the speed"
+        )
+    EI_yy, EI_zz, EI_yz = forms.turned(at.EI_y, at.EI_z, parts[0].angle + turned)
+    stiffness = {"EA": at.EA, "GJ": at.GJ, "EI_yy": EI_yy, "EI_zz": EI_zz, "EI_yz": EI_yz}
+    steady = {"g": 1 + U.grad[0], "g_s": U.hess[0, 0], "tension": at.EA * U.grad[0], "torque": at.GJ * turned.grad[0]}
+    K = fem.BilinearForm(forms.elastic).assemble(basis, **stiffness, **steady)
+    M = C = 0 * K
+    for p in parts:
+        J_yy, J_zz, J_yz = forms.turned(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+        inertia = {"mass": p.mass, "J_xx": p.I_x, "J_yy": J_yy, "J_zz": J_zz, "J_yz": J_yz}
+        inertia["g"] = 1 + p.steady.interpolate(stretch).grad[0]
+        M = M + fem.BilinearForm(forms.inertia).assemble(p.basis, **inertia)
+        C = C + omega * fem.BilinearForm(forms.gyroscopic).assemble(p.basis, **inertia)
+        K = K - omega**2 * fem.BilinearForm(forms.centrifugal).assemble(p.basis, **inertia)
+    springs = np.zeros(basis.N)
+    root = 1 + stretch[parts[0].steady.get_dofs("root").nodal["u_x"][0]]
+    for slope, spring in _hinges(blade, basis).items():
+        springs[slope] = spring / root**2  # the section turns by the slope over the stretch
+    return M, C, K + dia_array((springs[None], [0]), shape=K.shape)
+
+
+def _shapes(basis: Any, q: NDArray[np.complex128], length: float) -> NDArray[np.complex128]:
+    """(m, 21, 4) from coordinates (n, m)."""
+    at = STATIONS[None] * length
+    fields_ = [part.probes(at) @ q[i] for i, part in zip(basis.split_indices(), basis.split_bases(), strict=True)]
+    return np.stack(fields_, axis=-1).transpose(1, 0, 2)
+
+
+CODE = ScikitFemBeam()

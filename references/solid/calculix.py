@@ -1,0 +1,222 @@
+"""CalculiX (``ccx``): solid blades of 20-node hexahedra, rotating; and its matrices, to condense.
+
+G. Dhondt, *The Finite Element Method for Three-Dimensional Thermomechanical Applications*, 2004. The static step is
+geometrically nonlinear (St Venant–Kirchhoff), the frequencies are those about it, with stress stiffening and spin
+softening, without Coriolis forces: ``*COMPLEX FREQUENCY, CORIOLIS`` works in a modal basis and loses modes.
+Elements have reduced integration; one of them across a section has hourglass motions, so two at least are asked for.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.condense.exported import model
+from ...core.condense.matrix_files import stored
+from ...core.condense.ties import FiniteElements
+from ...core.effects import Model
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError
+from .mesh import TWENTY, Bricks, Clamp, Material, held_by, mean_motions
+
+FACE = TWENTY[[0, 3, 7, 4, 11, 19, 15, 16]][:, 1:]
+"""Of these, the 8 nodes of the face towards the root, by their places across: corners, then edges between them."""
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+HINT = "apt-get install calculix-ccx"
+
+MODEL = Model(coriolis=False)
+"""The effects it keeps."""
+
+TIMEOUT = 600.0
+
+
+@dataclass(frozen=True)
+class Orthotropic:
+    """Stiff alike along x, y and z, without Poisson's effect, but sheared along y and along z by moduli of their own.
+
+    Attributes:
+        young: Pa.
+        shear_y, shear_z: Pa, of the planes x–y and x–z; the section's own plane has the larger of them.
+        density: kg/m³.
+    """
+
+    young: float
+    shear_y: float
+    shear_z: float
+    density: float
+
+
+def version() -> str | None:
+    """Version of ``ccx`` on the PATH; None if there is none."""
+    if shutil.which("ccx") is None:
+        return None
+    said = subprocess.run(["ccx", "-v"], capture_output=True, text=True, timeout=TIMEOUT, check=False).stdout
+    found = re.search(r"Version\s+(\S+)", said)
+    return found[1] if found else "unknown"
+
+
+def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count: int, clamp: Clamp) -> Modes:
+    """The lowest modes of a solid blade that turns steadily at ``omega`` (rad/s), as ``solid.modes`` gives them.
+
+    Raises:
+        CodeError: ``ccx`` is missing or failed, no stable steady state, or fewer than two elements across a section.
+    """
+    if min(bricks.counts[1:]) < 2:
+        raise CodeError(f"across: {bricks.counts[1:]} elements: with reduced integration a section needs two each way")
+    begun = time.perf_counter()
+    places, nodes = numbered(bricks)
+    share = (nodes[:, 0] - nodes[:, 0].min()) / np.ptp(nodes[:, 0])
+    at_stations = np.flatnonzero(np.abs(share[:, None] - STATIONS).min(axis=1) < 1e-9)
+    held = [f"{node + 1},{d + 1},{d + 1}" for node, d in np.argwhere(held_by(clamp, nodes))]
+    steps = ["*BOUNDARY", *held, "*STEP"]
+    if omega:
+        load = f"ALL,CENTRIF,{omega**2:.12g},0.,0.,0.,0.,0.,1."
+        steps = ["*BOUNDARY", *held, "*STEP,NLGEOM", "*STATIC", "*DLOAD", load, "*END STEP", "*STEP,PERTURBATION"]
+    steps += ["*FREQUENCY", str(count), "*NODE PRINT,NSET=STATIONS", "U", "*END STEP"]
+    sets = ["*NSET,NSET=STATIONS", *(str(k + 1) for k in at_stations)]
+    with run([*deck(places, nodes, material), *sets, *steps]) as folder:
+        frequencies, u = _printed((folder / "blade.dat").read_text(), omega)
+    shapes = mean_motions(nodes[at_stations], np.ones(len(at_stations)), u)
+    return Modes(omega, frequencies, shapes, bricks.counts[0], seconds=time.perf_counter() - begun)
+
+
+def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") -> FiniteElements:
+    """A block as CalculiX assembles it, to condense: ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, all nodes kept.
+
+    Its ``*SUBSTRUCTURE GENERATE`` (see ``core.matrix_files``) is no way to get a condensed one: as of 2.20 it holds the nodes
+    that are not retained instead of eliminating them, and is caught by ``segments.between``.
+
+    Raises:
+        CodeError: ``ccx`` is missing or failed.
+    """
+    places, nodes = numbered(bricks)
+    steps = ["*STEP", "*FREQUENCY,SOLVER=MATRIXSTORAGE", "1", "*END STEP"]
+    with run([*deck(places, nodes, material), *steps]) as folder:
+        stiffness, mass = (stored(folder / f"blade.{kind}") for kind in ("sti", "mas"))
+    return model(stiffness, dict(enumerate(nodes, 1)), mass, name)
+
+
+def section_weights(bricks: Bricks, layer: int) -> Array:
+    """(k, k) ∫NᵀN over a layer of faces, N the shape functions of its 8-node faces, nodes as in ``numbered``.
+
+    Args:
+        bricks: the block.
+        layer: of corners along the span, 0 at the root.
+    """
+    places = numbered(bricks)[0]
+    here = places[2 * layer]
+    k = np.unique(here)[1:]
+    index = np.searchsorted(k, here)
+    t, w = np.polynomial.legendre.leggauss(3)
+    xi, eta = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
+    at = FACE - 1
+    corner = (1 + at[:, :1] * xi) * (1 + at[:, 1:] * eta) * (at[:, :1] * xi + at[:, 1:] * eta - 1) / 4
+    edge = np.where(at[:, :1] == 0, (1 - xi**2) * (1 + at[:, 1:] * eta), (1 + at[:, :1] * xi) * (1 - eta**2)) / 2
+    N = np.where((at != 0).all(axis=1)[:, None], corner, edge)
+    out = np.zeros((len(k), len(k)))
+    for y, z in np.ndindex(*bricks.counts[1:]):
+        a, b, c, d = (bricks.corners[layer, y + i, z + j, 1:] for i, j in FACE[:4] // 2)
+        along_xi, along_eta = (
+            (np.outer(1 - q, first) + np.outer(1 + q, second)) / 4
+            for q, first, second in ((eta, b - a, c - d), (xi, d - a, c - b))
+        )
+        area = np.outer(w, w).ravel() * np.abs(along_xi[:, 0] * along_eta[:, 1] - along_xi[:, 1] * along_eta[:, 0])
+        own = index[tuple((np.array([2 * y, 2 * z]) + FACE).T)]
+        out[np.ix_(own, own)] += (N * area) @ N.T
+    return out
+
+
+def numbered(bricks: Bricks) -> tuple[Index, Array]:
+    """Index of the node at each place of the lattice, −1 where 20-node elements have none; and the nodes (n, 3)."""
+    lattice = bricks.lattice()
+    odd = (np.indices(lattice.shape[:3]) % 2).sum(axis=0)
+    places = np.full(odd.shape, -1)
+    places[odd <= 1] = np.arange((odd <= 1).sum())
+    return places, lattice[odd <= 1]
+
+
+def deck(places: Index, nodes: Array, material: Material | Orthotropic) -> list[str]:
+    """Lines of mesh and material. Fields have 20 characters and are cut there, exponent and all: 12 digits fit."""
+    lines = ["*NODE,NSET=ALL", *(f"{k + 1},{x:.12g},{y:.12g},{z:.12g}" for k, (x, y, z) in enumerate(nodes))]
+    lines += ["*ELEMENT,TYPE=C3D20R,ELSET=ALL"]
+    first = np.stack(np.meshgrid(*(np.arange(0, n - 1, 2) for n in places.shape), indexing="ij"), axis=-1).reshape(
+        -1, 3
+    )
+    for k, corner in enumerate(first):
+        own = places[tuple((corner + TWENTY).T)] + 1
+        lines += [f"{k + 1}," + ",".join(map(str, own[:10])) + ",", ",".join(map(str, own[10:]))]
+    return [
+        *lines,
+        "*MATERIAL,NAME=SOLID",
+        *_elastic(material),
+        "*DENSITY",
+        f"{material.density:.12g}",
+        "*SOLID SECTION,ELSET=ALL,MATERIAL=SOLID",
+    ]
+
+
+def _elastic(material: Material | Orthotropic) -> list[str]:
+    if isinstance(material, Material):
+        return ["*ELASTIC", f"{material.young:.12g},{material.poisson:.12g}"]
+    shear = (material.shear_y, material.shear_z)
+    first = [*[material.young] * 3, 0.0, 0.0, 0.0, *shear]
+    return ["*ELASTIC,TYPE=ENGINEERING CONSTANTS", ",".join(f"{v:.12g}" for v in first), f"{max(shear):.12g}"]
+
+
+@contextmanager
+def run(lines: Sequence[str]) -> Iterator[Path]:
+    """Run a deck named ``blade`` in a folder of its own, which is there to read from within the context.
+
+    Raises:
+        CodeError: ``ccx`` is missing, failed or took too long.
+    """
+    if version() is None:
+        raise CodeError(f"ccx is not on the PATH: {HINT}")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "blade.inp").write_text("\n".join(lines) + "\n")
+        try:
+            done = subprocess.run(
+                ["ccx", "-i", "blade"],
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                timeout=TIMEOUT,
+                check=False,
+                env={**os.environ, "OMP_NUM_THREADS": "1"},
+            )
+        except subprocess.TimeoutExpired:
+            raise CodeError(f"ccx took longer than {TIMEOUT:g} s: a coarser mesh?") from None
+        error = re.search(r"\*ERROR[^\n]*\n?[^\n]*", done.stdout)
+        if done.returncode or error:
+            said = " ".join(error[0].split()) if error else done.stderr.strip()
+            raise CodeError(f"ccx ended with {done.returncode}: {said or 'no message'}")
+        yield folder
+
+
+def _printed(text: str, omega: float) -> tuple[Array, Array]:
+    """Frequencies (m,), rad/s, and the displacements (3, n, m) printed for each mode.
+
+    Raises:
+        CodeError: a negative eigenvalue: the steady state is not stable.
+    """
+    text = re.sub(r"(?<=\d)([+-]\d{3})(?=\s)", r"E\1", text)  # Fortran drops the E before an exponent of three digits
+    head, *prints = text.split(" displacements (vx,vy,vz)")
+    rows = [line.split() for line in head.partition("P A R T I C I P A T I O N")[0].splitlines()]
+    table = np.array([row for row in rows if len(row) == 5 and row[0].isdigit()], float)
+    if not len(table) or (table[:, 1] <= 0).any():
+        raise CodeError(f"omega: {omega:g} rad/s: ccx found no modes, or an unstable steady state; lower the speed")
+    moved = [[line.split()[1:] for line in part.splitlines()[1:] if len(line.split()) == 4] for part in prints]
+    return table[:, 2], np.array(moved, float).transpose(2, 1, 0)

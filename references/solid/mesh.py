@@ -1,0 +1,169 @@
+"""A solid blade as a block of hexahedra, for any finite element code: mesh, material, clamp, and its sections' motion.
+
+Elements have straight edges (trilinear geometry), so codes with 8, 20 or 27 nodes an element have one shape of blade.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.condense import ties
+from ...core.modes import STATIONS
+from ..protocol.interface import CodeError
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+TWENTY = np.array(
+    [
+        *[(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)],
+        *[(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)],
+        *[(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)],
+    ]
+)
+"""Places of a 20-node element's nodes on its own 3×3×3 lattice, in the order of CalculiX and Abaqus (C3D20)."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic: Young's modulus Pa, Poisson's ratio, density kg/m³."""
+
+    young: float
+    poisson: float
+    density: float
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """λ and μ, Pa."""
+        mu = self.young / (2.0 * (1.0 + self.poisson))
+        return 2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson), mu
+
+
+@dataclass(frozen=True)
+class Bricks:
+    """A block of nx × ny × nz hexahedra, x along the span.
+
+    Attributes:
+        corners: (nx+1, ny+1, nz+1, 3) m, in blade axes from the rotor's axis (see ``core.blade``); every layer of
+            corners along the span has one x.
+    """
+
+    corners: Array
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Elements along x, y, z."""
+        nx, ny, nz, _ = self.corners.shape
+        return nx - 1, ny - 1, nz - 1
+
+    def lattice(self) -> Array:
+        """(2nx+1, 2ny+1, 2nz+1, 3) the corners and what lies midway between them: edges, faces, middles."""
+        out = self.corners
+        for axis in range(3):
+            a = np.moveaxis(out, axis, 0)
+            full = np.empty((2 * len(a) - 1, *a.shape[1:]))
+            full[::2], full[1::2] = a, 0.5 * (a[:-1] + a[1:])
+            out = np.moveaxis(full, 0, axis)
+        return out
+
+    def part(self, start: int, stop: int) -> "Bricks":
+        """The layers of elements from ``start`` to before ``stop`` along the span."""
+        return Bricks(self.corners[start : stop + 1])
+
+
+def blade(
+    x: Array,
+    chord: ArrayLike,
+    thickness: ArrayLike,
+    twist: ArrayLike = 0.0,
+    *,
+    across: tuple[int, int],
+    edge: float = 1.0,
+) -> Bricks:
+    """A straight solid blade.
+
+    Args:
+        x: (nx+1,) m, from the rotor's axis: where layers of elements end.
+        chord: (nx+1,) or one, m; along y where there is no twist.
+        thickness: (nx+1,) or one, m, at mid-chord; along z where there is no twist.
+        twist: (nx+1,) or one, rad, about x from y towards z.
+        across: elements along the chord and through the thickness.
+        edge: thickness at the edges over that at mid-chord, parabolic between: 1 is a rectangle.
+    """
+    eta, zeta = (np.linspace(-1.0, 1.0, n + 1) for n in across)
+    half_chord, half_thick, turn = (np.broadcast_to(v, x.shape)[:, None, None] for v in (chord, thickness, twist))
+    y = 0.5 * half_chord * eta[:, None]
+    z = 0.5 * half_thick * zeta * (1.0 - (1.0 - edge) * eta[:, None] ** 2)
+    c, s = np.cos(turn), np.sin(turn)
+    y, z = c * y - s * z, s * y + c * z
+    return Bricks(np.stack([np.broadcast_to(x[:, None, None], z.shape), y, z], axis=-1))
+
+
+Clamp = Callable[[Array], Bools]
+"""Which displacements (n, 3) are held, of nodes at (n, 3)."""
+
+
+def clamped(at: float) -> Clamp:
+    """All of the section at ``x = at`` is held."""
+
+    def held(nodes: Array) -> Bools:
+        return np.repeat(_near(nodes[:, :1], at), 3, axis=1)
+
+    return held
+
+
+def clamped_free_to_contract(at: float) -> Clamp:
+    """The section at ``x = at`` stays plane and in place, but may change its width: held along x; y, z on the centre lines.
+
+    A full clamp restrains the Poisson contraction of bending, which a beam's clamp knows nothing of.
+    """
+
+    def held(nodes: Array) -> Bools:
+        return _near(nodes[:, :1], at) & np.column_stack([np.ones(len(nodes), bool), _near(nodes[:, 1:], 0.0)])
+
+    return held
+
+
+def held_by(clamp: Clamp, nodes: Array) -> Bools:
+    """(n, 3) which displacements a clamp holds.
+
+    Raises:
+        CodeError: if it leaves the blade loose.
+    """
+    held = clamp(nodes)
+    if not held.any(axis=0).all():
+        raise CodeError(f"clamp: holds {held.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
+    return held
+
+
+def _near(values: Array, target: float) -> Bools:
+    return np.abs(values - target) < 1e-9 * max(float(np.abs(values).max()), abs(target))
+
+
+def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.complex128]:
+    """(m, 21, 4) displacement and rotation about x at ``STATIONS``: what the sections there do on average.
+
+    Args:
+        nodes: (n, 3), with a layer of them at every station along x; rotations are about the line y = z = 0.
+        weights: (n,) share of its section that each node stands for.
+        u: (3, n, m) displacements along x, y, z.
+
+    Raises:
+        CodeError: if a station has no nodes.
+    """
+    root, tip = nodes[:, 0].min(), nodes[:, 0].max()
+    out = np.zeros((u.shape[2], len(STATIONS), 4), complex)
+    directions = np.arange(3)
+    for k, at in enumerate(root + STATIONS * (tip - root)):
+        here = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
+        if not len(here):
+            raise CodeError(f"mesh: no layer of nodes at x = {at:g} m, a station: make the layers a multiple of ten")
+        frame = np.eye(4)
+        frame[0, 3] = at
+        R = ties.motion(np.tile(nodes[here], (3, 1)), np.repeat(directions, len(here)), frame)
+        weighed = R.T * np.tile(weights[here], 3)
+        out[:, k] = np.linalg.solve(weighed @ R, weighed @ u[:, here].reshape(3 * len(here), -1))[:4].T
+    return out

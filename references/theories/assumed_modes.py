@@ -1,0 +1,117 @@
+"""Putter and Manor's rotating beam: inextensible, in assumed modes.
+
+A blade that does not stretch shortens as it bends, by half the square of its slope; the centrifugal force, working on
+that, stiffens it. With deflections v in and w out of the plane of rotation and T the tension of the straight blade,
+
+    2 V = ∫ E I_ij κ_i κ_j + T (v′² + w′²) − Ω² m v² ds,    2 T_kin = ∫ m (v̇² + ẇ²) ds,    T(s) = Ω² ∫ₛ m (R + s) ds
+
+(S. Putter and H. Manor, "Natural frequencies of radial rotating beams", J. Sound Vib. 56 (1978) 175–185; for twisted
+blades W. Carnegie, "Vibrations of rotating cantilever blading", J. Mech. Eng. Sci. 1 (1959) 235–240). The modes
+assumed are the polynomials of ``spectral``.
+"""
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import Model
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import Code, Shares
+from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
+from .spectral import clamped
+from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Bending:
+    """Bending in one plane, or in two that twist couples: ``M q̈ + (elastic + Ω² centrifugal) q = 0``.
+
+    Attributes:
+        elastic, centrifugal, mass: (n, n).
+        shape: (21, 4, n) of the coordinates.
+        planes: the directions of motion, ``Y`` (chordwise), ``Z`` (flapwise) or both.
+    """
+
+    elastic: Array
+    centrifugal: Array
+    mass: Array
+    shape: Array
+    planes: tuple[int, ...]
+
+    def stiffness(self, omega: float) -> Array:
+        """At rotor speed ``omega``, rad/s."""
+        return self.elastic + omega**2 * self.centrifugal
+
+
+def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
+    """Chordwise and flapwise bending, apart if the blade is untwisted, with ``terms`` polynomials in each interval."""
+    at = line(blade, terms)
+    v, slope, curvature = clamped(at.ends, terms, at.s)
+    angle = at.sections.twist + blade.pitch
+    cos, sin = np.cos(angle), np.sin(angle)
+    flap, edge = at.sections.EI_y, at.sections.EI_z  # of the section; motion along its z is resisted by EI_y
+    EI = {
+        (Y, Y): edge * cos**2 + flap * sin**2,
+        (Z, Z): edge * sin**2 + flap * cos**2,
+        (Y, Z): (edge - flap) * sin * cos,
+    }
+    EI[Z, Y] = EI[Y, Z]
+    mass = integral(at.mass, v)
+    tense = integral(at.weight * tension(blade, at.s), slope)
+    none = np.zeros_like(mass)
+    centrifugal = {(Y, Y): tense - mass, (Z, Z): tense}
+    shape = clamped(at.ends, terms, STATIONS * blade.length)[0]
+
+    def together(planes: tuple[int, ...]) -> Bending:
+        pairs = [[(i, j) for j in planes] for i in planes]
+        return Bending(
+            elastic=np.block([[integral(at.weight * EI[p], curvature) for p in row] for row in pairs]),
+            centrifugal=np.block([[centrifugal.get(p, none) for p in row] for row in pairs]),
+            mass=np.block([[mass if i == j else none for i, j in row] for row in pairs]),
+            shape=shape_of([(plane, shape) for plane in planes]),
+            planes=planes,
+        )
+
+    return (together((Y, Z)),) if angle.any() else (together((Y,)), together((Z,)))
+
+
+class AssumedModes:
+    """The inextensible beam; twisted or not, of any straight shape.
+
+    It leaves out rotary inertia, and with the stretch both the steady one (the prestretch) and the oscillating one, to
+    which alone the Coriolis force couples chordwise motion. Bending modes only.
+    """
+
+    name = "assumed-modes"
+    title = "Putter and Manor, assumed modes"
+    shares: Shares = "nothing"
+    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    levels = LEVELS
+    order = 0
+    hint = ""
+
+    def version(self) -> str | None:
+        """Of this package."""
+        return version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """Why the blade is not this beam."""
+        return refusal(blade, twist=True, stretch=False, tip_inertia=False)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest bending modes with ``elements`` polynomials in each interval (see ``references.interface``)."""
+        refuse(self.unsupported(blade))
+        start = perf_counter()
+        parts = [
+            part(bending.shape, *stationary_modes(bending.mass, bending.stiffness(omega)))
+            for bending in bendings(blade, terms(blade, elements))
+        ]
+        return union(parts, omega, elements, count, perf_counter() - start)
+
+
+CODE: Code = AssumedModes()

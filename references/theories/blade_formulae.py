@@ -1,0 +1,120 @@
+"""Closed forms of rigid hinged blades: small motion about steady rotation in the plane of the rotor.
+
+Second-order Lagrangians, written out by hand. About the hinge at radius e: S = ∫x dm, inertias I; β flaps up, ζ lags forward
+(along the motion), θ pitches leading edge up about the blade's axis, inboard of nothing but the flap hinge.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from importlib.metadata import version
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..protocol.damped import damped_modes
+from ..protocol.mechanism_interface import MechanismModes
+
+Array = NDArray[np.float64]
+Matrices = tuple[tuple[str, ...], Array, Array, Array]
+
+
+def flap_lag(
+    omega: float,
+    *,
+    offset: float,
+    first: float,
+    flap_inertia: float,
+    lag_inertia: float,
+    own_inertia: float,
+    flap_spring: float = 0.0,
+    lag_spring: float = 0.0,
+    flap_damper: float = 0.0,
+    lag_damper: float = 0.0,
+) -> Matrices:
+    """Coincident flap and lag hinges, the blade's mass symmetric about its axis.
+
+    I_β β̈ + c_β β̇ + (k_β + Ω² (I_ζ − I_x + e S)) β = 0 and I_ζ ζ̈ + c_ζ ζ̇ + (k_ζ + Ω² e S) ζ = 0: for a slender blade flap
+    Ω √(1 + e S/I), lag Ω √(e S/I) (W. Johnson, *Helicopter Theory*, 1980, sec. 9-2).
+
+    Args:
+        omega: rotor speed, rad/s.
+        offset: e, m.
+        first: S, kg m.
+        flap_inertia, lag_inertia, own_inertia: I_β, I_ζ, I_x about the hinge, kg m².
+        flap_spring, lag_spring: N m/rad.
+        flap_damper, lag_damper: N m s/rad.
+    """
+    flap = flap_spring + omega**2 * (lag_inertia - own_inertia + offset * first)
+    lag = lag_spring + omega**2 * offset * first
+    return (
+        ("flap.rz", "lag.rz"),
+        np.diag([flap_inertia, lag_inertia]),
+        np.diag([flap_damper, lag_damper]),
+        np.diag([flap, lag]),
+    )
+
+
+def flap_pitch(
+    omega: float,
+    *,
+    offset: float,
+    xx: float,
+    yy: float,
+    zz: float,
+    xy: float,
+    first_x: float,
+    first_y: float,
+    horn_x: float,
+    horn_y: float,
+    control_spring: float,
+    control_damper: float,
+    rod_mass: float,
+    link_mass: float,
+) -> Matrices:
+    """Flap hinge, pitch bearing outboard of it, and a vertical pitch link from a horn to a rod on the control spring.
+
+    To second order a point (x, y, z) of the blade rises by x β + y θ, moves inwards by x β²/2 + y θ β (+ z β), back by
+    y θ²/2 (+ z θ); the horn's end carries link and rod along as it rises, and the link's middle by half as it moves in.
+    The blade is symmetric about z = 0, so nothing loads the link in the steady state.
+
+    Args:
+        omega: rotor speed, rad/s.
+        offset: e, m.
+        xx, yy, zz, xy: ∫x², ∫y², ∫z², ∫xy dm of the blade about the hinge, kg m².
+        first_x, first_y: ∫x, ∫y dm, kg m.
+        horn_x, horn_y: of the horn's end from the hinge, m.
+        control_spring, control_damper: N/m, N s/m.
+        rod_mass, link_mass: kg.
+    """
+    rise = np.array([horn_x, horn_y])
+    M = np.array([[xx + zz, xy], [xy, yy + zz]]) + (rod_mass + link_mass) * np.outer(rise, rise)
+    K = omega**2 * np.array(
+        [[offset * first_x + xx - zz, offset * first_y + xy], [offset * first_y + xy, yy - zz]]
+    ) + control_spring * np.outer(rise, rise)
+    swing = np.array([[horn_x, horn_y], [horn_y, 0.0]]) * (offset + horn_x)  # inwards
+    swing += np.array([[0.0, 0.0], [0.0, horn_y]]) * horn_y  # back
+    K += 0.5 * omega**2 * link_mass * swing
+    C = control_damper * np.outer(rise, rise) + 2.0 * omega * zz * np.array([[0.0, -1.0], [1.0, 0.0]])
+    return ("flap.rz", "pitch.rz"), M, C, K
+
+
+FORMULAE: Mapping[str, Callable[..., Matrices]] = {"flap-lag": flap_lag, "flap-pitch": flap_pitch}
+"""By the name that a case file gives."""
+
+
+def solve(formula: str, omega: float, parameters: Mapping[str, float]) -> MechanismModes:
+    """A formula's modes at rotor speed ``omega`` (rad/s), about its steady state, in which its coordinates are 0.
+
+    Raises:
+        KeyError: if there is no such formula.
+        TypeError: if parameters are missing, or not the formula's.
+    """
+    begun = time.perf_counter()
+    names, M, C, K = FORMULAE[formula](omega, **parameters)
+    values, x = damped_modes(M, C, K)
+    return MechanismModes(names, np.zeros(len(names)), values, x.T, time.perf_counter() - begun)
+
+
+def code_version() -> str:
+    """They come with this package."""
+    return version("southwell")

@@ -1,0 +1,185 @@
+"""The rotating Kirchhoff beam in full: extensible, geometrically nonlinear, with rotary inertia; linearised exactly.
+
+A straight untwisted blade at rest stretches, when it turns, to the radius r(s) of the section at arc length s, with stretch
+λ = r′ and strain e = λ − 1. Its strain energy per rest length is ``½ (E A e² + G J φ′² + E I_y κ_y² + E I_z κ_z²)``,
+with curvatures per rest length; sections stay normal to the axis (G. Kirchhoff, 1859; A. E. H. Love, *A Treatise on the
+Mathematical Theory of Elasticity*, 4th ed. 1927, ch. XVIII; e as in E. Reissner, ZAMP 23 (1972) 795–804, without shear).
+
+Steady state: ``N = E A (r′ − 1)``, ``N′ + m Ω² r = 0``, r = R at the root, N at the tip from the tip mass: linear in r, and
+the only nonlinearity there is about a straight axis. Small motions (u, v, w) about it and torsion φ turn the section by
+(φ, −β, θ), θ = v′/λ, β = w′/λ; to second order, with the moments of inertia I per length,
+
+    2 V     = ∫ E A u′² + N/λ (v′² + w′²) + E I_z θ′² + E I_y β′² + G J φ′²
+              − Ω² [m (u² + v²) + (I_x − I_z) β² + (I_y − I_z) φ²] ds
+    2 T_kin = ∫ m (u̇² + v̇² + ẇ²) + I_z θ̇² + I_y β̇² + I_x φ̇² + 2 Ω [2 m u v̇ − (I_x + I_y − I_z) φ β̇] ds
+
+the last two up to a total time derivative. So stretch goes with chordwise bending and torsion, by the inertia of the
+sections alone, with flapwise bending. Spin softens the turning of a section out of the plane of rotation (β; φ by the
+tennis racket's I_z − I_y), not in it: θ turns about the rotor's axis. E I and G J being constants, tension does not stiffen
+torsion: a rod with such a diagonal stiffness has no trapeze effect, and neither has core.
+
+Galerkin's method with the polynomials of ``spectral``, for u and φ of one degree less than for v and w.
+"""
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ...core.blade import TORSION, Blade
+from ...core.effects import FULL
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import Code, CodeError, Shares
+from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
+from .spectral import clamped, pinned
+from .straight_beam import LEVELS, Line, line, refusal, refuse, terms, version
+
+Array = NDArray[np.float64]
+
+
+def steady(blade: Blade, at: Line, omega: float, terms: int) -> tuple[Array, Array]:
+    """Stretch λ (q,) of the steady state and its slope λ′ (q,), 1/m.
+
+    Raises:
+        CodeError: if the centrifugal force outgrows the axial stiffness, so that there is no steady state.
+    """
+    u, strain, bend = pinned(at.ends, terms, at.s)
+    K = integral(at.weight * at.sections.EA, strain) - omega**2 * integral(at.mass, u)
+    force = omega**2 * (u.T @ (at.mass * (blade.hub_radius + at.s)))
+    try:
+        q = scipy.linalg.solve(K, force, assume_a="pos")
+    except np.linalg.LinAlgError as error:
+        raise CodeError(
+            f"steady stretch: none at {omega:g} rad/s, the centrifugal force outgrows the axial stiffness; lower the speed"
+        ) from error
+    return 1.0 + strain @ q, bend @ q
+
+
+@dataclass(frozen=True)
+class Beam:
+    """One blade at one speed: its functions at the quadrature points, about its steady state.
+
+    Attributes:
+        at: the blade at those points.
+        omega: rotor speed, rad/s.
+        u, u_s: (q, n) functions for stretch and torsion, and their slopes.
+        v: (q, n) functions for bending.
+        turn: (q, n) rotation of the section that each of them is, v′/λ.
+        curvature: (q, n) its slope.
+        tense: (n, n) stiffness by the steady tension, ``∫ N/λ v′²``.
+        u_shape, v_shape: (21, n) the functions at ``core.modes.STATIONS``.
+    """
+
+    at: Line
+    omega: float
+    u: Array
+    u_s: Array
+    v: Array
+    turn: Array
+    curvature: Array
+    tense: Array
+    u_shape: Array
+    v_shape: Array
+
+
+def stretched(blade: Blade, omega: float, terms: int) -> Beam:
+    """The blade at ``omega`` (rad/s) with ``terms`` polynomials a field in each interval.
+
+    Raises:
+        CodeError: if it has no steady state.
+    """
+    at = line(blade, terms)
+    u, u_s, _ = pinned(at.ends, terms, at.s)
+    v, v_s, v_ss = clamped(at.ends, terms, at.s)
+    stretch, slope = steady(blade, at, omega, terms)
+    turn = v_s / stretch[:, None]
+    where = STATIONS * blade.length
+    return Beam(
+        at=at,
+        omega=omega,
+        u=u,
+        u_s=u_s,
+        v=v,
+        turn=turn,
+        curvature=(v_ss - turn * slope[:, None]) / stretch[:, None],
+        tense=integral(at.weight * at.sections.EA * (stretch - 1) * stretch, turn),  # N = E A (λ − 1)
+        u_shape=pinned(at.ends, terms, where)[0],
+        v_shape=clamped(at.ends, terms, where)[0],
+    )
+
+
+Problem = tuple[Array, Array, Array, Array]
+"""M, C, K (n, n) and the shape (21, 4, n) of the coordinates."""
+
+
+def in_plane(beam: Beam) -> Problem:
+    """Stretch and chordwise bending."""
+    at, square = beam.at, beam.omega**2
+    m_uu, m_vv = integral(at.mass, beam.u), integral(at.mass, beam.v)
+    M = apart(m_uu, m_vv + integral(at.I_z, beam.turn))
+    C = skew(2 * beam.omega * integral(at.mass, beam.v, beam.u))
+    K = apart(
+        integral(at.weight * at.sections.EA, beam.u_s) - square * m_uu,
+        integral(at.weight * at.sections.EI_z, beam.curvature) + beam.tense - square * m_vv,
+    )
+    return M, C, K, shape_of([(X, beam.u_shape), (Y, beam.v_shape)])
+
+
+def out_of_plane(beam: Beam, torsion: bool) -> Problem:
+    """Torsion, if wanted, and flapwise bending."""
+    at, square = beam.at, beam.omega**2
+    M = integral(at.mass, beam.v) + integral(at.I_y, beam.turn)
+    K = (
+        integral(at.weight * at.sections.EI_y, beam.curvature)
+        + beam.tense
+        - square * integral(at.I_x - at.I_z, beam.turn)
+    )
+    if not torsion:
+        return M, np.zeros_like(M), K, shape_of([(Z, beam.v_shape)])
+    twisting = integral(at.weight * at.sections.GJ, beam.u_s) + square * integral(at.I_z - at.I_y, beam.u)
+    C = skew(-beam.omega * integral(at.I_x + at.I_y - at.I_z, beam.turn, beam.u))
+    shape = shape_of([(ROTATION_X, beam.u_shape), (Z, beam.v_shape)])
+    return apart(integral(at.I_x, beam.u), M), C, apart(twisting, K), shape
+
+
+class ExactBeam:
+    """The full beam: every effect of ``core.model``. Bending in both planes, stretching and torsional modes.
+
+    Straight, untwisted, uncoupled and shear-rigid blades, uniform or varying along the span. Torsional modes are there if
+    the sections have a polar moment of inertia and finite G J.
+    """
+
+    name = "exact-beam"
+    title = "Exact extensible beam, spectral"
+    shares: Shares = "nothing"
+    model = FULL
+    levels = LEVELS
+    order = 0
+    hint = ""
+
+    def version(self) -> str | None:
+        """Of this package."""
+        return version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """Why the blade is not this beam."""
+        return refusal(blade, twist=False, stretch=True, tip_inertia=True)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes with ``elements`` polynomials a field in each interval (see ``references.interface``).
+
+        Raises:
+            CodeError: also if there is no steady state, or no stable one, at this speed.
+        """
+        refuse(self.unsupported(blade))
+        start = perf_counter()
+        beam = stretched(blade, omega, terms(blade, elements))
+        torsion = bool(beam.at.I_x.any() and np.isfinite(blade.stiffness[:, TORSION, TORSION]).all())
+        problems = (in_plane(beam), out_of_plane(beam, torsion))
+        parts = [part(shape, *coupled_modes(M, C, K, count)) for M, C, K, shape in problems]
+        return union(parts, omega, elements, count, perf_counter() - start)
+
+
+CODE: Code = ExactBeam()

@@ -1,0 +1,28 @@
+"""Where the elements of a blade end: at its kinks, and closer together where its bending stiffness changes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade, sample
+from .spectral import intervals
+
+Array = NDArray[np.float64]
+
+
+def element_ends(blade: Blade, elements: int, most: int) -> Array:
+    """Arc lengths (n+1,) of the ends of ``elements`` elements at least.
+
+    Every interval between kinks is divided into the same number of elements, so that properties are smooth within each and
+    an order of convergence survives. Of a blade with more than ``most`` intervals there are more elements in proportion, so
+    that refinements stay distinct. Within an interval the larger of bending stiffness's two ratios is shared out evenly, so
+    that curvature, moment over stiffness, is resolved.
+    """
+    ends = intervals(blade)
+    pieces = -(-elements // min(len(ends) - 1, most))
+    at = sample(blade, ends)
+    change = np.diff(np.log([at.EI_y, at.EI_z]))
+    change = np.take_along_axis(change, np.abs(change).argmax(0)[None], 0).T
+    even = np.arange(pieces) / pieces
+    graded = np.abs(change) > 1e-6
+    share = np.where(graded, np.expm1(even * change) / np.expm1(np.where(graded, change, 1.0)), even)
+    return np.append((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel(), ends[-1])

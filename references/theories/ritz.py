@@ -1,0 +1,100 @@
+"""Rayleigh and Ritz: from functions to matrices, from matrices to modes.
+
+W. Ritz, "Über eine neue Methode zur Lösung gewisser Variationsprobleme der mathematischen Physik", J. reine angew. Math. 135
+(1909) 1–61. A field (a displacement along one axis, or the rotation about x) is a sum of functions; two fields that couple
+have matrices of four blocks.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError
+from ..protocol.quadratic import gyroscopic_modes
+
+Array = NDArray[np.float64]
+
+X, Y, Z, ROTATION_X = range(4)
+"""Columns of ``Modes.shapes``."""
+
+DENSE = 150
+"""Coupled problems larger than this are solved as sparse: a function meets only those of its own interval and the next."""
+
+Part = tuple[Array, NDArray[np.complex128], Array]
+"""Frequencies (m,), shapes (m, 21, 4), and relative uncertainties (m,) or none (0,), of modes that no others couple with."""
+
+
+def integral(weight: Array, left: Array, right: Array | None = None) -> Array:
+    """``∫ weight left right``, (n, k), from values (q, n) and (q, k) at quadrature points; ``right`` is ``left`` if omitted."""
+    return left.T @ (weight[:, None] * (left if right is None else right))
+
+
+def apart(first: Array, second: Array) -> Array:
+    """Matrix of two fields, (n + k, n + k), without a coupling block."""
+    return np.block([[first, np.zeros((len(first), len(second)))], [np.zeros((len(second), len(first))), second]])
+
+
+def skew(lower: Array) -> Array:
+    """Gyroscopic matrix of two fields, (n + k, n + k), from its lower left block (k, n)."""
+    k, n = lower.shape
+    return np.block([[np.zeros((n, n)), -lower.T], [lower, np.zeros((k, k))]])
+
+
+def shape_of(fields: Sequence[tuple[int, Array]]) -> Array:
+    """Shapes (21, 4, n) of all coordinates from each field's column of ``Modes.shapes`` and functions (21, k)."""
+    out = np.zeros((len(STATIONS), 4, sum(functions.shape[1] for _, functions in fields)))
+    first = 0
+    for column, functions in fields:
+        last = first + functions.shape[1]
+        out[:, column, first:last] = functions
+        first = last
+    return out
+
+
+def stationary_modes(M: Array, K: Array) -> tuple[Array, Array]:
+    """Frequencies (n,), ascending, and shapes (n, n) of ``M q̈ + K q = 0``; in inverse form, so that the lowest are sharpest.
+
+    Raises:
+        CodeError: if K is not positive definite.
+    """
+    try:
+        inverse, q = scipy.linalg.eigh(M, K)
+    except np.linalg.LinAlgError as error:
+        raise CodeError(
+            f"stiffness: not positive definite ({error}): no stable steady state; lower the rotor speed"
+        ) from error
+    return 1 / np.sqrt(inverse[::-1]), q[:, ::-1]
+
+
+def coupled_modes(M: Array, C: Array, K: Array, count: int) -> tuple[Array, NDArray[np.complex128]]:
+    """As ``quadratic.gyroscopic_modes``, by the way that suits the size."""
+    if len(K) > DENSE:
+        return gyroscopic_modes(sp.csc_array(M), sp.csc_array(C), sp.csc_array(K), count)
+    return gyroscopic_modes(M, C, K, count)
+
+
+def part(shape: Array, frequencies: Array, q: Array | NDArray[np.complex128], uncertainty: Array | None = None) -> Part:
+    """Modes from vectors ``q`` (n, m) of coordinates whose shapes are ``shape`` (21, 4, n)."""
+    return (
+        frequencies,
+        np.moveaxis(shape @ q, 2, 0).astype(complex),
+        np.zeros(0) if uncertainty is None else uncertainty,
+    )
+
+
+def union(parts: Iterable[Part], omega: float, terms: int, count: int, seconds: float) -> Modes:
+    """The ``count`` lowest modes of all parts together."""
+    frequencies, shapes, uncertainty = (np.concatenate(column) for column in zip(*parts, strict=True))
+    order = np.argsort(frequencies, kind="stable")[:count]
+    return Modes(
+        omega=omega,
+        frequencies=frequencies[order],
+        shapes=shapes[order],
+        elements=terms,
+        uncertainty=uncertainty[order] if len(uncertainty) else uncertainty,
+        seconds=seconds,
+    )

@@ -1,0 +1,93 @@
+"""Southwell's equation, ω² = ω₀² + K Ω², and how far it can be wrong.
+
+The stiffness of a rotating beam is the sum of the elastic one, A, and Ω² times the centrifugal one, B. Southwell and
+Gough ("On the free transverse vibrations of airscrew blades", Aeronautical Research Committee, Reports and Memoranda
+766, 1921) put the non-rotating mode φ_k into Rayleigh's quotient: K = φ_kᵀ B φ_k for φ_kᵀ M φ_k = 1. That is the value
+returned. Between what must the frequency of the inextensible beam (``assumed_modes``) lie?
+
+* From above: in the span of the k lowest non-rotating modes, by Rayleigh and Ritz, the highest frequency is at least the
+  beam's k-th. For k = 1 this is the value itself: Southwell's equation never gives too low a first frequency.
+* From below: the j-th eigenvalue β_j of B alone is that of a rotating cable. Southwell's theorem is
+  ω₁² ≥ α₁ + Ω² β₁, with α_i the squared non-rotating frequencies; for any k Weyl's inequality says
+  ω_k² ≥ α_i + Ω² β_j, i + j = k + 1 (H. Weyl, Math. Ann. 71 (1912) 441–479), of which the largest is taken.
+
+``Modes.uncertainty`` reaches from the value to the farther of the two: a rigorous bracket for every mode (counted in its
+own plane of bending, or in both together where twist couples them), α, β and φ being taken as exact: they are converged
+like ``assumed_modes``, to rounding at the finer levels. For k > 1 the value itself is no bound, only inside the bracket.
+"""
+
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import Model
+from ...core.modes import Modes
+from ..protocol.interface import Code, Shares
+from .assumed_modes import Bending, bendings
+from .ritz import Y, integral, part, stationary_modes, union
+from .spectral import pinned
+from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
+
+Array = NDArray[np.float64]
+
+
+def cable(blade: Blade, planes: tuple[int, ...], terms: int) -> Array:
+    """Eigenvalues β (n,) of B, ascending: squared frequencies over Ω² of the blade without bending stiffness.
+
+    In the plane of rotation they are less by 1 than out of it; δ = 0, uniform: j (2j − 1) out of it.
+    """
+    at = line(blade, terms)
+    w, slope, _ = pinned(at.ends, terms, at.s)
+    flapwise = stationary_modes(integral(at.mass, w), integral(at.weight * tension(blade, at.s), slope))[0] ** 2
+    return np.sort(np.concatenate([flapwise - 1.0 if plane == Y else flapwise for plane in planes]))
+
+
+def squared(bending: Bending, beta: Array, omega: float, count: int) -> tuple[Array, Array, Array, Array]:
+    """Southwell's ω² (m,), its lower and upper bounds (m,), and the non-rotating modes (n, m)."""
+    frequencies, q = stationary_modes(bending.mass, bending.elastic)
+    alpha = frequencies[:count] ** 2
+    phi = q[:, :count] * frequencies[:count]  # φᵀ M φ = 1
+    ritz = np.diag(alpha) + omega**2 * (phi.T @ bending.centrifugal @ phi)
+    m = len(alpha)
+    upper = np.array([np.linalg.eigvalsh(ritz[:k, :k])[-1] for k in range(1, m + 1)])
+    lower = np.array([(alpha[: k + 1] + omega**2 * beta[: k + 1][::-1]).max() for k in range(m)])
+    return np.diag(ritz), lower, upper, phi
+
+
+class SouthwellEquation:
+    """Southwell's equation for each bending mode, with its bracket; the blades that ``assumed-modes`` takes."""
+
+    name = "southwell-equation"
+    title = "Southwell's equation"
+    shares: Shares = "nothing"
+    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    levels = LEVELS
+    order = 0
+    hint = ""
+
+    def version(self) -> str | None:
+        """Of this package."""
+        return version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """Why the blade is not this beam."""
+        return refusal(blade, twist=True, stretch=False, tip_inertia=False)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest bending modes from ``elements`` polynomials in each interval, with ``uncertainty`` the bracket."""
+        refuse(self.unsupported(blade))
+        start = perf_counter()
+        parts = []
+        number = terms(blade, elements)
+        for bending in bendings(blade, number):
+            beta = cable(blade, bending.planes, number)
+            value, lower, upper, phi = squared(bending, beta, omega, count)
+            frequency, low, high = np.sqrt(value), np.sqrt(lower), np.sqrt(upper)
+            reach = np.maximum(high - frequency, frequency - low) / frequency
+            parts.append(part(bending.shape, frequency, phi, reach))
+        return union(parts, omega, elements, count, perf_counter() - start)
+
+
+CODE: Code = SouthwellEquation()

@@ -1,0 +1,120 @@
+"""What the closed forms share: a straight blade at quadrature points, its tension, and which blades are not one."""
+
+from dataclasses import dataclass
+from importlib.metadata import version as installed
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PPoly
+
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, clamped, coupled, sample, straight
+from ..protocol.interface import CodeError
+from .spectral import gauss, intervals
+
+Array = NDArray[np.float64]
+
+LEVELS: tuple[int, ...] = (8, 16, 32)
+"""Terms in each interval. A uniform beam, each plane: 8 give mode 3 to 1e-6, 16 mode 5 to 1e-10, 32 mode 10 to rounding."""
+
+MANY = 8
+"""Intervals beyond which each is so short that fewer terms do: the fewest but five, twice as many at the finest."""
+
+EXTRA = 8
+"""Gauss points beyond those that polynomial integrands need, for the twist's sines and the steady stretch's quotients."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight blade at quadrature points, the last of which is the tip and stands for the tip mass.
+
+    Attributes:
+        ends: (k+1,) of the intervals within which all is smooth, m.
+        s: (q,) arc lengths, m.
+        weight: (q,) length each stands for, m; 0 at the tip.
+        sections: properties at ``s``.
+        mass, I_x, I_y, I_z: (q,) of what each stands for, kg and kg m².
+    """
+
+    ends: Array
+    s: Array
+    weight: Array
+    sections: Sections
+    mass: Array
+    I_x: Array
+    I_y: Array
+    I_z: Array
+
+
+def terms(blade: Blade, level: int) -> int:
+    """Polynomials in each interval at a level of refinement: as many as the level says, or fewer of a blade of many kinks."""
+    if len(intervals(blade)) - 1 <= MANY:
+        return level
+    return round(5.0 * np.sqrt(level / LEVELS[0]))
+
+
+def line(blade: Blade, terms: int) -> Line:
+    """The blade at the quadrature points that ``terms`` polynomials an interval need."""
+    ends = intervals(blade)
+    s, weight = gauss(ends, terms + EXTRA)
+    s, weight = np.append(s, blade.length), np.append(weight, 0.0)
+    at = sample(blade, s)
+    lumps = np.diagonal(blade.tip_mass)
+    mass, I_x, I_y, I_z = (weight * per_length for per_length in (at.mass, at.I_x, at.I_y, at.I_z))
+    for inertia, lump in zip((mass, I_x, I_y, I_z), (lumps[0], *lumps[3:]), strict=True):
+        inertia[-1] = lump
+    return Line(ends, s, weight, at, mass, I_x, I_y, I_z)
+
+
+def tension(blade: Blade, s: Array) -> Array:
+    """Centrifugal tension (q,) of the undeformed blade over Ω², kg m: ``∫ m (R + s) ds`` from ``s`` to the tip."""
+    start, m = blade.stations[:-1], blade.mass[:, 0, 0]
+    slope = np.diff(m) / np.diff(blade.stations)
+    radius = blade.hub_radius + start
+    moment = PPoly([slope, m[:-1] + slope * radius, m[:-1] * radius], blade.stations).antiderivative()
+    return moment(blade.length) - moment(s) + blade.tip_mass[0, 0] * (blade.hub_radius + blade.length)
+
+
+def refusal(blade: Blade, *, twist: bool, stretch: bool, tip_inertia: bool) -> str | None:
+    """Why a straight Euler–Bernoulli beam cannot be this blade, or None.
+
+    Args:
+        blade: the blade.
+        twist: whether the code takes twist and pitch.
+        stretch: whether it needs a finite axial stiffness.
+        tip_inertia: whether it takes a tip mass with moments of inertia.
+    """
+    rigid = {int(strain) for strain in np.argwhere(np.isinf(blade.stiffness))[:, 1]}
+    lump = np.diagonal(blade.tip_mass)
+    masses = np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3]
+    reasons: tuple[tuple[object, str], ...] = (
+        (not clamped(blade), "the root is not clamped: this code holds it"),
+        (coupled(blade), "the sections couple (offset centres, or bend-twist); this beam takes uncoupled ones"),
+        (not straight(blade), "the blade is prebent or swept; this beam is straight"),
+        (blade.precone != 0, f"precone {blade.precone:g} rad bends the steady state; this beam turns in its own plane"),
+        (not twist and blade.twist.any(), "the blade is twisted; this code keeps the two bending planes apart"),
+        (not twist and blade.pitch != 0, f"pitch {blade.pitch:g} rad; this code keeps the two bending planes apart"),
+        (not {SHEAR_Y, SHEAR_Z} <= rigid, "the sections are flexible in shear; this beam is Euler–Bernoulli's"),
+        (rigid & {BEND_Y, BEND_Z}, "a bending stiffness is infinite; this beam bends in both planes"),
+        (stretch and AXIAL in rigid, "the axial stiffness is infinite; this beam stretches"),
+        (
+            not all(np.allclose(m, m[..., :1], rtol=1e-12) for m in (masses, lump[:3])),
+            "the mass differs with the direction of motion",
+        ),
+        (
+            not np.allclose(blade.tip_mass, np.diag(lump), rtol=0, atol=1e-12 * lump.max()),
+            "the tip mass is off the axis; this beam carries it on the axis",
+        ),
+        (not tip_inertia and lump[3:].any(), "the tip mass has moments of inertia; this code takes a point mass"),
+    )
+    return next((reason for applies, reason in reasons if applies), None)
+
+
+def refuse(reason: str | None) -> None:
+    """Raise ``CodeError`` if there is a reason to."""
+    if reason:
+        raise CodeError(reason)
+
+
+def version() -> str:
+    """Of the closed forms: this package's own, for they need nothing foreign."""
+    return f"southwell {installed('southwell')}"

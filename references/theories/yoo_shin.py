@@ -1,0 +1,91 @@
+"""Yoo and Shin's rotating cantilever: bending coupled with stretch by the Coriolis force, linear in hybrid variables.
+
+The stretch s of the arc replaces the axial displacement, ``u = s − ∫ v′² / 2``: the strain energy is then quadratic, and
+the centrifugal stiffening comes out of the kinetic energy. For small motions, with T the tension of the straight blade,
+
+    chordwise:  m v̈ + 2 Ω m ṡ − Ω² m v + (E I_z v″)″ − (T v′)′ = 0
+    stretch:    m s̈ − 2 Ω m v̇ − Ω² m s − (E A s′)′ = 0,              T(s) = Ω² ∫ₛ m (R + s) ds
+    flapwise:   m ẅ + (E I_y w″)″ − (T w′)′ = 0
+
+(H. H. Yoo and S. H. Shin, "Vibration analysis of rotating cantilever beams", J. Sound Vib. 212 (1998) 807–828, there for
+uniform beams; here properties may vary along the span.) Rayleigh–Ritz with the polynomials of ``spectral``.
+
+The theory is linear in s: the steady stretch is not followed. It has none at all from the speed at which Ω² m outgrows the
+axial stiffness (``γ = α π/2`` for a uniform beam), and the code then says so.
+"""
+
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import Model
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import Code, Shares
+from .assumed_modes import bendings
+from .ritz import X, Y, apart, coupled_modes, integral, part, shape_of, skew, stationary_modes, union
+from .spectral import clamped, pinned
+from .straight_beam import LEVELS, line, refusal, refuse, terms, version
+
+Array = NDArray[np.float64]
+
+
+def chordwise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Array, Array]:
+    """M, C, K (2n, 2n) of stretch and chordwise bending at ``omega`` (rad/s), and their coordinates' shape (21, 4, 2n)."""
+    at = line(blade, terms)
+    s, strain, _ = pinned(at.ends, terms, at.s)
+    v = clamped(at.ends, terms, at.s)[0]
+    bending, _ = bendings(blade, terms)
+    inertia = integral(at.mass, s)
+    stretching = integral(at.weight * at.sections.EA, strain) - omega**2 * inertia
+    where = STATIONS * blade.length
+    return (
+        apart(inertia, bending.mass),
+        skew(2 * omega * integral(at.mass, v, s)),
+        apart(stretching, bending.stiffness(omega)),
+        shape_of([(X, pinned(at.ends, terms, where)[0]), (Y, clamped(at.ends, terms, where)[0])]),
+    )
+
+
+class YooShin:
+    """Chordwise bending with stretch, and flapwise bending; uniform or varying, untwisted.
+
+    It leaves out rotary inertia and the change of the steady state's radius and tension by its own stretch.
+    """
+
+    name = "yoo-shin"
+    title = "Yoo and Shin (1998), Rayleigh–Ritz"
+    shares: Shares = "nothing"
+    model = Model(prestretch=False, rotary_inertia=False)
+    levels = LEVELS
+    order = 0
+    hint = ""
+
+    def version(self) -> str | None:
+        """Of this package."""
+        return version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """Why the blade is not this beam."""
+        return refusal(blade, twist=False, stretch=True, tip_inertia=False)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes with ``elements`` polynomials a field in each interval (see ``references.interface``).
+
+        Raises:
+            CodeError: also beyond the speed up to which the blade resists its own stretching.
+        """
+        refuse(self.unsupported(blade))
+        start = perf_counter()
+        number = terms(blade, elements)
+        M, C, K, shape = chordwise(blade, omega, number)
+        _, flap = bendings(blade, number)
+        parts = (
+            part(shape, *coupled_modes(M, C, K, count)),
+            part(flap.shape, *stationary_modes(flap.mass, flap.stiffness(omega))),
+        )
+        return union(parts, omega, elements, count, perf_counter() - start)
+
+
+CODE: Code = YooShin()

@@ -1,0 +1,1 @@
+"""A Campbell diagram as figures, tables and CSV."""

@@ -1,0 +1,78 @@
+"""A Campbell diagram's numbers as CSV, in SI units."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...cases.campbell.diagram import Campbell
+from ...core.participation import FAMILIES
+
+
+def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
+    """``campbell.csv``: a row a mode and speed; ``resonances.csv``, ``margins.csv``, ``encounters.csv``. SI units.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    tracks = diagram.tracks
+    lines = [
+        (
+            k + 1,
+            repr(float(tracks.omega[k])),
+            f"{tracks.omega[k] * 30 / np.pi:.9g}",
+            int(tracks.asked[k]),
+            t + 1,
+            diagram.label(t),
+            int(tracks.place[k, t]) + 1,
+            repr(float(tracks.frequencies[k, t])),
+            f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
+            *[f"{share:.6f}" for share in diagram.shares[k, t]],
+            f"{tracks.mac[k, t]:.6f}" if np.isfinite(tracks.mac[k, t]) else "",
+        )
+        for k in range(len(tracks.omega))
+        for t in range(tracks.count)
+        if tracks.place[k, t] >= 0
+    ]
+    speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
+    columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz", *FAMILIES, "mac_with_speed_before"]
+    resonances = [
+        (diagram.label_at(r.track, r.omega), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
+        for r in diagram.resonances
+    ]
+    margins = [
+        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, int(m.kept)) for m in diagram.margins
+    ]
+    met = [
+        (
+            e.kind,
+            e.omega,
+            e.frequency,
+            e.gap,
+            *[diagram.label(t) for t in e.tracks],
+            e.exchanged,
+            *e.window,
+            int(e.whole),
+        )
+        for e in diagram.encounters
+    ]
+    window = ("from_rad_s", "to_rad_s")
+    files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
+        "campbell.csv": (columns, lines),
+        "resonances.csv": (("name", "per_rev", "omega_rad_s", "frequency_rad_s", "from_operating_range"), resonances),
+        "margins.csv": (("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "kept"), margins),
+        "encounters.csv": (
+            ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s", "lower", "upper", "exchanged", *window, "whole"),
+            met,
+        ),
+    }
+    out = []
+    for name, (heads, rows) in files.items():
+        path = folder / name
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(heads)
+            writer.writerows(rows)
+        out.append(path)
+    return tuple(out)

@@ -1,0 +1,156 @@
+"""The Campbell diagram as a figure: modes coloured by what moves in them, n per revolution behind, trouble in red."""
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from ...cases.campbell.diagram import Campbell
+from ...core.participation import FAMILIES
+from ..shared.style import MUTED, WIDTH, beside, house, key, title
+from ..shared.units import Units
+from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
+
+PURE = 0.85
+"""From this share on a stretch of line has its family's dashes, below it is solid and blended."""
+
+SQUEEZED = 0.5
+"""Of the height: what n per revolution reaches gets a scale of its own where it would have less than this."""
+
+LOWER, GAP = 0.6, 0.04
+"""Of the height, for that scale, and between the two."""
+
+LETTER = 0.066
+"""Width of a letter of the labels at the lines' ends, inches."""
+
+
+def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
+    """The diagram.
+
+    Lines are the modes; each stretch has the colour of what moves in it there, so that a veering shows as two lines that trade
+    colours. The operating range is shaded. Where a mode is nearer to n per revolution than the margin within that range, it
+    is underlaid in red; the same deserves a look in the table of margins. Where n per revolution reaches only the lowest of
+    many modes, those have a scale of their own, and the rest lies above it on a coarser one.
+    """
+    with house():
+        low, height = 0.95, 5.9
+        figure = Figure((WIDTH, height))
+        longest = max(len(_label(diagram, t, units)) for t in range(diagram.tracks.count))
+        room = (0.15 + LETTER * max(longest, 18)) / WIDTH
+        left, bottom, width, tall = 0.07, low / height, 0.93 - room, 1 - (low + 0.66) / height
+        ranges = _ranges(diagram, units)
+        if len(ranges) == 1:
+            panels = [figure.add_axes((left, bottom, width, tall))]
+        else:
+            panels = [
+                figure.add_axes((left, bottom, width, LOWER * tall)),
+                figure.add_axes((left, bottom + (LOWER + GAP) * tall, width, (1 - LOWER - GAP) * tall)),
+            ]
+        for axes, limits in zip(panels, ranges, strict=True):
+            _panel(axes, diagram, units, limits)
+        lowest, highest = panels[0], panels[-1]
+        rays(lowest, diagram, units)
+        band_label(highest, diagram, units)
+        highest.annotate(
+            f"{units.frequency} at {diagram.wanted.speeds[-1] * units.speeds:.4g} {units.speed}",
+            (1.0, 1.0),
+            (6, 6),
+            "axes fraction",
+            "offset points",
+            size=7.5,
+            color=MUTED,
+        )
+        lowest.set_xlabel(units.speed_label, labelpad=3)
+        lowest.set_ylabel(units.frequency_label)
+        for axes in panels[1:]:
+            axes.spines["bottom"].set_visible(False)
+            axes.tick_params(bottom=False, labelbottom=False)
+        title(figure, heading, _below(diagram, units))
+        handles = legend(diagram)
+        key(figure, handles, 0.07, across=-(-len(handles) // (1 + (len(handles) > 5))))
+    return figure
+
+
+def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
+    """Of frequencies, from below: one, or two where the rays stay in the lower part of what there is."""
+    tracks, wanted = diagram.tracks, diagram.wanted
+    top = 1.06 * float(np.nanmax(tracks.frequencies))
+    ray = max(wanted.per_rev, default=0) * wanted.speeds[-1]
+    highest = np.nanmax(tracks.frequencies, axis=0)
+    reached = highest[np.nanmin(tracks.frequencies, axis=0) < 1.1 * ray]
+    split = 1.1 * max(ray, float(reached.max(initial=0.0)))
+    above = np.sort(np.nanmin(tracks.frequencies, axis=0))
+    if not len(reached) or split > SQUEEZED * top or not (above > split).any():
+        return [(0.0, top * units.frequencies)]
+    top = highest.max() + 0.18 * (highest.max() - split)  # room for what is written there
+    return [(0.0, split * units.frequencies), (split * units.frequencies, float(top) * units.frequencies)]
+
+
+def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, float]) -> None:
+    """The modes within limits of frequency, labelled at their right ends."""
+    speeds = np.array(diagram.wanted.speeds) * units.speeds
+    axes.set_xlim(speeds[0], speeds[-1])
+    axes.set_ylim(*limits)
+    band(axes, diagram, units)
+    ends = [end for t in range(diagram.tracks.count) for end in _mode(axes, diagram, t, units)]
+    marks(axes, diagram, units)
+    beside(axes, [end for end in ends if limits[0] < end[0] <= limits[1]])
+
+
+def _below(diagram: Campbell, units: Units) -> str:
+    wanted = diagram.wanted
+    words = [f"{len(wanted.speeds)} speeds, {wanted.elements} elements"]
+    if len(diagram.tracks.omega) > len(wanted.speeds):
+        words[0] += f", {len(diagram.tracks.omega) - len(wanted.speeds)} speeds between where modes meet"
+    if wanted.operating:
+        low, high = (o * units.speeds for o in wanted.operating)
+        words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * wanted.margin:.3g} %")
+    if any(wanted.gravity):
+        words.append("under gravity")
+    if wanted.load:
+        words.append("under the load given")
+    return "; ".join(words)
+
+
+def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[float, str, str]]:
+    """One track, and the label at its end if it lasts to the right edge."""
+    tracks = diagram.tracks
+    k = np.flatnonzero(tracks.place[:, t] >= 0)
+    omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
+    x, y = _fine(omega, frequency)
+    shares = np.stack([np.interp(x, omega, diagram.shares[k, t, i]) for i in range(4)], axis=1)
+    near(axes, diagram, x, y, units)
+    points = np.stack([x * units.speeds, y * units.frequencies], axis=1)
+    for start, stop, pure in _stretches(shares):
+        part, share = points[start : stop + 1], shares[start : stop + 1]
+        if pure:
+            axes.plot(*part.T, color=blend(share.mean(0)), lw=1.8, ls=DASHES[pure], zorder=4)
+        else:
+            segments = np.stack([part[:-1], part[1:]], axis=1)
+            colours = [blend(s) for s in 0.5 * (share[1:] + share[:-1])]
+            axes.add_collection(
+                LineCollection(list(segments), colors=colours, linewidths=1.8, capstyle="round", zorder=4)
+            )
+    if k[-1] != len(tracks.omega) - 1:
+        return []
+    return [(points[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.shares[-1, t])))]
+
+
+def _label(diagram: Campbell, t: int, units: Units) -> str:
+    return f"{diagram.label(t)}  {diagram.tracks.frequencies[-1, t] * units.frequencies:.3f}"
+
+
+def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Between the points solved, straight in the squares (Southwell)."""
+    x = np.unique(np.concatenate([omega, np.linspace(omega[0], omega[-1], 241)]))
+    return x, np.sqrt(np.interp(x**2, omega**2, frequency**2))
+
+
+def _stretches(shares: np.ndarray) -> list[tuple[int, int, str]]:
+    """First and last point of stretches that are one motion, with its name, and of those between, without."""
+    kind = np.where(shares.max(1) >= PURE, shares.argmax(1), -1)
+    breaks = [0, *(np.flatnonzero(np.diff(kind)) + 1).tolist(), len(kind) - 1]
+    return [(a, b, FAMILIES[kind[a]] if kind[a] >= 0 else "") for a, b in pairwise(breaks) if b > a]

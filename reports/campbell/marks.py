@@ -1,0 +1,184 @@
+"""What lies around the modes of a Campbell diagram: the operating range, n per revolution, marks, the legend, the palette."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+
+from ...cases.campbell.diagram import Campbell
+from ...core.participation import FAMILIES, MIXED
+from ..shared.style import INK, MUTED
+from ..shared.units import Units
+
+FAMILY_COLOURS = {"flap": "#0072B2", "edge": "#D55E00", "torsion": "#009E73", "axial": "#CC79A7", MIXED: "#6b6b6b"}
+"""Of Okabe and Ito; a mixed mode's line is blended from its shares."""
+
+DASHES = {"flap": "-", "edge": (0, (7, 1.6)), "torsion": (0, (2, 1.2)), "axial": (0, (6, 1.5, 1.5, 1.5)), MIXED: "-"}
+
+RED, BAND, RAY = "#C1121F", "#EDF2F7", "#C9C9C9"
+
+
+def blend(share: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
+    """The colour of shares (4,): each family's, weighted by the square of its share so that a pure mode looks pure."""
+    weight = np.square(np.nan_to_num(np.asarray(share, float)))
+    colours = np.array([to_rgb(FAMILY_COLOURS[f]) for f in FAMILIES])
+    red, green, blue = weight @ colours / max(float(weight.sum()), 1e-12)
+    return float(red), float(green), float(blue)
+
+
+def band(axes: Axes, diagram: Campbell, units: Units) -> None:
+    """Shade the operating range."""
+    if diagram.wanted.operating:
+        low, high = (o * units.speeds for o in diagram.wanted.operating)
+        axes.axvspan(low, high, color=BAND, lw=0, zorder=0)
+
+
+def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
+    """Say at the top what the shade is."""
+    if diagram.wanted.operating:
+        low, high = (o * units.speeds for o in diagram.wanted.operating)
+        box = {"facecolor": BAND, "edgecolor": "none", "pad": 1.0}
+        axes.annotate(
+            "operating",
+            (0.5 * (low + high), 1.0),
+            (0, -4),
+            ("data", "axes fraction"),
+            "offset points",
+            ha="center",
+            va="top",
+            size=7.5,
+            color=MUTED,
+            bbox=box,
+            zorder=2,
+        )
+
+
+def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
+    """n per revolution, labelled where a ray leaves the diagram at the top; else on the ray, clear of the modes."""
+    (left, right), top = axes.get_xlim(), axes.get_ylim()[1]
+    slope = units.frequencies / units.speeds
+    for n in diagram.wanted.per_rev:
+        end = min(right, top / (n * slope))
+        if end <= left:
+            continue
+        axes.plot([left, end], [n * slope * left, n * slope * end], color=RAY, lw=0.7, zorder=1)
+        above = end < right * (1 - 1e-9)
+        at = end if above else _clear(diagram, n, left, right, top, units)
+        axes.annotate(
+            f"{n}P",
+            (at, n * slope * at),
+            (0, 3 if above else 0),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if above else "center",
+            size=7.5,
+            color=MUTED,
+            bbox=None if above else {"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+            zorder=2,
+            annotation_clip=False,
+        )
+
+
+def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, units: Units) -> float:
+    """A speed, as far right as can be, at which a label on a ray is clear of the modes and not in the operating range."""
+    tracks, wanted = diagram.tracks, diagram.wanted
+    high = wanted.operating[1] * units.speeds if wanted.operating else left
+    places = left + (right - left) * np.arange(0.97, 0.4, -0.02)
+    outside = places[places > high + 0.03 * (right - left)]
+    places = outside if len(outside) else places
+    modes = np.stack([np.interp(places / units.speeds, tracks.omega, f) for f in tracks.frequencies.T])
+    ray = n * places * units.frequencies / units.speeds
+    distance = np.nanmin(np.abs(modes * units.frequencies - ray), axis=0) / top
+    for e in diagram.encounters:  # and of what is written at a veering
+        over = ray / top - e.frequency * units.frequencies / top
+        near = np.abs(places - e.omega * units.speeds) < 0.09 * (right - left)
+        distance[near & (over > 0) & (over < 0.17) & (e.kind == "veering")] = 0.0
+    good = np.flatnonzero(distance > 0.035)
+    return float(places[good[0] if len(good) else distance.argmax()])
+
+
+def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:
+    """Underlay the stretches nearer to n per revolution than the margin, within the operating range."""
+    wanted = diagram.wanted
+    if not wanted.operating:
+        return
+    low, high = wanted.operating
+    grid = np.unique(np.concatenate([x[(x > low) & (x < high)], np.linspace(low, high, 401)]))
+    line = np.interp(grid, x, y)
+    rays = np.outer(wanted.per_rev, grid)
+    close = (np.abs(line - rays) < wanted.margin * rays).any(0)
+    shown = np.where(close, line, np.nan)
+    axes.plot(
+        grid * units.speeds, shown * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
+    )
+
+
+def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
+    """Resonances as circles, filled within the operating range; crossings, veerings and doubts by their signs."""
+    wanted = diagram.wanted
+    for r in diagram.resonances:
+        inside = wanted.operating is not None and r.apart == 0.0
+        axes.plot(
+            r.omega * units.speeds,
+            r.frequency * units.frequencies,
+            marker="o",
+            ms=5.5 if inside else 4.0,
+            mfc=RED if inside else "white",
+            mec="white" if inside else MUTED,
+            mew=0.8,
+            zorder=6,
+        )
+    for e in diagram.encounters:
+        at = (e.omega * units.speeds, e.frequency * units.frequencies)
+        veers = e.kind == "veering"
+        axes.plot(
+            *at, marker="D" if veers else "x", ms=7.5 if veers else 5, mfc="none", mec=INK, mew=1.0, zorder=5, ls=""
+        )
+        if veers:
+            text = f"veering\ngap {e.gap * units.frequencies:.2g} {units.frequency}"
+            axes.annotate(
+                text,
+                at,
+                (0, 13),
+                textcoords="offset points",
+                ha="center",
+                va="bottom",
+                size=7,
+                color=INK,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
+                zorder=5,
+            )
+    for d in diagram.tracks.doubts:
+        at = (d.omega[0] * units.speeds, d.frequency * units.frequencies)
+        axes.annotate("?", at, ha="center", va="center", size=10, weight="bold", color=RED, zorder=7)
+
+
+def legend(diagram: Campbell) -> list[Line2D]:
+    """What is in the diagram."""
+    present = {diagram.names[t].split()[0] for t in range(diagram.tracks.count)}
+    present |= {diagram.last[t].split()[0] for t in range(diagram.tracks.count)}
+    out: list[Line2D] = [
+        Line2D([], [], color=FAMILY_COLOURS[f], lw=1.8, ls=DASHES[f], label=f) for f in FAMILIES if f in present
+    ]
+    if MIXED in present:
+        out.append(Line2D([], [], color=blend([0.5, 0.5, 0.0, 0.0]), lw=1.8, label="mixed: blended"))
+    dot = {"marker": "o", "ls": "", "mew": 0.8}
+    if any(r.apart != 0.0 for r in diagram.resonances):
+        out.append(Line2D([], [], ms=4.0, mfc="white", mec=MUTED, label="resonance", **dot))
+    if any(r.apart == 0.0 for r in diagram.resonances):
+        out.append(Line2D([], [], ms=5.5, mfc=RED, mec="white", label="resonance in operation", **dot))
+    if any(not m.kept for m in diagram.margins):
+        out.append(
+            Line2D(
+                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.wanted.margin:.3g} % of n per rev"
+            )
+        )
+    for kind, marker, size in (("veering", "D", 6.5), ("crossing", "x", 5)):
+        if any(e.kind == kind for e in diagram.encounters):
+            label = f"{kind} of modes"
+            out.append(Line2D([], [], ls="", marker=marker, ms=size, mfc="none", mec=INK, mew=1.0, label=label))
+    if diagram.tracks.doubts:
+        out.append(Line2D([], [], ls="", marker="$?$", ms=6, color=RED, label="not clear which mode goes on"))
+    return out

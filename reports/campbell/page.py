@@ -1,0 +1,84 @@
+"""What ``southwell campbell`` leaves behind: figures as SVG and PNG, numbers as CSV, and a page that holds it all."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...cases.campbell.diagram import Campbell
+from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
+from ...cases.input.errors import CaseError
+from ..shared.style import house, save
+from ..shared.units import Units
+from . import csv_tables, encounters, shapes
+from . import figure as figures
+from . import tables as tables
+
+PAGE = "campbell.md"
+
+DPI = 180
+
+
+def write(diagram: Campbell, folder: Path, units: Units, command: str, about: Sequence[str] = ()) -> tuple[Path, ...]:
+    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything; ``about`` says where the blade is from.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    name, k = diagram.blade.name, shapes_at(diagram)
+    drawn = {
+        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed"),
+        "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
+    }
+    close = encounters.draw(diagram, units, f"{name}: where modes meet")
+    if close:
+        drawn["encounters"] = close
+    written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
+    written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
+    page = folder / PAGE
+    page.write_text(_page(diagram, k, units, command, about), encoding="utf-8")
+    return (page, *written)
+
+
+def shapes_at(diagram: Campbell) -> int:
+    """Number of the speed at which shapes are shown: the last, or the asked-for one nearest the operating range's end."""
+    wanted, omega = diagram.wanted, diagram.tracks.omega
+    target = wanted.operating[1] if wanted.operating else omega[-1]
+    asked = np.flatnonzero(diagram.tracks.asked)
+    return int(asked[np.abs(omega[asked] - target).argmin()])
+
+
+def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
+    vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
+    save(figure, vector)
+    with house():
+        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+    return vector, raster
+
+
+def _page(diagram: Campbell, k: int, units: Units, command: str, about: Sequence[str]) -> str:
+    omega = float(diagram.tracks.omega[k])
+    parts = [
+        f"# Campbell diagram of {diagram.blade.name}\n",
+        f"{tables.verdict(diagram, units)}\n",
+        "![Natural frequencies along rotor speed](campbell.svg)\n",
+        *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
+        *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],
+        *(["![Where modes meet](encounters.svg)\n"] if diagram.encounters else []),
+        f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
+        _elastodyn(diagram, k, units),
+        f"## How to have this again\n\n```\n{command}\n```\n",
+    ]
+    return "\n".join(parts)
+
+
+def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
+    omega = float(diagram.tracks.omega[k])
+    try:
+        found = polynomials(diagram.blade, omega, diagram.wanted.elements)
+    except CaseError as error:
+        return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
+    other = as_it_is(diagram.blade, diagram.tracks.solved[k])
+    return tables.markdown(shapes.coefficients(found, other, units, omega))

@@ -1,0 +1,166 @@
+"""Mode shapes: small multiples, a table of polynomial coefficients, and CSV."""
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...cases.campbell.diagram import Campbell
+from ...cases.campbell.elastodyn_shapes import POWERS, WANTED, Polynomial
+from ...core.modes import STATIONS
+from ...core.participation import gyration, in_blade_axes, spoken
+from ..shared.style import FAINT, MUTED, WIDTH, house, key, spread, title
+from ..shared.units import Units
+from .marks import DASHES, FAMILY_COLOURS
+from .tables import Sheet
+
+Complex = NDArray[np.complex128]
+
+ACROSS = 3
+
+FINE = np.linspace(0.0, 1.0, 141)
+"""Where lines are drawn: between the common stations by cubic splines."""
+
+LAGGING = 0.02
+"""A part of the motion a quarter period late is drawn if it is this large."""
+
+
+def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
+    """The tracks at speed number ``k`` in the order of frequency, and their shapes (m, 21, 4) in the blade's axes.
+
+    Each is scaled so that the largest displacement of any point is 1 m, at the phase at which the part that moves farthest is
+    real and, where it moves farthest, positive.
+    """
+    tracks = diagram.tracks
+    there = np.flatnonzero(tracks.place[k] >= 0)
+    order = there[np.argsort(tracks.place[k, there])]
+    shapes = in_blade_axes(tracks.solved[k], diagram.blade)[tracks.place[k, order]]
+    size = np.abs(shapes[:, :, :3])
+    farthest = size.reshape(len(order), -1).argmax(1)
+    station, column = np.unravel_index(farthest, size.shape[1:])
+    pivot = shapes[np.arange(len(order)), station, column]
+    return order.tolist(), shapes * (np.exp(-1j * np.angle(pivot)) / np.abs(pivot))[:, None, None]
+
+
+def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
+    """A panel a mode: flap, edge and torsion along the span, at speed number ``k``.
+
+    Torsion is drawn as what it moves, the turning times the blade's radius of gyration: the square of each line, weighted with
+    mass, is its share of the kinetic energy. Dotted: the part of a motion that lags by a quarter period.
+    """
+    order, shapes = scaled(diagram, k)
+    arm = gyration(diagram.blade)
+    rows = -(-len(order) // ACROSS)
+    with house():
+        low, panel = 0.75, 1.9
+        height = low + 0.5 + rows * panel
+        figure = Figure((WIDTH, height))
+        for place, t in enumerate(order):
+            row, column = divmod(place, ACROSS)
+            left = 0.065 + column * 0.325
+            bottom = (low + (rows - 1 - row) * panel + 0.12) / height
+            axes = figure.add_axes((left, bottom, 0.218, (panel - 0.72) / height))
+            _panel(axes, shapes[place], arm)
+            hertz = diagram.tracks.frequencies[k, t] * units.frequencies
+            name = diagram.local[k][t]
+            axes.set_title(f"{name}   {hertz:.4g} {units.frequency}", size=9.5, pad=17)
+            axes.annotate(
+                spoken(diagram.shares[k, t]),
+                (0, 1),
+                (0, 6),
+                "axes fraction",
+                "offset points",
+                size=7.5,
+                color=MUTED,
+            )
+            if row == rows - 1 or place + ACROSS >= len(order):
+                axes.set_xlabel("fraction of span", size=8, labelpad=2)
+            else:
+                axes.set_xticklabels([])
+        turns = f"torsion: turning × radius of gyration, {arm:.3g} m" if arm else "torsion has no mass in this blade"
+        title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest displacement 1; {turns}")
+        handles = [Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flap", "edge")]
+        if arm:
+            handles.append(
+                Line2D([], [], color=FAMILY_COLOURS["torsion"], ls=DASHES["torsion"], lw=1.6, label="torsion")
+            )
+        if np.abs(shapes.imag * [0.0, 1.0, 1.0, arm]).max() > LAGGING:
+            handles.append(Line2D([], [], color=MUTED, ls=(0, (1, 2)), lw=1.0, label="a quarter period late"))
+        key(figure, handles, 0.065)
+    return figure
+
+
+def _panel(axes: Axes, shape: Complex, arm: float) -> None:
+    axes.axhline(0.0, color=FAINT, lw=0.8, zorder=1)
+    axes.set_xlim(0, 1)
+    axes.set_ylim(-1.12, 1.12)
+    axes.set_yticks([-1, 0, 1])
+    axes.tick_params(labelsize=8)
+    ends: list[tuple[float, str]] = []
+    for family, line in (("flap", shape[:, 2]), ("edge", shape[:, 1]), ("torsion", arm * shape[:, 3])):
+        colour = FAMILY_COLOURS[family]
+        if family == "torsion" and not arm:
+            continue
+        smooth = CubicSpline(STATIONS, line)(FINE)
+        axes.plot(FINE, smooth.real, color=colour, lw=1.6, ls=DASHES[family], zorder=3, clip_on=False)
+        if np.abs(line.imag).max() > LAGGING:
+            axes.plot(FINE, smooth.imag, color=colour, lw=1.0, ls=(0, (1, 2)), zorder=2)
+        ends.append((float(line[-1].real), family))
+    heights = spread([y for y, _ in ends], 0.24)
+    for y, (value, family) in zip(heights, ends, strict=True):
+        axes.annotate(
+            f"{value:+.2f}".replace("-", "−") if abs(value) >= 0.005 else "0",
+            (1.0, y),
+            (4, 0),
+            textcoords="offset points",
+            va="center",
+            size=7.5,
+            color=FAMILY_COLOURS[family],
+            annotation_clip=False,
+        )
+
+
+def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
+    """ElastoDyn's coefficients, of the principal blade and, to compare, of the blade as it is."""
+    rows = []
+    for kind, group in (("for ElastoDyn", found), ("of the blade as it is", other)):
+        for p in group:
+            numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
+            frequency = f"{p.frequency * units.frequencies:.4f}"
+            rows.append((WANTED[p.mode], kind, frequency, *numbers, f"{100 * p.largest:.2f} %", f"{p.condition:.0f}"))
+    head = ("shape", "which", units.frequency, *[f"x{'⁰¹²³⁴⁵⁶'[n]}" for n in POWERS], "fit error", "condition")
+    note = (
+        f"φ(x) = Σ c xᵏ over the fraction x of the flexible blade, {units.at(omega)}; φ(1) = 1: the coefficients, as printed, "
+        "add up to 1. For ElastoDyn: of the blade without twist, pitch, torsion, shear, stretch, offsets and sectional "
+        "inertia, since ElastoDyn applies the structural twist to the shapes itself; of the blade as it is: displacement "
+        "out of the plane of rotation (flap) or in it (edge). Positive is ElastoDyn's positive deflection of the tip, "
+        "whichever way the mode was drawn. Fit error: largest, in parts of the tip's displacement; condition: how many "
+        "times an error of the shape can be larger in a coefficient."
+    )
+    return Sheet("ElastoDyn mode shapes", head, tuple(rows), note)
+
+
+def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
+    """``shapes.csv``: a row a mode and station; displacements in m (largest 1), turning in rad, in the blade's axes.
+
+    Raises:
+        OSError: if the file cannot be written.
+    """
+    order, shapes = scaled(diagram, k)
+    path = folder / "shapes.csv"
+    parts = [f"{what}_{part}" for what in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["name", "frequency_rad_s", "omega_rad_s", "fraction", "span_m", *parts])
+        for t, shape in zip(order, shapes, strict=True):
+            about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), float(diagram.tracks.omega[k]))
+            for x, motion in zip(STATIONS, shape, strict=True):
+                numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
+                writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    return path

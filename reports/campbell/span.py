@@ -1,0 +1,79 @@
+"""The figure of a blade along its span: mass, stiffness, twist, centres, and the reference axis."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ...cases.input.properties import Sections, sections
+from ...core.blade import Blade
+from ..shared.style import COLOURS, MUTED, WIDTH, house
+
+Array = NDArray[np.float64]
+Lines = list[tuple[str, Array]]
+
+
+def draw(blade: Blade) -> Figure:
+    """Six panels over the arc length: one quantity each, rigid stiffness said and not drawn."""
+    found = sections(blade)
+    y, z = (blade.curve[:, k] for k in (1, 2))
+    stiffness: Lines = [("flap EI", found.EI_flap), ("edge EI", found.EI_edge), ("torsion GJ", found.GJ)]
+    panels: list[tuple[str, str, Lines, bool]] = [
+        ("Mass", "kg/m", [("", blade.mass[:, 0, 0])], False),
+        ("Stiffness", "N m²", stiffness, True),
+        ("Axial stiffness EA", "N", [("", found.EA)], True),
+        ("Twist", "degrees, y towards z", [("", np.degrees(blade.twist))], False),
+        ("Centres, towards the leading edge", "m from the reference axis", _centres(found, 0), False),
+        (
+            "Reference axis",
+            "m from the blade's axis",
+            [("prebend z, downwind", z), ("sweep y, leading edge", y)],
+            False,
+        ),
+    ]
+    with house():
+        figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
+        figure.suptitle(f"{blade.name}: properties along the span", x=0.01, ha="left", fontweight="bold", fontsize=11.5)
+        for axes, (title, unit, lines, log) in zip(figure.subplots(3, 2).flat, panels, strict=True):
+            _panel(axes, blade.stations, lines, log)
+            axes.set_title(title)
+            axes.set_ylabel(unit)
+        for axes in figure.axes[-2:]:
+            axes.set_xlabel("arc length from the root, m")
+    return figure
+
+
+def _centres(found: Sections, k: int) -> Lines:
+    return [(name, getattr(found, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
+
+
+def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
+    dashes = ("-", (0, (5, 2)), (0, (1, 1.5)))
+    for k, (name, values) in enumerate(lines):
+        drawn = np.isfinite(values)
+        label = name if drawn.all() else f"{name} rigid".strip()
+        axes.plot(s[drawn], values[drawn], color=COLOURS[k], linestyle=dashes[k], linewidth=1.5, label=label)
+    shown = np.concatenate([v[np.isfinite(v)] for _, v in lines])
+    if log and shown.size:
+        axes.set_yscale("log")
+    elif not log and shown.size and np.abs(shown).max() < 1e-9:
+        axes.set_ylim(-1, 1)
+        axes.text(0.5, 0.6, "zero throughout", transform=axes.transAxes, ha="center", color=MUTED)
+    if not shown.size:
+        axes.set_yticks([])
+        axes.text(0.5, 0.5, "rigid", transform=axes.transAxes, ha="center", color=MUTED)
+    axes.set_xlim(0, s[-1])
+    if any(name for name, _ in lines):
+        axes.legend(loc="best", fontsize=8)
+
+
+def write(blade: Blade, folder: Path) -> list[Path]:
+    """Write ``span.svg`` and ``span.png``; the same blade gives the same bytes."""
+    figure = draw(blade)
+    paths = [folder / "span.svg", folder / "span.png"]
+    with house():
+        figure.savefig(paths[0], metadata={"Date": None})
+        figure.savefig(paths[1], dpi=150, metadata={"Software": None})
+    return paths

@@ -1,0 +1,228 @@
+"""The tables of a Campbell diagram, for the terminal and for Markdown."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from rich import box
+from rich.table import Table
+from tabulate import tabulate
+
+from ...cases.campbell.diagram import Campbell, Margin
+from ...core.participation import MIXED, spoken
+from ..shared.units import Units
+
+TOO_NEAR = "✘"
+
+STYLES = {"flap": "blue", "edge": "dark_orange3", "torsion": "green4", "axial": "magenta", MIXED: "purple"}
+"""Of a mode's name on the console."""
+
+_MODE = re.compile(rf"\b({'|'.join(STYLES)}) \d+′*")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table.
+
+    Attributes:
+        title: over it.
+        head: of its columns.
+        rows: as printed; a field that begins with ``TOO_NEAR`` is one to look at.
+        note: how to read it; empty if it needs none.
+    """
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+
+
+def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
+    """All tables that have something to say."""
+    every = (_modes, _margins, _resonances, _encounters, _doubts)
+    return tuple(s for s in (make(diagram, units) for make in every) if s.rows)
+
+
+def _modes(diagram: Campbell, units: Units) -> Sheet:
+    tracks, wanted = diagram.tracks, diagram.wanted
+    first, last = wanted.speeds[0], wanted.speeds[-1]
+    rows = []
+    for t in range(tracks.count):
+        k = np.flatnonzero(tracks.place[:, t] >= 0)
+        fit = diagram.southwell[t]
+        row = [diagram.label(t), spoken(diagram.shares[k[0], t])]
+        for end in (0, -1):
+            f = tracks.frequencies[end, t] * units.frequencies
+            row.append(f"{f:.4f}" if np.isfinite(f) else "–")
+        rise = tracks.frequencies[-1, t] / tracks.frequencies[0, t] - 1.0
+        row.append(f"{100 * rise:+.2f} %" if np.isfinite(rise) else "–")
+        row += [f"{fit.coefficient:.4g}", _small(fit.residual)] if fit else ["–", "–"]
+        rows.append(tuple(row))
+    frequency = units.frequency
+    at = _at(units, first)
+    head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "change")
+    note = (
+        f"Kinetic energy {at}: flap, edge and axial motion of the mass centres, torsion about them, in the blade's axes. "
+        "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
+    )
+    return Sheet("Modes", (*head, "φ", "residual"), tuple(rows), note)
+
+
+def _at(units: Units, omega: float) -> str:
+    return f"at {units.at(omega)}" if omega else units.at(omega)
+
+
+def _small(relative: float) -> str:
+    return f"{100 * relative:.2g} %" if relative >= 1e-6 else "< 0.0001 %"
+
+
+def _margins(diagram: Campbell, units: Units) -> Sheet:
+    wanted = diagram.wanted
+    if wanted.operating is None:
+        return Sheet("Margins", (), ())
+    low, high = wanted.operating
+    rows = []
+    for t in range(diagram.tracks.count):
+        mine = {m.per_rev: m for m in diagram.margins if m.track == t}
+        fields = [_margin(mine[n]) if mine else "not followed so far" for n in wanted.per_rev]
+        rows.append((diagram.label_over(t, low, high), *fields))
+    note = (
+        f"How far a mode is above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
+        f"(far: ten times). {TOO_NEAR}: nearer than {100 * wanted.margin:.3g} % at some speed; a change of sign: they meet."
+    )
+    return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in wanted.per_rev]), tuple(rows), note)
+
+
+def _margin(m: Margin) -> str:
+    ends = " … ".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
+    return ends if m.kept else f"{TOO_NEAR} {ends}"
+
+
+def _percent(value: float) -> str:
+    return "far" if value >= 10 else f"{100 * value:+.{0 if abs(value) >= 0.1 else 1}f}".replace("-", "−")
+
+
+def _resonances(diagram: Campbell, units: Units) -> Sheet:
+    rows = []
+    for r in diagram.resonances:
+        row = [
+            diagram.label_at(r.track, r.omega),
+            f"{r.per_rev}P",
+            f"{r.omega * units.speeds:.3f}",
+            f"{r.frequency * units.frequencies:.4f}",
+        ]
+        if r.apart is not None:
+            row.append(f"{TOO_NEAR} within" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
+        rows.append(tuple(row))
+    head = ["mode", "meets", units.speed_label, units.frequency_label]
+    note = ""
+    if diagram.wanted.operating:
+        head.append("from the operating range")
+        note = "Last column: the speed's distance from the nearer end of the operating range, in parts of that end."
+    return Sheet("Where a mode meets n per revolution", tuple(head), tuple(rows), note)
+
+
+def _encounters(diagram: Campbell, units: Units) -> Sheet:
+    rows = []
+    for e in diagram.encounters:
+        gap = f"{e.gap * units.frequencies:.3g}"
+        lower, upper = (diagram.label_at(t, e.window[0]) for t in e.tracks)
+        rows.append(
+            (
+                e.kind,
+                f"{e.omega * units.speeds:.3f}",
+                f"{e.frequency * units.frequencies:.4f}",
+                gap if e.kind == "veering" else f"< {gap}" if e.gap * units.frequencies >= 1e-9 else "none",
+                f"{lower} × {upper}",
+                f"{100 * e.exchanged:.0f} %" + ("" if e.whole else ", the rest beyond the speeds or others in between"),
+                f"{spoken(e.before[0])} → {spoken(e.after[0])}",
+            )
+        )
+    head = (
+        "what",
+        units.speed_label,
+        units.frequency_label,
+        f"gap, {units.frequency}",
+        "modes",
+        "exchanged",
+        "the lower first",
+    )
+    note = (
+        "Veering: two modes come near, trade shapes and part; a crossing's gap, if it has one, is narrower than given. "
+        "Exchanged: of the shapes, from one side to the other; last: the kinetic energy of the first mode, before → after."
+    )
+    return Sheet("Modes that meet", head, tuple(rows), note)
+
+
+def _doubts(diagram: Campbell, units: Units) -> Sheet:
+    rows = tuple(
+        (
+            diagram.label(d.track),
+            f"{d.omega[0] * units.speeds:.4f} – {d.omega[1] * units.speeds:.4f}",
+            f"{d.frequency * units.frequencies:.4f}",
+            f"{d.mac:.2f}" if d.mac else "none",
+            f"{d.rival:.2f}",
+        )
+        for d in diagram.tracks.doubts
+    )
+    step = f"{diagram.tracks.smallest * units.speeds:.3g} {units.speed}"
+    head = ("mode", units.speed_label, units.frequency_label, "MAC with the one taken", "with another")
+    note = f"Which mode goes on is not clear even with the smallest step, {step}: the one taken may be the wrong one."
+    return Sheet("Not clear", head, rows, note)
+
+
+def terminal(sheet: Sheet) -> Table:
+    """For the console; what is too near is red."""
+    out = Table(
+        box=box.SIMPLE_HEAD,
+        title=sheet.title,
+        title_justify="left",
+        title_style="bold",
+        caption=sheet.note or None,
+        caption_justify="left",
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
+    for k, head in enumerate(sheet.head):
+        out.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
+    for row in sheet.rows:
+        out.add_row(*[_styled(field) for field in row])
+    return out
+
+
+def _styled(field: str) -> str:
+    if field.startswith(TOO_NEAR):
+        return f"[bold red]{field}[/]"
+    return _MODE.sub(lambda found: f"[{STYLES[found[1]]}]{found[0]}[/]", field)
+
+
+def markdown(sheet: Sheet) -> str:
+    """A heading, the table, and how to read it; what is too near is bold."""
+    rows = [[f"**{field}**" if field.startswith(TOO_NEAR) else field for field in row] for row in sheet.rows]
+    table = tabulate(rows, [h.replace("|", "\\|") for h in sheet.head], tablefmt="pipe", disable_numparse=True)
+    note = f"\n\n{sheet.note}" if sheet.note else ""
+    return f"## {sheet.title}\n\n{table}{note}\n"
+
+
+def verdict(diagram: Campbell, units: Units) -> str:
+    """The answer in one line."""
+    wanted = diagram.wanted
+    if wanted.operating is None:
+        return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so none is judged."
+    low, high = wanted.operating
+    over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
+    broken = [m for m in diagram.margins if not m.kept]
+    judged = {m.track for m in diagram.margins}
+    rest = [diagram.label_over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
+    but = f" Not judged, since not followed over all of it: {', '.join(rest)}." if rest else ""
+    if not broken:
+        every = "Every other mode" if rest else "Every mode"
+        return f"{every} keeps {100 * wanted.margin:.3g} % from n per revolution over {over}.{but}"
+    said = []
+    for t in dict.fromkeys(m.track for m in broken):
+        mine = [m for m in broken if m.track == t]
+        met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
+        near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
+        words = [f"meets {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
+        said.append(f"{diagram.label_over(t, low, high)} {' and '.join(w for w in words if w)}")
+    return f"{TOO_NEAR} Over {over}, {'; '.join(said)}.{but}"

@@ -1,0 +1,214 @@
+"""What a gate found, in words and tables: for the terminal, as Markdown, and as GitHub's annotations.
+
+Frequencies and speeds are in rad/s, as they are kept; digits enough to show a change of 1e-9.
+"""
+
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+
+from rich import box
+from rich.console import RenderableType
+from rich.markup import escape
+from rich.table import Table
+
+from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone, Timing
+from ...cases.regression.history import Caught, Entry, Point
+from ..shared.markdown import plain, table
+
+ROWS = 50
+"""Of a table in Markdown, most: a job's summary has its limits, and so has a reader."""
+
+Row = dict[str, str]
+
+
+def verdict(found: Comparison, strict: bool) -> str:
+    """One line: passed or not, and why."""
+    counts = {
+        "worse": len(found.worse),
+        "gone": len(found.gone),
+        "controls no longer caught": len(found.uncaught),
+        "mistakes in core missed": len(found.missed),
+        "moved": len(found.moved),
+        "better": len(found.better),
+        "new": len(found.new),
+    }
+    told = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
+    sign = "✔ gate passed" if found.passed(strict) else "✘ gate failed"
+    return f"{sign}: {len(found.after.cells)} cells against {_named(found.before)}: {told}"
+
+
+def _named(entry: Entry) -> str:
+    return f"{entry.commit} ({entry.date})" if entry.date else entry.commit
+
+
+def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
+    """Title and rows of each table that has any, what counts against the run first."""
+    every = [
+        ("Worse", [_change(c) for c in found.worse]),
+        ("Gone", _gone(found.gone)),
+        ("Mistakes in core that nobody catches any more", [_uncaught(c) for c in found.uncaught]),
+        ("Mistakes in core that this run must catch, and does not", [{"mistake": name} for name in found.missed]),
+        ("Moved", [_change(c) for c in found.moved]),
+        ("Better", [_change(c) for c in found.better]),
+        ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
+        (_times(found), [_timing(t) for t in found.timings]),
+    ]
+    return [(title, rows) for title, rows in every if rows]
+
+
+def _times(found: Comparison) -> str:
+    same = found.before.machine == found.after.machine
+    return "Times, which decide nothing" + ("" if same else "; not the same machine, or not known to be")
+
+
+def _place(point: Point) -> Row:
+    family = f" ({point.family})" if point.family else ""
+    mode = f"{point.mode}{family}" if point.mode else "none"
+    return {"case": point.case, "code": point.code, "speed, rad/s": f"{point.omega:.6g}", "mode": mode}
+
+
+def _change(change: Change) -> Row:
+    before, after = change.before, change.after
+    was = before.verdict if before else "not there"
+    return _place(after) | {
+        "from, rad/s": _digits(before.frequency if before else None),
+        "to, rad/s": _digits(after.frequency),
+        "change": "" if change.moved is None else f"{change.moved:+.1e}",
+        "verdict": after.verdict if was == after.verdict else f"{was} → {after.verdict}",
+    }
+
+
+def _digits(frequency: float | None) -> str:
+    return "none" if frequency is None else f"{frequency:.12g}"
+
+
+def _gone(gone: Iterable[Gone]) -> list[Row]:
+    """A row for each case and code: a code that is not installed is gone everywhere."""
+    rows = []
+    for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
+        members = list(group)
+        instead = sorted({g.instead or "nothing" for g in members})
+        rows.append(
+            {
+                "case": case,
+                "code": code,
+                "answers": str(len(members)),
+                "speeds, rad/s": ", ".join(f"{w:.6g}" for w in sorted({g.point.omega for g in members})),
+                "modes": ", ".join(str(k) for k in sorted({g.point.mode for g in members})),
+                "now": ", ".join(instead),
+            }
+        )
+    return rows
+
+
+def _column(gone: Gone) -> tuple[str, str]:
+    return gone.point.case, gone.point.code
+
+
+def _uncaught(control: Caught) -> Row:
+    return {
+        "mistake": control.control,
+        "case": control.case,
+        "speed, rad/s": f"{control.omega:.6g}",
+        "was caught by": ", ".join(control.caught),
+    }
+
+
+def _timing(timing: Timing) -> Row:
+    low, middle, high = timing.ratios
+    earlier = f"{timing.earlier[0]:.3g} to {timing.earlier[1]:.3g}" if timing.earlier else "not known"
+    return {
+        "code": timing.code,
+        "from, s": f"{timing.before:.3g}",
+        "to, s": f"{timing.after:.3g}",
+        "ratio, median": f"{middle:.2f}",
+        "quartiles": f"{low:.2f} to {high:.2f}",
+        "earlier runs here, s": earlier,
+        "change": "within noise" if timing.noise else ("slower" if middle > 1 else "faster"),
+    }
+
+
+def tables(found: Comparison) -> Iterator[RenderableType]:
+    """All but the verdict, for the terminal or a log."""
+    for title, rows in sections(found):
+        shown = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
+        for head in rows[0]:
+            shown.add_column(head, overflow="fold")
+        for row in rows:
+            shown.add_row(*map(escape, row.values()))
+        yield shown
+
+
+def markdown(found: Comparison, strict: bool) -> str:
+    """The same for a job's summary, long tables cut short, and said to be."""
+    blocks = [f"**{plain(verdict(found, strict))}**"]
+    for title, rows in sections(found):
+        shown = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
+        cut = f"\n\n… and {len(rows) - ROWS} more: see the log." if len(rows) > ROWS else ""
+        blocks.append(f"#### {title}\n\n{table(shown)}{cut}")
+    return "\n\n".join(blocks) + "\n"
+
+
+def annotations(found: Comparison, folder: Path) -> list[str]:
+    """GitHub's workflow commands: an error on the file of every case that got worse, a warning where a miss is an old one.
+
+    One for each case and code, for GitHub shows ten of a step. ``folder``: where case files are looked for.
+    """
+    files = case_files(folder)
+    worse = {c.after.key for c in found.worse}
+    standing = [p for p in found.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
+    told = [("error", p.case, text) for p, text in _by_column([(c.after, _became(c)) for c in found.worse])]
+    told += [
+        ("error", r["case"], f"{r['code']}: {r['answers']} answers gone, now {r['now']}") for r in _gone(found.gone)
+    ]
+    for control, case in dict.fromkeys((c.control, c.case) for c in found.uncaught):
+        told.append(("error", case, f"{control}: a mistake in core that nobody catches any more"))
+    told += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing])]
+    return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in told]
+
+
+def _became(change: Change) -> str:
+    was = change.before.verdict if change.before else "not there"
+    return f"{was} → {change.after.verdict}, {_digits(change.after.frequency)} rad/s"
+
+
+def _by_column(told: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
+    """The first of each case and code, and how many more there are."""
+    groups: dict[tuple[str, str], list[tuple[Point, str]]] = {}
+    for point, text in told:
+        groups.setdefault((point.case, point.code), []).append((point, text))
+    out = []
+    for (point, text), *rest in groups.values():
+        more = f"; and {len(rest)} more" if rest else ""
+        out.append((point, f"{point.code}: mode {point.mode} at {point.omega:.6g} rad/s: {text}{more}"))
+    return out
+
+
+def _command(level: str, file: Path | None, case: str, text: str) -> str:
+    """A workflow command; its properties and message escaped as GitHub's toolkit does (actions/toolkit, command.ts)."""
+    properties = {"file": file.as_posix()} if file else {}
+    properties |= {"title": case}
+    joined = ",".join(f"{k}={_escaped(v).replace(':', '%3A').replace(',', '%2C')}" for k, v in properties.items())
+    return f"::{level} {joined}::{_escaped(text)}"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def case_files(folder: Path) -> dict[str, Path]:
+    """Case files beneath a folder, by the name that stands in them; hidden folders, and files that are no TOML, left out."""
+    found: dict[str, Path] = {}
+    for path in sorted(folder.rglob("*.toml"), key=lambda p: (len(p.parts), p)):
+        inside = path.relative_to(folder)
+        if any(part.startswith(".") for part in inside.parts):
+            continue
+        try:
+            name = tomllib.loads(path.read_text(encoding="utf-8")).get("name")
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError):
+            continue
+        if isinstance(name, str):
+            found.setdefault(name, inside)
+    return found

@@ -1,0 +1,105 @@
+"""A run as JUnit's XML, which every CI shows: a test case a cell, a suite a case's blade.
+
+Written by the standard library's ElementTree: five kinds of elements need no library of their own, and it escapes what is in
+them. Characters that XML has no way to write, as a crashed code may print, are replaced.
+"""
+
+import re
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from ...cases.judge.results import Cell, Run
+from ...cases.regression.gate import Comparison
+from ...cases.regression.history import Caught, Point
+from ..shared import summary
+
+FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 (section 2.2, Char) cannot hold."""
+
+SKIPPED = ("not run", "not applicable")
+
+
+def render(run: Run, found: Comparison | None = None, strict: bool = False) -> bytes:
+    """The document.
+
+    A cell fails if its verdict is a miss, or if a gate found it worse (``strict``: or moved); answers that are gone and
+    controls that are no longer caught are failed test cases of their own. A solution's time is shared by its modes.
+    """
+    findings = _findings(found, strict) if found else {}
+    root = Element("testsuites", name="southwell")
+    shared: dict[tuple[str, str, float], int] = {}
+    for c in run.cells:
+        shared[c.case, c.code, c.omega] = shared.get((c.case, c.code, c.omega), 0) + 1
+    for case in summary.cases(run):
+        suite = SubElement(root, "testsuite", name=_text(case))
+        for cell in (c for c in run.cells if c.case == case):
+            seconds = (cell.seconds or 0.0) / shared[cell.case, cell.code, cell.omega]
+            test = _test(suite, case, _name(cell.code, cell.mode, cell.family, cell.omega), seconds)
+            _judge(test, cell, findings.get((cell.case, cell.code, cell.omega, cell.mode), ""))
+    if found:
+        _regressions(root, found)
+    for suite in root:
+        suite.set("tests", str(len(suite)))
+        for kind in ("failure", "skipped"):
+            suite.set("failures" if kind == "failure" else kind, str(len(suite.findall(f"testcase/{kind}"))))
+        suite.set("errors", "0")
+    indent(root)
+    return tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, int], str]:
+    """What a gate has against cells that are there."""
+    told = {
+        c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in found.worse
+    }
+    for c in found.moved if strict else ():
+        if c.before:
+            told.setdefault(c.after.key, f"moved: {c.before.frequency!r} → {c.after.frequency!r} rad/s")
+    return told
+
+
+def _regressions(root: Element, found: Comparison) -> None:
+    """Test cases for what is there no more."""
+    if not (found.gone or found.uncaught):
+        return
+    suite = SubElement(root, "testsuite", name="against the earlier run")
+    for gone in found.gone:
+        p: Point = gone.point
+        test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega), 0.0)
+        _failed(test, "gone", f"the answer {p.frequency!r} rad/s is there no more; now {gone.instead or 'nothing'}")
+    for control in found.uncaught:
+        _lost(suite, control)
+
+
+def _lost(suite: Element, control: Caught) -> None:
+    test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s", 0.0)
+    _failed(test, "not caught", f"was caught by {', '.join(control.caught)}; nobody catches it now")
+
+
+def _name(code: str, mode: int, family: str, omega: float) -> str:
+    which = f"mode {mode} ({family})" if mode else "no answer"
+    return f"{code}: {which} at {omega:.6g} rad/s"
+
+
+def _test(suite: Element, case: str, name: str, seconds: float) -> Element:
+    return SubElement(suite, "testcase", classname=_text(case), name=_text(name), time=f"{seconds:.6f}")
+
+
+def _judge(test: Element, cell: Cell, finding: str) -> None:
+    size = summary.plus_minus(cell)
+    said = ": ".join(part for part in (cell.verdict, size, cell.reason) if part)
+    if finding:
+        _failed(test, finding.partition(":")[0], f"{finding}; {said}")
+    elif cell.verdict in summary.BAD:
+        _failed(test, cell.verdict, said)
+    elif cell.verdict in SKIPPED:
+        SubElement(test, "skipped", message=_text(said))
+    else:
+        SubElement(test, "system-out").text = _text(said)
+
+
+def _failed(test: Element, kind: str, message: str) -> None:
+    SubElement(test, "failure", type=_text(kind), message=_text(message)).text = _text(message)
+
+
+def _text(text: str) -> str:
+    return FORBIDDEN.sub("�", text)

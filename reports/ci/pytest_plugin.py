@@ -1,0 +1,264 @@
+"""The matrix in anyone's pytest: a mark with a solver makes a test of every blade, speed and mode.
+
+Registered as a ``pytest11`` entry point, so that it is there wherever the package is installed. Everything it needs is imported
+when a test has the mark.
+"""
+
+import fnmatch
+import shlex
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from ...cases.input.schema import Case, Variant
+    from ...cases.judge.results import Cell, Run
+    from ...cases.verify.user_solver import Yours
+
+MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
+
+HELP = (
+    f"{MARK}(solve, name, lacks, levels, order, unsupported, cases, target, known): a test of a solver for every blade, speed "
+    f"and mode; it takes the fixture {FIXTURE} and calls its check()"
+)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The command line's options."""
+    group = parser.getgroup("southwell", "natural frequencies of rotating blades")
+    group.addoption(
+        "--southwell-cases", metavar="A,B", help="only these cases, or case/blade, of those that the tests have"
+    )
+    group.addoption(
+        "--southwell-target", metavar="X", type=float, help="largest relative difference, instead of the cases'"
+    )
+    group.addoption(
+        "--southwell-report", metavar="DIR", type=Path, help="write report.md and results.jsonl into this folder"
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Names the mark; gathers results if a report is wanted, where there is one process that sees them all."""
+    config.addinivalue_line("markers", HELP)
+    folder = config.getoption("--southwell-report")
+    if folder and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Report(folder, config), "southwell-report")
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """One test: a solver, a blade, a speed (rad/s) and which of the modes that the case compares, from 1."""
+
+    yours: "Yours"
+    case: "Case"
+    variant: "Variant"
+    omega: float
+    mode: int
+
+    @property
+    def name(self) -> str:
+        """As in the test's name: ``park-cantilever-10rad_s-mode1``."""
+        return f"{self.variant.name}-{self.omega:.6g}rad_s-mode{self.mode}"
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """A test for every blade, speed and mode."""
+    if FIXTURE not in metafunc.fixturenames:
+        return
+    mark = metafunc.definition.get_closest_marker(MARK)
+    if mark is None:
+        raise pytest.UsageError(f"{metafunc.definition.nodeid}: takes {FIXTURE}, and has no mark {MARK}(solve=…)")
+    chosen = _chosen(metafunc.config, mark, metafunc.definition.nodeid)
+    metafunc.parametrize(FIXTURE, chosen, ids=[c.name for c in chosen], indirect=True)
+
+
+def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
+    from ...cases.input.errors import CaseError
+    from ...cases.input.library import select
+    from ...cases.verify.user_solver import Yours
+
+    told = config.getoption("--southwell-target")
+    try:
+        yours = Yours(*mark.args, **{**mark.kwargs, **({"target": told} if told else {})})
+        yours.model  # noqa: B018  (the names of effects are looked at here, once)
+    except TypeError as error:
+        raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
+    wanted = config.getoption("--southwell-cases")
+    try:
+        some = [select(n) for n in wanted.split(",")] if wanted else None
+        cases = [select(n) for n in yours.cases] or some or _all()
+        only = {v.name for c in some or cases for v in c.variants}
+    except CaseError as error:
+        raise pytest.UsageError(f"{where}: {error}") from error
+    return [
+        Chosen(yours, case, variant, omega, k)
+        for case in cases
+        for variant in case.variants
+        if variant.name in only
+        for omega in variant.speeds.tolist()
+        for k in range(1, case.text.compare.modes + 1)
+    ]
+
+
+def _all() -> "list[Case]":
+    """Every case whose files are there."""
+    from ...cases.input import library
+
+    absent = library.absent()
+    return [library.load(n) for n in library.names() if n not in absent]
+
+
+@dataclass(frozen=True)
+class CellUnderTest:
+    """What a test is given: one mode of one blade at one speed."""
+
+    chosen: Chosen
+    request: pytest.FixtureRequest
+    solved: dict[Any, Any]
+
+    def check(self) -> None:
+        """Fail unless the solver's frequency agrees with core, and with every printed number that core agrees with.
+
+        A difference that is known, by effects that the solver says it lacks or by its mark, is an expected failure (``xfail``);
+        a blade that it does not solve is skipped.
+        """
+        __tracebackhide__ = True
+        from ...cases.verify import user_solver
+
+        chosen = self.chosen
+        cells, levels = self._once(
+            "cells", lambda: user_solver.rows(chosen.yours, chosen.variant, chosen.case.text.compare)
+        )
+        mine = [c for c in cells if c.omega == chosen.omega and c.mode in (0, chosen.mode)]
+        here = [v for v in levels if v.omega == chosen.omega and v.mode == chosen.mode]
+        self.request.node.user_properties.append((PROPERTY, _packed(chosen, mine, here)))
+        known: list[str] = []
+        for cell in mine:
+            match cell.verdict:
+                case "not applicable":
+                    pytest.skip(cell.reason)
+                case "known difference":
+                    known.append(cell.reason)
+                case "fail" | "inconclusive":
+                    known.append(self._excuse(cell) or pytest.fail(self._told(cell), pytrace=False))
+        if known:
+            pytest.xfail("; ".join(dict.fromkeys(known)))
+
+    def _excuse(self, cell: "Cell") -> str:
+        """The cause of a known difference, if the mark names one that is large enough."""
+        from ...cases.judge.verdict import percent, unsigned
+
+        for pattern, (cause, most) in self.chosen.yours.known.items():
+            named = fnmatch.fnmatchcase(self.chosen.name, pattern) or fnmatch.fnmatchcase(cell.case, pattern)
+            if named and cell.difference is not None and abs(cell.difference) <= most:
+                return f"known, up to {unsigned(most)}: {cause}: {percent(cell.difference)}"
+        return ""
+
+    def _told(self, cell: "Cell") -> str:
+        """What a miss says: the numbers, the verdict, and the mistake it looks like."""
+        from ...cases.verify import controls
+        from ...cases.verify.user_solver import alike
+
+        where = f"{cell.case} at {cell.omega:.6g} rad/s, mode {cell.mode} ({cell.family})" if cell.mode else cell.case
+        answer = "no answer" if cell.frequency is None else f"{cell.frequency:.7g} rad/s"
+        right = "" if cell.reference is None else f", not {cell.reference:.7g}"
+        source = f" ({cell.code.partition(', ')[2]})" if cell.role == "table" else ""
+        compare, variant = self.chosen.case.text.compare, self.chosen.variant
+        like = (
+            ""
+            if cell.difference is None
+            else alike(cell, self._once("mistakes", partial(controls.solve, variant, compare)))
+        )
+        told = f"{where}: {self.chosen.yours.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
+        return f"{told}; {like}" if like else told
+
+    def _once(self, what: str, make: Any) -> Any:
+        """What all tests of one blade share."""
+        key = (what, id(self.chosen.yours), self.chosen.variant.name)
+        if key not in self.solved:
+            self.solved[key] = make()
+        return self.solved[key]
+
+
+@pytest.fixture(scope="session")
+def southwell_solved() -> dict[Any, Any]:
+    """What was solved in this session, by blade and solver."""
+    return {}
+
+
+@pytest.fixture
+def southwell_cell(request: pytest.FixtureRequest, southwell_solved: dict[Any, Any]) -> CellUnderTest:
+    """One mode of one blade at one speed, to be checked."""
+    return CellUnderTest(request.param, request, southwell_solved)
+
+
+def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
+    """What the report needs of one test, as text, which crosses from a worker's process to the one that reports."""
+    import msgspec
+
+    from ...cases.verify.settings import settings
+
+    told = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
+    return msgspec.json.encode({"cells": cells, "levels": levels, "settings": told}).decode()
+
+
+class Report:
+    """Gathers what tests found, and writes the report when all are done."""
+
+    def __init__(self, folder: Path, config: pytest.Config) -> None:
+        self.folder, self.config = folder, config
+        self.parts: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Keep what one test found."""
+        if report.when == "call":
+            self.parts += [str(value) for name, value in report.user_properties if name == PROPERTY]
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self) -> None:
+        """Write results.jsonl and report.md."""
+        from ...cases.judge import results
+        from ..verification import report as matrix_report
+
+        run = self._run()
+        if not run.cells:
+            return
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            path = self.folder / "results.jsonl"
+            path.write_bytes(b"")
+            results.append(path, run.cells, run.levels, run)
+            matrix_report.write(run, self.folder)
+        except OSError as error:
+            raise pytest.UsageError(
+                f"--southwell-report {self.folder}: cannot be written ({error.strerror})"
+            ) from error
+
+    def pytest_terminal_summary(self, terminalreporter: Any) -> None:
+        """Say where the report is."""
+        if self.parts:
+            terminalreporter.write_line(f"southwell: {self.folder / 'report.md'}")
+
+    def _run(self) -> "Run":
+        import msgspec
+
+        from ...cases.judge.results import Cell, Level, Run, Setting
+        from ...cases.verify import matrix
+
+        decoded = [msgspec.json.decode(part) for part in self.parts]
+
+        def rows(kind: str, row: Any) -> tuple[Any, ...]:
+            """Each once: tests of one blade repeat its setting, and the cell of a speed without an answer."""
+            distinct = {msgspec.json.encode(one): one for part in decoded for one in part[kind]}
+            return tuple(msgspec.convert(one, row) for one in distinct.values())
+
+        return Run(
+            cells=rows("cells", Cell),
+            levels=rows("levels", Level),
+            versions=matrix.versions({}),
+            command=shlex.join(["pytest", *self.config.invocation_params.args]),
+            settings=rows("settings", Setting),
+        )

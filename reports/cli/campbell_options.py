@@ -1,0 +1,82 @@
+"""What is typed after ``southwell campbell``, made into numbers; each raises a CaseError that names the option."""
+
+from collections.abc import Sequence
+from math import inf
+from pathlib import Path
+
+from ...cases.campbell import prestress
+from ...cases.input.errors import CaseError
+from ...cases.input.schema import speed_range
+from ...core.blade import Blade
+from ..shared.units import RAD_S, RPM, Units
+from .mounting import angle
+
+
+def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
+    """Speeds (rad/s) and their unit; None if neither option is given."""
+    if rpm is not None and omega is not None:
+        raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
+    if rpm is None and omega is None:
+        return None
+    option, text, units = ("--rpm", rpm or "", RPM) if omega is None else ("--omega", omega, RAD_S)
+    try:
+        return tuple((speed_range(text) / units.speeds).tolist()), units
+    except ValueError as error:
+        raise CaseError(f"{option}: {error}") from error
+
+
+def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
+    """Gravity in the hub's axes at an azimuth in degrees; none without one."""
+    if azimuth is None and tilt:
+        raise CaseError(f"--tilt {tilt:g}: it turns gravity, and without --azimuth there is none: add --azimuth 0")
+    at, up = angle("--azimuth", azimuth), angle("--tilt", tilt)
+    if at is None:
+        return 0.0, 0.0, 0.0
+    x, y, z = prestress.gravity(at, up or 0.0).tolist()
+    return x, y, z
+
+
+def load(path: Path | None, blade: Blade) -> tuple[tuple[float, float, float], ...]:
+    """The load of a file at the blade's stations; none without one."""
+    return () if path is None else tuple((x, y, z) for x, y, z in prestress.load(path, blade).tolist())
+
+
+def per_rev(text: str) -> tuple[int, ...]:
+    """``1:6`` or ``1,2,3,6``."""
+    first, colon, last = text.partition(":")
+    try:
+        found = tuple(range(int(first), int(last) + 1)) if colon else tuple(sorted({int(p) for p in text.split(",")}))
+    except ValueError:
+        raise CaseError(
+            f"--per-rev: {text!r} is neither first:last nor whole numbers with commas, as in 1:6 or 1,3,6"
+        ) from None
+    if not found or found[0] < 1:
+        raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last, as in 1:6")
+    return found
+
+
+def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, float]:
+    """``6.9:12.1`` in the unit of the speeds; rad/s, as ``speeds`` are, within which it must lie."""
+    try:
+        low, high = (float(p) for p in text.split(":"))
+    except ValueError:
+        raise CaseError(f"--operating: {text!r} is not lowest:highest, as in 6.9:12.1") from None
+    if not (0 <= low <= high < inf and high > 0):
+        raise CaseError(f"--operating: {text!r}: needs 0 ≤ lowest ≤ highest, as in 6.9:12.1")
+    first, last = speeds[0] * units.speeds, speeds[-1] * units.speeds
+    if low < first - 1e-9 * last or high > last * (1 + 1e-9):
+        raise CaseError(
+            f"--operating: {text!r}: beyond the speeds, {first:g} to {last:g} {units.speed}: widen those, or correct it"
+        )
+    return low / units.speeds, high / units.speeds
+
+
+def margin(text: str) -> float:
+    """``10%`` or ``0.1``."""
+    try:
+        value = float(text.removesuffix("%")) * (0.01 if text.endswith("%") else 1.0)
+    except ValueError:
+        raise CaseError(f"--margin: {text!r} is neither a percentage nor a fraction, as in 10% or 0.1") from None
+    if not 0 <= value < 1:
+        raise CaseError(f"--margin: {text!r}: needs 0 ≤ margin < 1 of n per revolution, as in 10% or 0.1")
+    return value

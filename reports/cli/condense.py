@@ -1,0 +1,127 @@
+"""``southwell condense``: finite element matrices to a compressed model, its tables and modes; or the example that shows it."""
+
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from ...cases.condense import condensed, condensing, example
+from ...cases.condense.condensed import Condensed
+from ...cases.input.errors import CaseError
+from ..condense import page
+from ..shared.console import output
+from ..shared.units import RAD_S
+from . import campbell_options
+from .arguments import Whole
+
+EXAMPLE = "example"
+FILE, SEGMENTS, DATA = page.FILE, "segments.json", "condensation.json"
+PASSED, MISSED = 0, 1
+
+
+def command(
+    file: str | None = None,
+    /,
+    *,
+    example: Annotated[bool, Parameter(negative=())] = False,
+    omega: str | None = None,
+    rpm: str | None = None,
+    modes: Whole = 6,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
+) -> int:
+    """Condense finite element matrices of a blade to rigid bodies and complex stiffness elements; modes of those.
+
+    Prints the segments and modes; writes segments.json and condensation.md. The example takes about a minute; it also writes
+    the picture of the three stages, and its status is 1 if a difference exceeds its target. `southwell report` takes
+    condensation.md up from the folder of a report.
+
+    Parameters
+    ----------
+    file
+        TOML that names matrices, nodes and sections; segments.json of an earlier run, for other speeds; or `example`.
+    example
+        A tapered, twisted solid blade against its own modes, and a solid cantilever against Timoshenko's.
+    omega
+        Rotor speeds in rad/s, one or `first:last:step`; at rest by default.
+    rpm
+        The same in revolutions per minute.
+    modes
+        How many, from the lowest.
+    out
+        Folder for what is written.
+    """
+    if example or file == EXAMPLE:
+        if file not in (None, EXAMPLE) or omega or rpm:
+            other = file if file not in (None, EXAMPLE) else f"--omega {omega}" if omega else f"--rpm {rpm}"
+            raise CaseError(f"--example: with {other}: it has its own blade and speeds: leave one of them out")
+        return _example(_folder(out))
+    if file is None:
+        raise CaseError("file: missing: give a TOML file that names matrices, nodes and sections, or --example")
+    speeds, units = campbell_options.speeds(rpm, omega) or ((0.0,), RAD_S)
+    path, told, blade = Path(file), None, None
+    if path.suffix == ".json":
+        blade = condensed.read(path)
+    else:
+        told = condensing.condense(path)
+        blade = told.blade
+    found = [(speed, condensed.modes(blade, speed, modes)) for speed in speeds]
+    text = page.own(blade, found, units, told, _line())
+    folder = _folder(out)
+    _write(folder, text, blade)
+    output().print(text, markup=False, soft_wrap=True)
+    output().print(f"{folder}: {FILE}, {SEGMENTS}", markup=False, soft_wrap=True)
+    return PASSED
+
+
+def _example(folder: Path) -> int:
+    with _watched() as say:
+        found, drawn = example.example(say)
+        say("the picture")
+        figures = page.picture(found, drawn, folder)
+    example.write(folder / DATA, found)
+    text = page.example(found, figures[0].relative_to(folder).as_posix(), _line())
+    _write(folder, text, Condensed("twisted", drawn.root, drawn.segments))
+    output().print(text, markup=False, soft_wrap=True)
+    names = ", ".join(str(p.relative_to(folder)) for p in (*figures, folder / FILE, folder / SEGMENTS, folder / DATA))
+    output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
+    return PASSED if example.within(found) else MISSED
+
+
+@contextmanager
+def _watched() -> Iterator[Callable[[str], None]]:
+    """What is being done, on standard error."""
+    console = Console(stderr=True, highlight=False)
+    columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False)
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("starting")
+        yield lambda text: bar.update(task, description=text)
+
+
+def _folder(out: Path) -> Path:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(out, error) from error
+    return out
+
+
+def _write(folder: Path, text: str, blade: Condensed) -> None:
+    try:
+        condensed.write(folder / SEGMENTS, blade)
+        (folder / FILE).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise _unwritable(folder, error) from error
+
+
+def _unwritable(out: Path, error: OSError) -> CaseError:
+    return CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder")
+
+
+def _line() -> str:
+    return shlex.join(["southwell", *sys.argv[1:]])

@@ -1,0 +1,41 @@
+"""``southwell dashboard``: runs and their history as a static site that opens from the file system."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from ...cases.input.errors import CaseError
+from ..dashboard.write import write
+from .arguments import finished
+from .history import load
+
+
+def command(
+    *folders: Path,
+    history: Path | None = None,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-dashboard"),
+) -> int:
+    """Write a static site of one or several runs: it opens from the file system, without a server and without a network.
+
+    Parameters
+    ----------
+    folders
+        Folders that `southwell verify --out` has written, or their results.jsonl; the first is shown first.
+    history
+        A file that `southwell history add` keeps: adds a page of every frequency, difference and time by commit.
+    out
+        Folder of the site.
+    """
+    if not folders:
+        raise CaseError("folders: none given: give one that `southwell verify --out` has written")
+    names = [folder.name or str(folder.resolve()) for folder in folders]
+    if len(set(names)) < len(names):
+        names = [str(folder) for folder in folders]
+    runs = {name: finished(folder) for name, folder in zip(names, folders, strict=True)}
+    kept = load(history) if history is not None else None
+    try:
+        print(write(runs, kept, out))
+    except OSError as error:
+        raise CaseError(f"{error.filename}: {error.strerror}: give another --history or --out") from error
+    return 0

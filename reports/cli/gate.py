@@ -1,0 +1,131 @@
+"""``southwell gate``: a run against an earlier one; status 1 if something got worse."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+from cyclopts import Parameter
+from cyclopts.validators import Number
+
+from ...cases.input.errors import CaseError, nearest
+from ...cases.judge.results import Run
+from ...cases.regression import history
+from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
+from ...cases.regression.history import Entry
+from ...cases.verify.controls import outcomes
+from ..ci import gate_text, junit
+from ..shared.console import output
+from ..verification import report as matrix_report
+from .arguments import RESULTS, finished
+from .history import load
+
+Flag = Annotated[bool, Parameter(negative=())]
+
+
+def command(
+    folder: Path,
+    /,
+    *,
+    against: Path | None = None,
+    commit: str = "",
+    strict: Flag = False,
+    partial: Flag = False,
+    tolerance: Annotated[float, Parameter(validator=Number(gte=0))] = MOVED,
+    junit_file: Annotated[Path | None, Parameter(name="--junit")] = None,
+    summary: Path | None = None,
+    annotations: Flag = False,
+) -> int:
+    """Compare a run with an earlier one; status 1 if anything got worse, is gone, or is no longer caught.
+
+    Frequencies that moved are listed, from and to. Times are shown with their noise, and never decide.
+
+    Parameters
+    ----------
+    folder
+        Folder that `southwell verify --out` has written, or its results.jsonl.
+    against
+        A history (`southwell history add`), of which the last run counts; or another run's folder or results.jsonl.
+        Without it every miss counts.
+    commit
+        Of a history, the last run of this commit instead (its beginning is enough).
+    strict
+        Frequencies that moved give status 1 too.
+    partial
+        The run has only some of the cases; of the earlier one, only these count.
+    tolerance
+        Relative change of a frequency that is none.
+    junit_file
+        File for the run as JUnit's XML: a test case a cell.
+    summary
+        Markdown is appended to this file, as to GitHub's `$GITHUB_STEP_SUMMARY`.
+    annotations
+        Print GitHub's workflow commands, which mark the files of cases that got worse, beneath the current folder.
+    """
+    run = finished(folder)
+    after = history.entry(run, str(folder))
+    if commit and not against:
+        raise CaseError(f"--commit {commit}: of which history? Give it by --against")
+    before, earlier = _before(against, commit) if against else (nothing(after), ())
+    if partial:
+        before = within(before, after)
+    missed = [o.mistake.name for o in outcomes(run.controls) if o.status == "missed"]
+    found = compare(before, after, earlier, tolerance, missed)
+    console = output()
+    for shown in gate_text.tables(found):
+        console.print(shown)
+    console.print(gate_text.verdict(found, strict), markup=False, soft_wrap=True)
+    if annotations:
+        for line in gate_text.annotations(found, Path()):
+            print(line)
+    if junit_file:
+        _write("--junit", junit_file, lambda: junit_file.write_bytes(junit.render(run, found, strict)))
+    if summary:
+        _write("--summary", summary, lambda: _append(summary, _page(run, found, strict)))
+    return 0 if found.passed(strict) else 1
+
+
+def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
+    """The run to compare with, and those whose times show noise."""
+    if path.is_dir() or _is_run(path):
+        if commit:
+            raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")
+        return replace(history.entry(finished(path), str(path)), date="", machine=""), ()
+    entries = load(path).entries
+    if not entries:
+        raise CaseError(f"--against {path}: no runs in it: add one by `southwell history add`")
+    chosen = [e for e in entries if e.commit.startswith(commit)]
+    if not chosen:
+        raise CaseError(
+            f"--commit {commit}: not in {path}: {nearest(commit, dict.fromkeys(e.commit for e in entries))}"
+        )
+    return chosen[-1], entries
+
+
+def _is_run(path: Path) -> bool:
+    """Whether a file is a run's results: its lines say of what kind they are."""
+    try:
+        with path.open("rb") as file:
+            first = msgspec.json.decode(file.readline())
+    except (OSError, msgspec.DecodeError):
+        return path.name == RESULTS
+    return isinstance(first, dict) and "kind" in first
+
+
+def _page(run: Run, found: Comparison, strict: bool) -> str:
+    """What the run found, and what the gate did."""
+    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(found, strict), matrix_report.heat(run)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _append(path: Path, text: str) -> None:
+    with path.open("a", encoding="utf-8") as file:
+        file.write(text)
+
+
+def _write(option: str, path: Path, write: Callable[[], object]) -> None:
+    try:
+        write()
+    except OSError as error:
+        raise CaseError(f"{option} {path}: cannot be written ({error.strerror}): give another file") from error

@@ -1,0 +1,99 @@
+"""``southwell history``: keeps what runs found, commit by commit, in a file that the gate and the dashboard read."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+from rich import box
+from rich.table import Table
+
+from ...cases.input.errors import CaseError
+from ...cases.regression import history
+from ...cases.regression.history import History
+from ..shared import console
+from .arguments import finished
+
+app = App(name="history", help="Keep what runs found, commit by commit.", result_action="return_value")
+
+
+@app.command
+def add(
+    folder: Path,
+    /,
+    *,
+    file: Annotated[Path, Parameter(name="--history")],
+    commit: str = "",
+    machine: str = "",
+) -> int:
+    """Append a run to a history: a line of JSON with every frequency, difference, verdict and time.
+
+    Runs may be appended by several jobs at once; a line that was cut short spoils no other.
+
+    Parameters
+    ----------
+    folder
+        Folder that `southwell verify --out` has written, or its results.jsonl.
+    file
+        File to append to; made if there is none.
+    commit
+        What was run; by default the commit of the Git checkout in the current folder, `-dirty` if it has changes.
+    machine
+        In words, where: times are compared only within one; by default kind of system and processors.
+    """
+    entry = history.entry(finished(folder), commit or _checked_out(), machine)
+    try:
+        history.append(file, entry)
+    except OSError as error:
+        raise CaseError(f"--history {file}: cannot be written ({error.strerror}): give another file") from error
+    print(f"{file}: {entry.commit}: {len(entry.cells)} cells, {len(entry.controls)} negative controls")
+    return 0
+
+
+@app.command(name="list")
+def listing(file: Path, /) -> int:
+    """List the runs in a history.
+
+    Parameters
+    ----------
+    file
+        What `southwell history add` was given.
+    """
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in ("commit", "date", "cells", "pass", "fail", "inconclusive", "machine"):
+        table.add_column(head, overflow="fold")
+    for entry in load(file).entries:
+        verdicts = [p.verdict for p in entry.cells]
+        counts = [str(verdicts.count(v)) for v in ("pass", "fail", "inconclusive")]
+        table.add_row(entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine)
+    console.output().print(table)
+    return 0
+
+
+def load(file: Path) -> History:
+    """The history in a file; lines that were cut short are told on standard error.
+
+    Raises:
+        CaseError: if there is no such file, or it is none.
+    """
+    try:
+        found = history.read(file)
+    except OSError as error:
+        raise CaseError(
+            f"{file}: cannot be read ({error.strerror}): give what `southwell history add` wrote"
+        ) from error
+    except ValueError as error:
+        raise CaseError(str(error)) from error
+    for number in found.torn:
+        print(f"southwell: {file}: line {number}: cut short, left out", file=sys.stderr)
+    return found
+
+
+def _checked_out() -> str:
+    """The commit of the checkout in the current folder."""
+    command = ["git", "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise CaseError("--commit: missing, and the current folder is no Git checkout: say what was run") from error

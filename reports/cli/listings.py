@@ -1,0 +1,94 @@
+"""``southwell cases`` and ``southwell codes``: what there is, found or not; and environments for codes that need their own."""
+
+import sys
+from pathlib import Path
+
+from cyclopts import App
+from rich import box
+from rich.table import Table
+
+from ...cases.input import library
+from ...cases.input.errors import nearest
+from ...cases.verify import mechanism_case
+from ...cases.verify.settings import settings
+from ...references import isolated
+from ...references.isolated import ENVIRONMENTS
+from ...references.protocol import registry as registry
+from ..shared import console
+from .arguments import PASSED, RESULTS, UsageError, finished
+
+
+def cases() -> int:
+    """List the cases that come with the package."""
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in ("case", "what", "blades", "speeds"):
+        table.add_column(head, overflow="fold")
+    absent = library.absent()
+    for name in library.names():
+        if name in absent:
+            table.add_row(name, absent[name], "", "")
+            continue
+        known = library.load(name)
+        first, *_ = settings(known)
+        blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
+        table.add_row(name, known.text.title, blades, first.facts["speeds"])
+    for name in library.mechanisms():
+        told = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
+        table.add_row(name, told.title, "mechanism", told.facts["speeds"])
+    console.output().print(table)
+    return PASSED
+
+
+code_app = App(name="codes", result_action="return_value")
+
+
+@code_app.default
+def codes(*, pages: Path | None = None) -> int:
+    """List the codes: found or not, version, what each shares with core, how to install it.
+
+    Parameters
+    ----------
+    pages
+        Folder of a report (`southwell verify --out`): write a page for each code into it instead, with its worst
+        difference on every blade and its known defects, shown by running them.
+    """
+    if pages:
+        from ..verification import code_pages
+
+        print(code_pages.write(finished(pages / RESULTS), pages))
+        return PASSED
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in ("code", "title", "version", "shares with core", "leaves out"):
+        table.add_column(head, overflow="fold")
+    for name in registry.names():
+        known = registry.code(name)
+        found = known.version()
+        table.add_row(
+            known.name,
+            known.title,
+            f"✔ {found}" if found else f"○ not found; {known.hint}",
+            known.shares,
+            ", ".join(known.model.lacks()) or "nothing",
+        )
+    console.output().print(table)
+    return PASSED
+
+
+@code_app.command
+def install(code: str, /) -> int:
+    """Make a pinned environment in the cache for a code whose dependencies conflict with ours; status 1 if it cannot be made.
+
+    Parameters
+    ----------
+    code
+        Its name; `southwell codes` says which need this.
+    """
+    if code not in ENVIRONMENTS:
+        raise UsageError(f"code: {code!r}: no environment of its own: {nearest(code, list(ENVIRONMENTS))}")
+    try:
+        folder = isolated.install(ENVIRONMENTS[code])
+    except isolated.EnvironmentMissingError as error:
+        print(f"southwell: {error}", file=sys.stderr)
+        return 1
+    print(f"{code} {ENVIRONMENTS[code].version()} in {folder}")
+    return PASSED

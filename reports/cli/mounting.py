@@ -1,0 +1,93 @@
+"""Options that say what a blade's file leaves to others: how long it is and how it sits on the hub."""
+
+from dataclasses import dataclass
+from math import isfinite, radians
+from pathlib import Path
+
+from cyclopts import Parameter
+
+from ...cases.input.errors import CaseError
+from ...cases.input.readers import Mount
+from ...cases.input.readers.source import LONGEST
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Mounting:
+    """What a blade's file leaves to others; of a case, none.
+
+    Parameters
+    ----------
+    main
+        The main file that says how the blade sits on the hub, of a blade's file that does not.
+    length
+        From root to tip, m, if no file says it or it is to be another.
+    hub_radius
+        From the rotor's axis to the root, m, likewise.
+    precone
+        Degrees, downwind, likewise.
+    pitch
+        Degrees, leading edge downwind, likewise.
+    subset
+        Set and subset of a HAWC2 structural file that has several, as `5:1`.
+    multipliers
+        Of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
+    """
+
+    main: Path | None = None
+    length: float | None = None
+    hub_radius: float | None = None
+    precone: float | None = None
+    pitch: float | None = None
+    subset: str | None = None
+    multipliers: str | None = None
+
+    def mount(self) -> Mount:
+        """The same for a reader, in radians.
+
+        Raises:
+            CaseError: naming the option that cannot be.
+        """
+        for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
+            if value is not None and not least <= value <= LONGEST:
+                raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
+        return Mount(
+            main=self.main,
+            length=self.length,
+            hub_radius=self.hub_radius,
+            precone=angle("--precone", self.precone, most=89.0),
+            pitch=angle("--pitch", self.pitch, most=180.0),
+            subset=None if self.subset is None else _subset(self.subset),
+            multipliers=None if self.multipliers is None else _multipliers(self.multipliers),
+        )
+
+
+def angle(option: str, degrees: float | None, most: float = 360.0) -> float | None:
+    """Radians; None if not given.
+
+    Raises:
+        CaseError: if it is not finite, or larger than ``most`` degrees.
+    """
+    if degrees is not None and not isfinite(degrees):
+        raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
+    if degrees is not None and abs(degrees) > most:
+        raise CaseError(f"{option} {degrees:g}: beyond ±{most:g} degrees: another unit? give degrees, as in 2.5")
+    return None if degrees is None else radians(degrees)
+
+
+def _subset(text: str) -> tuple[int, int]:
+    try:
+        first, second = (int(p) for p in text.split(":"))
+    except ValueError:
+        raise CaseError(f"--subset: {text!r} is not set:subset, as in 5:1") from None
+    return first, second
+
+
+def _multipliers(text: str) -> tuple[float, float, float]:
+    try:
+        mass, flap, edge = (float(p) for p in text.split(","))
+    except ValueError:
+        raise CaseError(f"--multipliers: {text!r} is not mass,flap,edge, as in 1.04536,1,1") from None
+    if not all(isfinite(v) and v > 0 for v in (mass, flap, edge)):
+        raise CaseError(f"--multipliers: {text!r}: they multiply: give positive numbers, as in 1.04536,1,1")
+    return mass, flap, edge

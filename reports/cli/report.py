@@ -1,0 +1,53 @@
+"""``southwell report``, and what every run shows at its end."""
+
+from pathlib import Path
+
+from ...cases.judge.results import Run
+from ..shared.console import output
+from ..verification import terminal
+from .arguments import PASSED, RESULTS, Flag, UsageError, finished
+
+
+def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
+    """Write report.md and figures anew from the results.jsonl in a folder.
+
+    Parameters
+    ----------
+    folder
+        What `southwell verify --out` was given.
+    html
+        Also report.html, one file with the figures inside it.
+    pdf
+        Also report.pdf; needs the extra `pdf` (WeasyPrint).
+    """
+    written = show(finished(folder / RESULTS), folder)
+    if html or pdf:
+        from ..verification import html as page
+
+        if html:
+            print(page.write(written))
+        if pdf:
+            try:
+                print(page.pdf(written))
+            except page.PdfError as error:
+                raise UsageError(str(error)) from error
+    return PASSED
+
+
+def show(run: Run, folder: Path) -> Path:
+    """Write the report, print what it says first; the report's path."""
+    from ..verification import (
+        report as matrix_report,  # with its figures half of a command's time to start, and of every worker's
+    )
+
+    report = matrix_report.write(run, folder)
+    console = output()
+    for line in matrix_report.headline(run):
+        console.print(line.replace("**", ""), markup=False)
+    for table in terminal.matrix(run, console.width):
+        console.print(table)
+    console.print(terminal.legend(), style="dim", markup=False)
+    if run.controls:
+        console.print(terminal.controls(run))
+    console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
+    return report

@@ -1,0 +1,56 @@
+"""Which blades a Campbell diagram is asked of: a blade's file in any format that is read, or a case's blades."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...cases.input import library, readers
+from ...cases.input.errors import CaseError
+from ...cases.input.library import select
+from ...cases.input.readers import Mount, southwell_toml
+from ...cases.verify.settings import settings
+from ...core.blade import Blade
+from ..shared.units import BY_KEY, RPM, Units
+
+FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")
+"""Of a case's blade, those worth a line."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A blade: its own speeds (rad/s; none of a blade's file) and their unit, and where it is from, a line a fact."""
+
+    blade: Blade
+    speeds: tuple[float, ...]
+    units: Units
+    about: tuple[str, ...]
+
+
+def subjects(name: str, mount: Mount) -> list[Subject]:
+    """The blade of a file, mounted so, or the blades of a case, which say themselves how they are mounted.
+
+    Raises:
+        CaseError: if there is no such file or case, or the file is at fault.
+    """
+    if _is_blade_file(name):
+        found = readers.reading(Path(name), mount)
+        files = ", ".join(path.name for path in found.source.files)
+        about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
+        return [Subject(found.blade, (), RPM, about)]
+    case = select(name)
+    if mount != Mount():
+        raise CaseError(
+            f"{name}: a case says itself how its blade sits on the hub: leave out --main, --length and the like"
+        )
+    out = []
+    for variant, setting in zip(case.variants, settings(case), strict=True):
+        facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)
+        about = (setting.title, setting.description, f"source: {setting.source}", *facts)
+        out.append(Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about))
+    return out
+
+
+def _is_blade_file(name: str) -> bool:
+    path = Path(name)
+    if name in library.names() or name.partition("/")[0] in library.names() or not (path.suffix or path.is_file()):
+        return False
+    return path.suffix.lower() != ".toml" or (path.is_file() and southwell_toml.is_one(path))

@@ -1,0 +1,1 @@
+"""A condensed model as figures and Markdown."""

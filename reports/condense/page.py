@@ -1,0 +1,248 @@
+"""Condensation in Markdown: the example's comparison with its picture, or a user's own segments and modes."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from tabulate import tabulate
+
+from ...cases.condense.condensed import Condensed, body, names
+from ...cases.condense.condensing import Condensation
+from ...cases.condense.example import EXACT_TARGET, TARGET, Drawn, Example, Speed, cantilever, differences, largest
+from ...core.modes import Modes
+from ..shared.style import house, save
+from ..shared.units import RAD_S, Units
+from .figure import stages
+
+FILE = "condensation.md"
+
+DPI = 150
+
+HOW = {
+    "rigid": "rigid (RBE2), alone",
+    "average": "average (RBE3), alone",
+    "in place": "in place between its neighbours",
+}
+
+FORCES = ("axial", "along y", "along z", "torsion", "about y", "about z")
+
+
+def beside(folder: Path) -> str:
+    """What ``southwell condense`` wrote into a report's folder, a heading lower; empty if nothing."""
+    path = folder / FILE
+    return re.sub(r"^#", "##", path.read_text(encoding="utf-8"), flags=re.MULTILINE) if path.exists() else ""
+
+
+def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
+    """The three stages as SVG and PNG.
+
+    Raises:
+        OSError: if they cannot be written.
+    """
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    vector, raster = (folder / "figures" / f"condensation.{kind}" for kind in ("svg", "png"))
+    figure = stages(drawn.bricks, drawn.cuts, drawn.segments, drawn.root, found.freedoms)
+    save(figure, vector)
+    with house():
+        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+    return [vector, raster]
+
+
+def example(found: Example, figure: str, command: str) -> str:
+    """The example's page; ``figure`` is the picture's path from the page."""
+    n = found.segments
+    worst = max(largest(s) for s in found.speeds)
+    bar = cantilever(found, "average")
+    codes = ", ".join(f"{name} {said}" for name, said in found.versions.items())
+    text = f"""# From a solid to {n} rigid bodies and springs
+
+Park et al. (2010) start from finite elements: the model is cut at sections, all freedoms but the motions of those sections
+are eliminated, and what is left between two of them is one complex stiffness element (6×6, fully coupled) and one rigid body.
+
+- {_verdict(worst <= TARGET)} The {n} elements keep the five lowest frequencies of a tapered, twisted solid blade within
+  **{_size(worst)}**, at rest and turning (target {_size(TARGET)}).
+- {_verdict(bar <= EXACT_TARGET)} Those of a prismatic solid cantilever are within **{_size(bar)}** of Timoshenko's exact ones
+  (target {_size(EXACT_TARGET)}).
+
+![A solid blade, its sections, and the compressed model]({figure})
+
+## The blade against the whole solid
+
+Steel, 1 m long on a hub of 0.3 m, chord 160 to 80 mm, thickness 24 to 8 mm, twist 30° to 0. The whole solid is solved twice:
+with {found.hexahedra} hexahedra of 27 nodes ({found.freedoms} freedoms) by scikit-fem, and of 20 nodes by CalculiX.
+CalculiX leaves out Coriolis forces, so its column is compared with the compressed model without them. Frequencies in
+rad/s; differences are the compressed model's.
+"""
+    for s in found.speeds:
+        text += f"\n**{RAD_S.at(s.omega).capitalize()}**\n\n{_table(_blade(s, found.versions))}\n"
+    text += f"""
+{_torsion(found)}
+
+## Rigid or average ties
+
+A rigid tie makes a section follow its frame: neither warping nor Poisson's contraction is left, and a short segment becomes
+too stiff. An average tie lets the frame follow the section's mean motion; a segment cut off alone then is too soft, the
+shorter it is for its chord the more, its ends being loaded otherwise than by neighbours. Condensed in place, between its
+neighbours, it is neither. On a flat bar (4 : 1) one chord long, torsion with rigid ties is {_ratio(found)} times as stiff as
+with average ones.
+
+{_table(_ties(found))}
+
+Rigid ties are right where a section is really held: the clamped root, a flange, a bulkhead. Everywhere else take average ones,
+and cut in place if the whole model is at hand.
+
+## The cantilever against Timoshenko
+
+The paper's cantilever as a square solid bar, {n} segments each condensed alone, at rest. Exact: Huang (1961) with Cowper's
+(1966) shear coefficient. Every frequency comes twice, once in each plane; the worse is shown.
+
+{_table(_cantilever(found))}
+
+Codes: {codes}. `{command}`
+"""
+    return text
+
+
+def own(
+    blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units, told: Condensation | None, command: str
+) -> str:
+    """A user's own blade: what was read, the segments, the modes."""
+    n = len(blade.segments)
+    total = sum(body(s)[0] for s in blade.segments)
+    length = sum(np.linalg.norm(s.rest[:3, 3]) for s in blade.segments)
+    text = f"# {blade.name}: {n} rigid bodies and complex stiffness elements\n\n"
+    if told:
+        lines = [told.told.title, f"Source: {told.told.source}." if told.told.source else ""]
+        text += "".join(f"{line}\n\n" for line in lines if line)
+        how = "each from a model of its own" if told.told.segments else "cut in place from one model"
+        text += (
+            f"{told.freedoms} freedoms condensed to {6 * n}; segments {how}. "
+            f"Rigid motions of the finite element model leave {told.resisted:.0e} of the forces in it unbalanced.\n\n"
+        )
+    text += f"Mass {total:.6g} kg, length {length:.6g} m, first section at {blade.root[0, 3]:.6g} m from the rotor's axis.\n\n"
+    text += """## Segments
+
+Centre of mass and stiffness in the axes of each segment's first frame. Stiffness: the diagonal of the 6×6, wrench on the second
+frame by its motion seen from the first; N/m, then N m/rad.
+
+"""
+    text += _table([_segment(k, blade) for k in range(n)])
+    text += (
+        "\n\nEvery 6×6 is symmetric and positive definite: six motions are resisted, the six rigid ones are free.\n\n"
+    )
+    text += f"## Modes, {units.frequency}\n\n"
+    text += _table(_modes(blade, found, units))
+    return f"{text}\n\n`{command}`\n"
+
+
+def _modes(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[dict[str, str]]:
+    rows = []
+    for omega, modes in found:
+        for k, (name, f) in enumerate(zip(names(blade.segments, modes), modes.frequencies, strict=True), 1):
+            speed = f"{omega * units.speeds:.6g}"
+            rows.append(
+                {
+                    f"speed, {units.speed}": speed,
+                    "mode": f"{k}",
+                    "name": name,
+                    "frequency": f"{f * units.frequencies:.7g}",
+                }
+            )
+    return rows
+
+
+def _segment(k: int, blade: Condensed) -> dict[str, str]:
+    s = blade.segments[k]
+    mass, centre, _ = body(s)
+    size = np.sqrt(np.diagonal(s.stiffness))
+    lowest = np.linalg.eigvalsh(s.stiffness / np.outer(size, size))[0]
+    row = {"segment": f"{k + 1}", "length, m": f"{np.linalg.norm(s.rest[:3, 3]):.5g}", "mass, kg": f"{mass:.5g}"}
+    row["centre, m"] = ", ".join(f"{v:.4g}" for v in np.where(np.abs(centre) < 1e-9, 0.0, centre))
+    row |= {name: f"{v:.4g}" for name, v in zip(FORCES, np.diagonal(s.stiffness), strict=True)}
+    return row | {"lowest eigenvalue, unit diagonal": f"{lowest:.1e}"}
+
+
+def _blade(s: Speed, versions: dict[str, str]) -> list[dict[str, str]]:
+    off = differences(s.condensed, s.whole)
+    theirs = differences(s.without, s.calculix) if s.calculix else None
+    rows = []
+    for k, name in enumerate(s.names):
+        row = {"mode": name, "whole, scikit-fem": f"{s.whole[k]:.2f}", "compressed": f"{s.condensed[k]:.2f}"}
+        row["difference"] = f"{_verdict(abs(off[k]) <= TARGET)} {_percent(off[k])}"
+        if theirs is None:
+            rows.append(row | {"whole, CalculiX": f"○ {versions['CalculiX']}", "difference from it": ""})
+            continue
+        row["whole, CalculiX"] = f"{s.calculix[k]:.2f}"
+        rows.append(row | {"difference from it": f"{_verdict(abs(theirs[k]) <= TARGET)} {_percent(theirs[k])}"})
+    return rows
+
+
+def _ties(found: Example) -> list[dict[str, str]]:
+    rest = found.speeds[0]
+    torsion = [k for k, name in enumerate(rest.names) if name.startswith("torsion")]
+    others = [k for k in range(len(rest.names)) if k not in torsion]
+    rows = []
+    for how, label in HOW.items():
+        off = differences(rest.apart.get(how, rest.condensed), rest.whole)
+        row = {"segment tied": label}
+        for n, value in zip(found.lengths, found.torsion[how], strict=True):
+            row[f"bar of {n} chord{'s' * (n > 1)}: GJ over St Venant's"] = f"{value:.3f}"
+        row["cantilever"] = (
+            _percent(_extreme(differences(found.cantilever[how], np.repeat(found.exact, 2))))
+            if how in found.cantilever
+            else ""
+        )
+        row["blade, bending"] = _percent(_extreme(off[others]))
+        row["blade, torsion"] = _percent(_extreme(off[torsion])) if torsion else ""
+        rows.append(row)
+    return rows
+
+
+def _cantilever(found: Example) -> list[dict[str, str]]:
+    rows = []
+    for k, exact in enumerate(found.exact):
+        row = {"bending": f"{k + 1}", "Timoshenko, rad/s": f"{exact:.4f}"}
+        for kind, values in found.cantilever.items():
+            pair = differences(values[2 * k : 2 * k + 2], [exact, exact])
+            row[f"{kind} ties"] = _percent(_extreme(pair))
+        rows.append(row)
+    return rows
+
+
+def _torsion(found: Example) -> str:
+    """What turning does to torsion, in the solid and in the compressed model."""
+    first, last = found.speeds[0], found.speeds[-1]
+    at = [[k for k, name in enumerate(s.names) if name.startswith("torsion")][:1] for s in (first, last)]
+    if not all(at):
+        return ""
+    (a,), (b,) = at
+    solid, ours = last.whole[b] - first.whole[a], last.condensed[b] - first.condensed[a]
+    return (
+        "A complex stiffness element is linear in its own axes: steady tension stiffens its bending, but not its torsion, as\n"
+        f"it does in a solid. Turning raises the solid's first torsion by {solid:.1f} rad/s, the elements' by {ours:.1f}."
+    )
+
+
+def _ratio(found: Example) -> str:
+    return f"{found.torsion['rigid'][0] / found.torsion['average'][0]:.1f}"
+
+
+def _extreme(values: np.ndarray) -> float:
+    return float(values[np.abs(values).argmax()])
+
+
+def _verdict(good: bool) -> str:
+    return "✔" if good else "✘"
+
+
+def _size(value: float) -> str:
+    return f"{100 * value:.2g} %"
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:+.3f} %".replace("-", "−")
+
+
+def _table(rows: list[dict[str, str]]) -> str:
+    return tabulate(rows, headers="keys", tablefmt="pipe", disable_numparse=True)

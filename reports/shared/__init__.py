@@ -1,0 +1,1 @@
+"""Style, units, tables and the console: what every kind of output uses."""

@@ -1,0 +1,149 @@
+"""What a reader wants to know first: how many cells, the verdict on each code, the worst difference and where.
+
+Pure functions of a run, shared by terminal, Markdown and figures, so that all three say the same.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from typing import get_args
+
+from ...cases.judge.results import Cell, Run, Verdict
+from ...cases.judge.verdict import unsigned
+from ...cases.verify.controls import outcomes
+
+SYMBOL: dict[Verdict, str] = {
+    "pass": "✔",
+    "fail": "✘",
+    "inconclusive": "?",
+    "known difference": "≈",
+    "not applicable": "–",
+    "not run": "○",
+}
+"""A sign beside each verdict's name; never instead of it."""
+
+GRAVEST_FIRST: tuple[Verdict, ...] = ("fail", "inconclusive", "known difference", "pass", "not run", "not applicable")
+
+TINY = 1e-6
+"""Targets below this are those of the same discretisation, and percent is no unit for them."""
+
+BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
+"""Verdicts that make a run end with status 1."""
+
+
+def status(run: Run) -> int:
+    """Exit status: 1 if any cell fails or is inconclusive, there is none at all, or a negative control is missed; else 0."""
+    blind = any(outcome.status == "missed" for outcome in outcomes(run.controls))
+    return int(not run.cells or blind or any(c.verdict in BAD for c in run.cells))
+
+
+def gravest(cells: Iterable[Cell]) -> Verdict:
+    """The verdict that stands for several cells."""
+    found = {c.verdict for c in cells}
+    return next(v for v in GRAVEST_FIRST if v in found)
+
+
+def size(cell: Cell) -> float | None:
+    """How far the code is from the answer, relative.
+
+    Where it agrees with core lacking the same effects, its known difference is that from core with all of them.
+    """
+    agrees = cell.difference is not None and abs(cell.difference) <= cell.target
+    if cell.verdict == "known difference" and agrees and cell.frequency is not None and cell.full is not None:
+        return cell.frequency / cell.full - 1.0
+    return cell.difference
+
+
+def largest(cells: Iterable[Cell]) -> Cell | None:
+    """The cell that is farthest from the answer; None if none has numbers."""
+    return max((c for c in cells if size(c) is not None), key=lambda c: abs(size(c) or 0.0), default=None)
+
+
+def worst(cells: Iterable[Cell]) -> Cell | None:
+    """The farthest from the answer of the cells with the gravest verdict; None if there are none, or none with numbers."""
+    cells = list(cells)
+    grave = gravest(cells) if cells else None
+    return largest(c for c in cells if c.verdict == grave)
+
+
+def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
+    """How many cells have each verdict; all verdicts, gravest first."""
+    found = Counter(c.verdict for c in cells)
+    assert set(found) <= set(get_args(Verdict))
+    return {v: found[v] for v in GRAVEST_FIRST}
+
+
+def cases(run: Run) -> list[str]:
+    """Names of the cases' blades, in the run's order."""
+    return list(dict.fromkeys(c.case for c in run.cells))
+
+
+def column(cell: Cell) -> str:
+    """The column a cell stands in."""
+    return "core as in source" if cell.role == "discretisation" else cell.code
+
+
+def broad(cell: Cell) -> str:
+    """The column a cell stands in where cases share a table: all printed tables in one."""
+    return "printed tables" if cell.role == "table" else column(cell)
+
+
+def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[str]:
+    """Names of columns: the source's own discretisation, printed tables, then the codes in the run's order."""
+    first = ("discretisation", "table")
+    ranked = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
+    return list(dict.fromkeys(of(c) for c in ranked))
+
+
+def labels(cells: Sequence[Cell]) -> dict[Cell, str]:
+    """Mode names ``flapwise 2``: the family, and the ordinal within it at that speed.
+
+    Counted among all modes the case compares, so that a printed table's gaps do not shift its numbers; a code that
+    lacks effects is compared with core lacking them, whose modes may come in another order, and is counted by itself.
+    """
+    groups: dict[tuple[str, float, str], dict[int, str]] = {}
+    for cell in cells:
+        groups.setdefault(_basis(cell), {})[cell.mode] = cell.family
+    ordinals = {}
+    for group, families in groups.items():
+        seen: Counter[str] = Counter()
+        for mode in sorted(families):
+            seen[families[mode]] += 1
+            ordinals[group, mode] = seen[families[mode]]
+    return {c: f"{c.family} {ordinals[_basis(c), c.mode]}" for c in cells if c.mode}
+
+
+def _basis(cell: Cell) -> tuple[str, float, str]:
+    return cell.case, cell.omega, "" if cell.reference == cell.full else column(cell)
+
+
+def amount(value: float, target: float) -> str:
+    """The size of a relative number, as short as a table wants: in percent, or as it is where the target is tiny."""
+    if target < TINY:
+        return f"{abs(value):.0e}"
+    size = 100 * abs(value)
+    if 0 < size < 5e-5:
+        return "<0.0001 %"
+    return (
+        f"{size:.4f} %"
+        if size < 0.1
+        else f"{size:.3f} %"
+        if size < 1
+        else f"{size:.2f} %"
+        if size < 10
+        else f"{size:.0f} %"
+    )
+
+
+def allowed(target: float) -> str:
+    """A target, in percent, or as it is where it is tiny."""
+    return f"{target:.0e}" if target < TINY else unsigned(target)
+
+
+def plus_minus(cell: Cell) -> str:
+    """``+0.0021 % ± 0.0004 %``; an unknown uncertainty is said to be unknown."""
+    shown = size(cell)
+    if shown is None:
+        return ""
+    text = amount(shown, cell.target)
+    sign = "" if text.startswith("<") else "−" if shown < 0 else "+"
+    return f"{sign}{text} ± {'unknown' if cell.uncertainty is None else amount(cell.uncertainty, cell.target)}"

@@ -1,0 +1,1 @@
+"""Pages of the documentation site and the tables of the README, generated from a run."""

@@ -1,0 +1,118 @@
+"""Pages of the documentation that are made from the package: cases, codes, command line, API, closed forms, a run's report.
+
+Nothing in them is typed twice: words are those of case files, adapters, docstrings and options.
+"""
+
+import re
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+
+from ...cases.input import library
+from ...cases.input.schema import Case
+from ...cases.judge import results
+from ...cases.judge.results import Run, Setting
+from ...cases.verify import mechanism_case
+from ...cases.verify.mechanism_case import MechanismCase
+from ...cases.verify.settings import settings
+from ...references.protocol import registry as registry
+from ..cli import app, arguments
+from ..shared.markdown import plain, table
+from ..verification import closed_forms_page, code_pages
+
+Pages = dict[str, str]
+
+REPORT = "report.md"
+"""A run's report on the site; only there if there is a run."""
+
+FLOORS = {
+    "core": "The language (blade, modes) and the in-house solver.",
+    "references": "Answers from elsewhere: one module for each foreign code, closed forms, printed tables.",
+    "cases": "Which blade, which codes, which target; runs, compares, judges.",
+    "reports": "Shows: Markdown, figures, command line.",
+}
+"""What each part of the package is for; a part imports only those before it."""
+
+
+def pages(folder: Path) -> Pages:
+    """Every page that is made, by its path in the site.
+
+    Args:
+        folder: of a run's results; without results there, pages on codes say how to make them and no report is shown.
+    """
+    path = folder / arguments.RESULTS
+    run = results.read(path) if path.exists() else Run(())
+    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms_page.pages(), **report(folder)}
+
+
+def report(folder: Path) -> Pages:
+    """A run's report as it lies there, and its figures; nothing if there is none."""
+    path = folder / "report.md"
+    if not path.exists():
+        return {}
+    text = path.read_text(encoding="utf-8")
+    figures = re.findall(r"!\[.*?\]\((figures/[\w.-]+\.svg)\)", text)
+    drawn = {name: (folder / name).read_text(encoding="utf-8") for name in figures}
+    return {REPORT: text.replace("<details>", '<details markdown="1">')} | drawn
+
+
+def cases() -> Pages:
+    """A page for each case that comes with the package, and an index."""
+    absent = library.absent()
+    known = [library.load(name) for name in library.names() if name not in absent]
+    known += [mechanism_case.case(library.mechanism(name)) for name in library.mechanisms()]
+    rows = [_row(case) for case in known]
+    rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
+    head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"
+    return {"cases/index.md": f"{head}{table(rows)}\n"} | {f"cases/{c.name}.md": _case(c) for c in known}
+
+
+def _row(case: Case | MechanismCase) -> dict[str, str]:
+    first, *_ = told = settings(case)
+    what = f"[{plain(first.title)}]({case.name}.md)"
+    blades = "a mechanism" if isinstance(case, MechanismCase) else str(len(told))
+    return {"case": f"`{case.name}`", "what": what, "blades": blades, "speeds": plain(first.facts["speeds"])}
+
+
+def _case(case: Case | MechanismCase) -> str:
+    first, *_ = told = settings(case)
+    path = f"mechanisms/{case.name}.toml" if isinstance(case, MechanismCase) else f"{case.name}.toml"
+    parts = [
+        f"# {plain(first.title)}",
+        plain(first.description),
+        f"*Source:* {plain(first.source)}.",
+        f"```console\nsouthwell verify {case.name}\n```",
+        f"File: `cases/data/{path}`.",
+        *(_facts(s) for s in told),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _facts(told: Setting) -> str:
+    rows = [{"": plain(k), told.case: plain(v)} for k, v in told.facts.items()]
+    return f"## {plain(told.case)}\n\n{table(rows)}"
+
+
+def codes(run: Run) -> Pages:
+    """A page for each code, and an index."""
+    known = [registry.code(name) for name in registry.names()]
+    out: Pages = {"codes/index.md": code_pages.index(run, known)}
+    return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in known}
+
+
+def command_line() -> str:
+    """Every command with its options, from the application itself."""
+    return app.app.generate_docs(heading_level=1, max_heading_level=3)
+
+
+def api() -> Pages:
+    """A page for each part of the package with a section for each module, filled from the docstrings by mkdocstrings."""
+    root = __name__.partition(".")[0]
+    public = f"# {root}\n\nThe names to import from `{root}`; the other pages have every module.\n"
+    out: Pages = {"api/index.md": f"{public}\n::: {root}\n    options:\n      heading_level: 2\n"}
+    for floor, what in FLOORS.items():
+        package = import_module(f"{root}.{floor}")
+        names = [m.name for m in iter_modules(package.__path__) if not m.ispkg]
+        text = "".join(f"\n::: {root}.{floor}.{name}\n    options:\n      heading_level: 2\n" for name in names)
+        out[f"api/{floor}.md"] = f"# {root}.{floor}\n\n{what}\n{text}"
+    return out

@@ -1,0 +1,122 @@
+"""What a frequency costs, as tables; and the command that measures it, ``southwell bench``."""
+
+from itertools import pairwise
+from math import log
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from tabulate import tabulate
+
+from ...cases.bench import cost as measure
+from ...cases.bench.cost import COUNT, ELEMENTS, OMEGA, SWEEP, Bench, Growth, Timing
+from ...cases.input.errors import CaseError
+from ..shared.console import output
+
+FILE = "bench.json"
+
+SEEN = 2**20
+"""Bytes above which a process's peak tells something."""
+
+ABOUT = f"""One thread a process, medians over rounds in which the codes take turns. The uniform cantilever with {ELEMENTS}
+elements, the {COUNT} lowest modes, from the blade to the modes: one speed ({OMEGA:g} rad/s), and {len(SWEEP)} speeds, the
+time divided by {len(SWEEP)}. *× core* is a code's time over core's. The error is the largest of the six lowest frequencies
+against the exact beam's, at one speed. Equal elements are not equal accuracy: the last columns have the fewest elements with
+which core is as accurate as that code, and the code's time over core's with those, for one speed and in the sweep."""
+
+
+def command(*, out: Path = Path("southwell-report")) -> int:
+    """Time core and the other codes side by side, and core with up to thousands of elements; takes minutes.
+
+    Writes bench.json and bench.md. Ratios of one run are what to quote: times are this machine's.
+
+    Parameters
+    ----------
+    out
+        Folder for the two files; `southwell report` takes them up from the folder of a report.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+    console = Console(stderr=True, highlight=False)
+    bar = Progress(
+        SpinnerColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.description}", markup=False),
+        console=console,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("starting")
+        found = measure.bench(lambda text: bar.update(task, description=text))
+    measure.write(out / FILE, found)
+    text = render(found)
+    (out / "bench.md").write_text(text, encoding="utf-8")
+    output().print(text, markup=False, soft_wrap=True)
+    return 0
+
+
+def beside(folder: Path) -> str:
+    """The tables of a measurement kept in a report's folder; empty if there is none."""
+    path = folder / FILE
+    return render(measure.read(path)) if path.exists() else ""
+
+
+def render(found: Bench) -> str:
+    """Both tables in Markdown, and what they say of the growth."""
+    core = next(t for t in found.timings if t.code == "core")
+    codes = _table([_row(t, core) for t in found.timings])
+    growth = _table([_grown(g) for g in found.growth])
+    return (
+        f"{ABOUT}\n\n{codes}\n\nCore at one speed as the elements multiply:\n\n{growth}\n\n{exponents(found.growth)}\n"
+    )
+
+
+def exponents(growth: tuple[Growth, ...]) -> str:
+    """How cost and memory grow, as powers of the number of elements; of a few elements a process shows no memory."""
+    first, last = growth[0], growth[-1]
+    steps = ", ".join(f"N^{_power(a, b, 'seconds'):.2f} from {a.elements} to {b.elements}" for a, b in pairwise(growth))
+    whole = f"N^{_power(first, last, 'seconds'):.2f} from {first.elements} to {last.elements} elements"
+    seen = [g for g in growth if g.memory > SEEN]
+    memory = (
+        f"; memory as N^{_power(seen[0], seen[-1], 'memory'):.2f} from {seen[0].elements} on" if len(seen) > 1 else ""
+    )
+    return f"Time grows as {whole} ({steps}){memory}."
+
+
+def _power(a: Growth, b: Growth, what: str) -> float:
+    return log(getattr(b, what) / getattr(a, what)) / log(b.elements / a.elements)
+
+
+def _table(rows: list[dict[str, str]]) -> str:
+    return tabulate(rows, headers="keys", tablefmt="pipe", disable_numparse=True)
+
+
+def _row(t: Timing, core: Timing) -> dict[str, str]:
+    row = {"code": f"{t.code} {t.version}".strip()}
+    if t.single is None or t.sweep is None or not core.single or not core.sweep:
+        return row | {
+            "one speed": f"○ not run: {t.note}",
+            "× core": "",
+            "a speed of the sweep": "",
+            "× core in the sweep": "",
+            "error": "",
+            "as accurate": "",
+            "× that": "",
+            "× that in the sweep": "",
+        }
+    return row | {
+        "one speed": f"{1e3 * t.single:.1f} ms",
+        "× core": f"{t.single / core.single:.1f}",
+        "a speed of the sweep": f"{1e3 * t.sweep / len(SWEEP):.1f} ms",
+        "× core in the sweep": f"{t.sweep / core.sweep:.1f}",
+        "error": f"{100 * (t.error or 0.0):.1g} %",
+        "as accurate": f"core, {t.equal.elements} elements" if t.equal else "",
+        "× that": f"{t.single / t.equal.single:.1f}" if t.equal else "",
+        "× that in the sweep": f"{t.sweep / t.equal.sweep:.1f}" if t.equal else "",
+    }
+
+
+def _grown(g: Growth) -> dict[str, str]:
+    return {"elements": f"{g.elements}", "time": f"{1e3 * g.seconds:.0f} ms", "memory": f"{g.memory / 2**20:.0f} MiB"}

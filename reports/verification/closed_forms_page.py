@@ -1,0 +1,84 @@
+"""The page of mechanisms known in closed form, and the command that writes it, ``southwell closed-forms``."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from ...cases.closed_forms.closed_forms import FORMS, ClosedForm
+from ...cases.input.errors import CaseError
+from ..shared.console import output
+from ..shared.markdown import plain, table
+from ..shared.style import svg
+from .closed_forms_figure import PAGE, Array, Complex, figure, solved
+
+Found = tuple[ClosedForm, Complex, Array]
+
+FOLDER = "closed-forms"
+"""Where the figures go, beside the page."""
+
+
+def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
+    """Hold core to mechanisms known in closed form: pendulums, a top, a turntable, linkages, a spinning ring.
+
+    Writes closed-forms.md and its figures; `southwell report` takes them up from the folder of a report. Takes ten seconds.
+
+    Parameters
+    ----------
+    out
+        Folder for the page.
+    """
+    found = [(form, *solved(form)) for form in FORMS]
+    try:
+        for path, text in _page(found).items():
+            (out / path).parent.mkdir(parents=True, exist_ok=True)
+            (out / path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+    console = output()
+    console.print(table(_rows(found)), markup=False, soft_wrap=True)
+    console.print(f"{out / PAGE}", markup=False, soft_wrap=True)
+    return 0 if all(np.nanmax(off) < form.target for form, _, off in found) else 1
+
+
+def pages() -> dict[str, str]:
+    """The page, and its figures as SVG, by their paths."""
+    return _page([(form, *solved(form)) for form in FORMS])
+
+
+def _page(found: Sequence[Found]) -> dict[str, str]:
+    out, parts = {}, [_HEAD, table(_rows(found))]
+    for form, values, off in found:
+        out[f"{FOLDER}/{form.name}.svg"] = svg(figure(form, values, off))
+        parts.append(_section(form))
+    return {PAGE: "\n\n".join(parts) + "\n"} | out
+
+
+def _rows(found: Sequence[Found]) -> list[dict[str, str]]:
+    return [
+        {
+            "mechanism": plain(form.title),
+            "source": plain(form.source),
+            "speeds": str(len(form.speeds)),
+            "largest difference": f"{np.nanmax(off):.1e}",
+            "held to": f"{form.target:.0e}",
+            "verdict": "✔ pass" if np.nanmax(off) < form.target else "✘ fail",
+        }
+        for form, _, off in found
+    ]
+
+
+_HEAD = """# Closed forms
+
+Core takes any mechanism, so it can be held to every one that is known in closed form. Those here turn, and each shows
+something that a solver which only knows blades could not: critical speeds, a steady state away from the guess, loops. The
+numbers and figures are made when this page is; the tests have more (a rotating slot, a compound pendulum, a portal frame).
+
+Lines: the closed form. Points: core. Below: the relative difference of the eigenvalues."""
+
+
+def _section(form: ClosedForm) -> str:
+    picture = f"![{form.title}: frequencies against speed]({FOLDER}/{form.name}.svg)"
+    return f"## {form.title}\n\n$$\n{form.formula}\n$$\n\n{plain(form.about)}\n\n*Source:* {plain(form.source)}.\n\n{picture}"

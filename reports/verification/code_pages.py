@@ -1,0 +1,157 @@
+"""A page for each code: version, what it shares with core, its worst difference on every blade, what it gets wrong.
+
+Numbers are those of a run; what it refuses is asked of its adapter; what it gets wrong is shown by running a reproducer.
+"""
+
+import inspect
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from ...cases.conformance.blades import PROPERTIES
+from ...cases.judge.results import Cell, Run
+from ...references.defects import DEFECTS, Defect, shown
+from ...references.protocol import registry as registry
+from ..shared import summary
+from ..shared.markdown import plain, table
+from ..shared.summary import SYMBOL
+from .report import units
+
+FOLDER = "codes"
+"""Where the pages go, beside the results."""
+
+ROLES = ("code", "same discretisation")
+"""Of cells that are a code's own answer."""
+
+
+def write(run: Run, folder: Path) -> Path:
+    """Write ``codes/NAME.md`` for every code known here, and ``codes/index.md``, into ``folder``; the index's path.
+
+    Raises:
+        OSError: if something cannot be written.
+    """
+    pages = folder / FOLDER
+    pages.mkdir(parents=True, exist_ok=True)
+    known = [registry.code(name) for name in registry.names()]
+    for code in known:
+        (pages / f"{code.name}.md").write_text(page(run, code), encoding="utf-8")
+    path = pages / "index.md"
+    path.write_text(index(run, known), encoding="utf-8")
+    return path
+
+
+def index(run: Run, known: Sequence[Any]) -> str:
+    """All codes: version, what each shares with core, its cells by verdict, its worst difference and where, defects."""
+    rows = []
+    for code in known:
+        cells = own(run, code.name)
+        far = summary.worst(cells)
+        rows.append(
+            {
+                "code": f"[{plain(code.title)}]({code.name}.md)",
+                "version": plain(version(run, code)),
+                "shares with core": code.shares,
+                "cells": plain(", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n)),
+                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)} ({plain(far.case)})"
+                if far
+                else "",
+                "known defects": str(len(defects(code.name))),
+            }
+        )
+    signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
+    return f"# Codes\n\n{table(rows)}\n\nSigns: {signs}. Written by `southwell codes --pages` after `{run.command}`.\n"
+
+
+def page(run: Run, code: Any) -> str:
+    """One code's page."""
+    environment = Environment(
+        loader=PackageLoader(__package__ or "", "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["plain"] = plain
+    levels = ", ".join(map(str, getattr(code, "levels", ())))
+    return environment.get_template("code.md.jinja").render(
+        name=code.name,
+        title=code.title,
+        version=version(run, code),
+        shares=code.shares,
+        lacks=", ".join(code.model.lacks()) or "nothing",
+        levels=f"from {levels} elements or terms on, of order {code.order or 'spectral'}" if levels else "",
+        how=(inspect.getdoc(sys.modules[type(code).__module__]) or "").replace("``", "`"),
+        legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
+        differences=differences(run, own(run, code.name)),
+        properties=properties(code) if hasattr(code, "solve") else "",
+        defects=[_defect(defect) for defect in defects(code.name)],
+    )
+
+
+def own(run: Run, name: str) -> list[Cell]:
+    """The cells of one code."""
+    return [c for c in run.cells if c.code == name and c.role in ROLES]
+
+
+def defects(name: str) -> list[Defect]:
+    """Known defects of one code."""
+    return [d for d in DEFECTS if name in d.codes]
+
+
+def version(run: Run, code: Any) -> str:
+    """The version that the run's numbers are of; else the one installed, or how to install it."""
+    ran = run.versions.get(code.name)
+    if ran and ran != "not installed":
+        return ran
+    return code.version() or f"not installed: `{code.hint}`"
+
+
+def differences(run: Run, cells: Sequence[Cell]) -> str:
+    """For each blade: the gravest verdict, how many cells have which, and its largest difference; empty without cells."""
+    labels = summary.labels(run.cells)
+    rows = []
+    for case in dict.fromkeys(c.case for c in cells):
+        here = [c for c in cells if c.case == case]
+        far = summary.worst(here)
+        where = f"{labels[far]}, {units(run, case).at(far.omega)}" if far else ""
+        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
+        counted = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(here).items() if n)
+        rows.append(
+            {
+                "blade": plain(case),
+                "cells": plain(counted),
+                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)}" if far else "",
+                "where": plain(where),
+                "why": plain(reason),
+            }
+        )
+    return table(rows) if rows else ""
+
+
+def properties(code: Any) -> str:
+    """What the adapter says to a rod with each property."""
+    rows = []
+    for p in PROPERTIES:
+        why = code.unsupported(p.having)
+        answer = f"refused: {plain(why)}" if why else "taken"
+        if not why and p.name in code.model.lacks():
+            answer = "left out, as declared"
+        rows.append({"property": plain(p.name), "answer": answer})
+    return table(rows)
+
+
+def _defect(defect: Defect) -> dict[str, str]:
+    """What the template says of a defect, with what its reproducer prints now."""
+    try:
+        output, says = shown(defect), "prints"
+    except RuntimeError as error:
+        output, says = str(error), "could not run here"
+    return {
+        "what": defect.what.rstrip("."),
+        "avoided": defect.avoided,
+        "script": defect.script,
+        "says": says,
+        "output": output,
+    }

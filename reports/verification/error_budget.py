@@ -1,0 +1,36 @@
+"""Where a case's differences come from, as a table: a row a cause, a column a mode."""
+
+from ...cases.judge.results import Run, Share
+from ...cases.judge.verdict import percent, unsigned
+from ..shared.units import Units
+
+TINY = 1e-9
+"""Changes smaller than this are none."""
+
+
+def rows(run: Run, case: str) -> list[dict[str, str]]:
+    """A row a cause: discretisation, model form, rounding; in each field what it alone does to a mode."""
+    mine = [s for s in run.shares if s.case == case]
+    modes = list(dict.fromkeys(s.mode for s in mine))
+    by = {(s.cause, s.part, s.mode): s for s in mine}
+    order = {cause: k for k, cause in enumerate(("discretisation", "model form", "rounding"))}
+    parts = sorted(dict.fromkeys((s.cause, s.part) for s in mine), key=lambda p: order[p[0]])
+    return [
+        {"cause": cause, "what": part} | {mode: _shown(by.get((cause, part, mode))) for mode in modes}
+        for cause, part in parts
+    ]
+
+
+def heading(run: Run, case: str, units: Units) -> str:
+    """At which speed; empty for a case without shares."""
+    return next((units.at(s.omega) for s in run.shares if s.case == case), "")
+
+
+def _shown(share: Share | None) -> str:
+    if share is None:
+        return ""
+    if share.change is None:
+        return "no such mode"
+    if abs(share.change) < TINY:
+        return "0"
+    return f"± {unsigned(share.change)}" if share.bound else percent(share.change)

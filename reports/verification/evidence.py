@@ -1,0 +1,110 @@
+"""What a run's evidence is made of, kind by kind: how many answers, the worst difference of each kind, and where it is."""
+
+from collections.abc import Callable, Iterable
+
+from ...cases.judge.results import Cell, Run, Verdict
+from ..shared import summary
+from ..shared.summary import SYMBOL
+from ..shared.units import BY_KEY, RAD_S, Units
+
+KINDS: dict[str, Callable[[Cell], bool]] = {
+    "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
+    "printed tables": lambda c: c.role == "table",
+    "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
+    "the source's own discretisation": lambda c: c.role == "discretisation",
+    "mechanisms: codes and closed forms with the same equations": lambda c: c.role == "same discretisation",
+    "other": lambda c: True,
+}
+"""A cell is of the first kind that takes it; the first two check the answer, the third the implementation only."""
+
+URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
+"""What is named before all else, gravest first."""
+
+SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
+"""Verdicts on a difference from core with the same effects, gravest first."""
+
+
+def answer(run: Run) -> str:
+    """The verdict in a sentence, and how many cells it rests on."""
+    counts = summary.counts(run.cells)
+    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in counts.items() if n)
+    cells = f"{len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
+    if not any(counts[v] for v in (*SAME, "known difference")):
+        return f"**Nothing was compared.** {cells}"
+    if counts["fail"]:
+        return f"**No: {_number(counts['fail'])} core.** {cells}"
+    if counts["inconclusive"]:
+        return f"**Nothing contradicts core, but {counts['inconclusive']} of the answers cannot tell.** {cells}"
+    return f"**Nothing contradicts core.** {cells}"
+
+
+def _number(n: int) -> str:
+    return f"{n} answer contradicts" if n == 1 else f"{n} answers contradict"
+
+
+def urgent(run: Run) -> list[str]:
+    """Lines for the worst failure, for failures without a number, and for the largest inconclusive difference."""
+    found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
+    told = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+    mute = dict.fromkeys(f"{c.code} ({c.case})" for c in run.cells if c.verdict == "fail" and c.difference is None)
+    return [*told, *([f"Failed without a frequency: {', '.join(mute)}."] if mute else [])]
+
+
+def first(run: Run) -> list[str]:
+    """What a reader looks for first: the answer, and what is urgent; if nothing is, the independent answer that is
+    farthest from core for its target."""
+    far = farthest(c for c in run.cells if c.shares == "nothing")
+    if not far or any(c.verdict in summary.BAD for c in run.cells):
+        return [answer(run), *urgent(run)]
+    return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}."]
+
+
+def rows(run: Run) -> list[dict[str, str]]:
+    """A row a kind: its cells by verdict, the worst difference with the same effects, the largest known one; and where."""
+    out = []
+    kinds: dict[str, list[Cell]] = {kind: [] for kind in KINDS}
+    for cell in run.cells:
+        if summary.size(cell) is not None or cell.verdict in summary.BAD:
+            kinds[next(kind for kind, takes in KINDS.items() if takes(cell))].append(cell)
+    for kind, cells in kinds.items():
+        if cells:
+            same, known = farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
+            out.append(
+                {
+                    "evidence": kind,
+                    "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
+                    "worst, for its target": _shown(run, same),
+                    "largest known difference": _shown(run, known),
+                }
+            )
+    return out
+
+
+def farthest(cells: Iterable[Cell]) -> Cell | None:
+    """Of the gravest of ``SAME`` there, the one that is largest for its target."""
+    cells = list(cells)
+    for verdict in SAME:
+        if there := [c for c in cells if c.verdict == verdict]:
+            return max(there, key=lambda c: abs(c.difference or 0.0) / c.target)
+    return None
+
+
+def _shown(run: Run, cell: Cell | None) -> str:
+    if cell is None:
+        return ""
+    if cell.difference is None:
+        units = _units(run, cell)
+        return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
+    cause = f"cause: {cell.reason.partition(';')[0]}"
+    more = f"target {summary.allowed(cell.target)}" if cell.verdict in SAME else cause
+    return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {more}"
+
+
+def where(run: Run, cell: Cell) -> str:
+    """Case, code, mode and speed of a cell."""
+    mode = summary.labels(run.cells)[cell]
+    return f"{cell.case}, {summary.column(cell)}, {mode}, {_units(run, cell).at(cell.omega)}"
+
+
+def _units(run: Run, cell: Cell) -> Units:
+    return next((BY_KEY[s.unit] for s in run.settings if s.case == cell.case), RAD_S)

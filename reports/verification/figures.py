@@ -1,0 +1,202 @@
+"""Campbell diagram and differences of one blade, from a run's rows alone."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
+
+from ...cases.judge.results import Cell, Run, Verdict
+from ..shared.style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, house, key, looks, title
+from ..shared.summary import allowed, amount, column, columns, counts, labels
+from ..shared.units import Units
+
+ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
+"""Multiples of the rotor's speed that are worth a ray."""
+
+
+def campbell(run: Run, case: str, units: Units) -> Figure | None:
+    """Frequencies against rotor speed: core's as lines, every code's as markers, rays of n per revolution.
+
+    Core's lines run straight in the squares between its points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). Codes that are
+    given core's discretisation are not shown: theirs is not a converged answer. None if the case has numbers at fewer
+    than two speeds.
+    """
+    cells = [c for c in run.cells if c.case == case and c.role != "same discretisation"]
+    lines = core_lines(cells)
+    speeds = sorted({omega for line in lines.values() for omega in line})
+    if len(speeds) < 2:
+        return None
+    answers = [c.frequency for c in cells if c.frequency is not None]
+    shown = columns([c for c in cells if c.frequency is not None])
+    with house():
+        low = band(len(shown) + 1)
+        height = 4.6 + low
+        figure = Figure((WIDTH, height))
+        axes = figure.add_axes((0.08, low / height, 0.78, 1 - (low + 0.68) / height))
+        axes.set_xlim(0, 1.03 * speeds[-1] * units.speeds)
+        axes.set_ylim(
+            0, 1.05 * max([*answers, *(f for line in lines.values() for f in line.values())]) * units.frequencies
+        )
+        _rays(axes, units)
+        ends = []
+        for name, line in lines.items():
+            omega = np.array(sorted(line))
+            fine = np.linspace(omega[0], omega[-1], 120)
+            curve = np.sqrt(np.interp(fine**2, omega**2, np.square([line[o] for o in omega]))) * units.frequencies
+            style = LINES.get(name.split()[0], "-")
+            axes.plot(fine * units.speeds, curve, color=INK, lw=1.0, ls=style, zorder=3)
+            ends.append((float(curve[-1]), name))
+        handles = _markers(axes, run, cells, shown, units)
+        beside(axes, ends)
+        axes.set_xticks([omega * units.speeds for omega in speeds])
+        axes.set_xlabel(units.speed_label)
+        axes.set_ylabel(units.frequency_label)
+        title(figure, f"{case}: natural frequencies against rotor speed")
+        key(figure, handles, 0.08)
+    return figure
+
+
+def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
+    """Core's frequencies with all effects (rad/s) by mode and speed; modes by name if the names last, else by number."""
+    names = labels(cells)
+    full = [c for c in cells if c.full is not None and c.reference == c.full]
+    full = full or [c for c in cells if c.full is not None]
+    speeds = {c.omega for c in full}
+    by_name: dict[str, dict[float, float]] = {}
+    by_number: dict[str, dict[float, float]] = {}
+    for c in sorted(full, key=lambda c: (c.mode, c.omega)):
+        by_name.setdefault(names[c], {})[c.omega] = c.full or 0.0
+        by_number.setdefault(f"mode {c.mode}", {})[c.omega] = c.full or 0.0
+    lasting = all(set(line) == speeds for line in by_name.values())
+    return by_name if lasting else by_number
+
+
+def _rays(axes: Axes, units: Units) -> None:
+    right, top = axes.get_xlim()[1], axes.get_ylim()[1]
+    slope = units.frequencies / units.speeds
+    for n in ORDERS:
+        end = min(right, top / (n * slope))
+        if not 0.04 * top < n * slope * right < 3.5 * top:
+            continue
+        axes.plot([0, end], [0, n * slope * end], color=FAINT, lw=0.8, zorder=1)
+        at = (end, n * slope * end) if end < right else (0.93 * end, 0.93 * n * slope * end)
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        axes.annotate(
+            f"{n}P",
+            at,
+            (0, 3 if end < right else 0),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if end < right else "center",
+            size=7,
+            color=MUTED,
+            bbox=box,
+            zorder=2,
+        )
+
+
+def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], units: Units) -> list[Line2D]:
+    """Hollow markers, nested: the first code's is the largest, so that codes that agree can all be seen."""
+    style = looks(columns(run.cells))
+    handles = [Line2D([], [], color=INK, lw=1.0, label="core, converged")]
+    for rank, name in enumerate(shown):
+        mine = [c for c in cells if column(c) == name and c.frequency is not None]
+        handles += axes.plot(
+            [c.omega * units.speeds for c in mine],
+            [(c.frequency or 0.0) * units.frequencies for c in mine],
+            ls="",
+            marker=style[name].marker,
+            ms=10.0 - 7.0 * rank / max(len(shown) - 1, 1),
+            mfc="none",
+            mec=style[name].colour,
+            mew=1.1,
+            label=name,
+            clip_on=False,
+            zorder=4,
+        )
+    return handles
+
+
+FACES: dict[Verdict, str] = {"pass": "full", "known difference": "left", "inconclusive": "none", "fail": "full"}
+"""How a marker is filled; a failure is a cross."""
+
+BELOW = 1e-5
+"""Differences smaller than this part of the smallest target are drawn at the left edge."""
+
+
+def differences(run: Run, case: str, units: Units) -> Figure | None:
+    """Every cell's difference ± uncertainty on a log axis, a row a code, a track a mode; None if there are no numbers."""
+    cells = [c for c in run.cells if c.case == case and c.difference is not None]
+    if not cells:
+        return None
+    names, style, modes = columns(cells), looks(columns(run.cells)), labels(cells)
+    tracks = max(c.mode for c in cells)
+    with house():
+        low, height = band(1), 1.36 + 0.6 * len(names)
+        figure = Figure((WIDTH, height))
+        axes = figure.add_axes((0.2, low / height, 0.58, 1 - (low + 0.55) / height))
+        axes.set_xscale("log")
+        axes.set_xlim(*_decades(cells))
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        for row, name in enumerate(names):
+            mine = [c for c in cells if column(c) == name]
+            if row % 2:
+                axes.axhspan(row - 0.5, row + 0.5, color="#f5f5f5", lw=0, zorder=0)
+            _row(axes, row, mine, tracks, style[name])
+            worst = max(mine, key=lambda c: abs(c.difference or 0.0))
+            text = f"{amount(worst.difference or 0.0, worst.target)}\n{modes[worst]}, {units.at(worst.omega)}"
+            axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
+        axes.set_yticks(range(len(names)), names)
+        axes.tick_params(axis="y", length=0, pad=8)
+        axes.xaxis.set_major_locator(LogLocator(numticks=20))
+        axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
+        axes.annotate("largest", (1.02, -0.5), (0, 4), ("axes fraction", "data"), "offset points", size=8, color=MUTED)
+        title(figure, f"{case}: differences, every mode and speed")
+        present = counts(cells)
+        keys = [Line2D([], [], ls="", color=INK, ms=5, label=v, **_face(v, "o", INK)) for v in FACES if present[v]]
+        tracked = Line2D([], [], ls="", label=f"in each row, from above: modes 1 to {tracks}")
+        key(figure, [*keys, *([tracked] if tracks > 1 else [])], 0.2, across=5)
+    return figure
+
+
+def _face(verdict: Verdict, marker: str, colour: str) -> dict[str, Any]:
+    return {
+        "marker": "X" if verdict == "fail" else marker,
+        "fillstyle": FACES[verdict],
+        "markerfacecolor": colour,
+        "markerfacecoloralt": "white",
+        "markeredgecolor": colour,
+        "markeredgewidth": 0.8,
+    }
+
+
+def _decades(cells: Sequence[Cell]) -> tuple[float, float]:
+    floor = BELOW * min(c.target for c in cells)
+    sizes = [abs(c.difference or 0.0) for c in cells] + [c.target for c in cells]
+    low = 10.0 ** np.floor(np.log10(max(min(sizes), floor)) + 1e-9)
+    return low, 10.0 ** np.ceil(np.log10(2 * max(sizes)))
+
+
+def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -> None:
+    """The targets as upright lines, a bar and a marker a cell."""
+    left = axes.get_xlim()[0]
+    d = np.array([abs(c.difference or 0.0) for c in cells])
+    u = np.array([c.uncertainty or 0.0 for c in cells])
+    y = row + 0.32 * np.array([2 * (c.mode - 1) / max(tracks - 1, 1) - 1 for c in cells])
+    axes.hlines(y, np.maximum(d - u, left), np.maximum(d + u, left), color=look.colour, lw=0.7, alpha=0.5, zorder=2)
+    for verdict in FACES:
+        k = np.array([c.verdict == verdict for c in cells])
+        face = _face(verdict, look.marker, look.colour)
+        axes.plot(np.maximum(d, left)[k], y[k], ls="", ms=4.5, zorder=3, clip_on=False, **face)
+    targets = sorted({c.target for c in cells})
+    axes.vlines(targets, row - 0.5, row + 0.5, color=INK, lw=1.2, zorder=4)
+    if row == 0:
+        text = f"target {', '.join(allowed(t) for t in targets)}"
+        at = axes.transScale.transform((targets[0], 0.0))[0]
+        low, high = axes.transScale.transform([(x, 0.0) for x in axes.get_xlim()])[:, 0]
+        side = "right" if at > low + 0.85 * (high - low) else "center"  # clear of the next heading
+        axes.annotate(text, (targets[0], -0.5), (0, 4), textcoords="offset points", ha=side, size=8)

@@ -1,0 +1,128 @@
+"""The paper's explanation of its differences, shown true or false: lumped mass, the stiffness's frame, or both."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator, NullLocator
+
+from ...cases.judge.results import Run
+from ...cases.verify.lumping import CASE, MASSES, OMEGA, STIFFNESSES, variant
+from ..shared.style import COLOURS, FAINT, INK, WIDTH, beside, house, title
+
+PAPER = 50
+"""Elements of the paper's cantilever."""
+
+EXACT, FRAME, MASS, BOTH = (variant(mass, stiffness) for mass in MASSES for stiffness in STIFFNESSES)
+"""Neither departure from a convergent discretisation of fourth order, one, the other, both as in the paper."""
+
+LOOKS = {
+    BOTH: ("both (paper)", INK, "o"),
+    MASS: ("lumped mass", COLOURS[0], "s"),
+    FRAME: ("parent's frame", COLOURS[1], "^"),
+    EXACT: ("neither", COLOURS[2], "D"),
+}
+
+
+@dataclass(frozen=True)
+class Taken:
+    """Relative errors of the four combinations: name → (elements,) and (elements, modes)."""
+
+    elements: np.ndarray
+    errors: dict[str, np.ndarray]
+
+    def at(self, name: str) -> np.ndarray:
+        """(modes,) errors at the paper's number of elements."""
+        return self.errors[name][self.elements.tolist().index(PAPER)]
+
+    @property
+    def shares(self) -> np.ndarray:
+        """(modes,) the lumped mass's part of the whole error at the paper's number of elements."""
+        return self.at(MASS) / self.at(BOTH)
+
+
+def taken(run: Run) -> Taken | None:
+    """The errors in a run's rows, against the finest of the exact combination; None if the run has no such rows."""
+    rows = {name: [v for v in run.levels if v.case == CASE and v.code == name] for name in LOOKS}
+    if not all(rows.values()):
+        return None
+    elements = sorted({v.elements for v in rows[EXACT]})
+    modes = sorted({v.mode for v in rows[EXACT]})
+    table = {name: {(v.elements, v.mode): v.frequency for v in found} for name, found in rows.items()}
+    grid = {name: np.array([[f[n, m] for m in modes] for n in elements]) for name, f in table.items()}
+    exact = grid[EXACT][-1]
+    return Taken(np.array(elements), {name: f / exact - 1.0 for name, f in grid.items()})
+
+
+def sentence(found: Taken) -> str:
+    """What the numbers say of the paper's explanation."""
+    percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
+    return (
+        f"Lumping the mass makes up {percent} of the error of chordwise modes 1 to {len(found.shares)} at {PAPER} "
+        "elements; the rest comes from a beam stiffness that is linear in the parent body's frame."
+    )
+
+
+def lumping(run: Run) -> Figure | None:
+    """Left, the error at the paper's 50 elements taken apart; right, how each part falls with refinement."""
+    found = taken(run)
+    if found is None:
+        return None
+    with house():
+        figure = Figure((WIDTH, 4.0))
+        left = figure.add_axes((0.115, 0.125, 0.4, 0.64))
+        right = figure.add_axes((0.6, 0.125, 0.205, 0.64))
+        _parts(left, found)
+        _falling(right, found)
+        shares = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
+        about = f"{CASE}, {OMEGA:g} rad/s, chordwise modes 1 to {len(found.shares)}; from core with its switches"
+        title(figure, f"How much of the error is the lumped mass? {shares}", about)
+    return figure
+
+
+def _parts(axes: Axes, found: Taken) -> None:
+    modes = range(len(found.shares))
+    parts = {name: 100 * found.at(name) for name in (MASS, FRAME)}
+    base = np.zeros(len(found.shares))
+    for name, part in parts.items():
+        label, colour, _ = LOOKS[name]
+        axes.barh(modes, part, 0.4, left=base, color=colour)
+        for k in modes:
+            axes.annotate(_signed(part[k]), (base[k] + part[k] / 2, k + 0.33), ha="center", va="center", size=7.5)
+        end = (base[-1] + part[-1] / 2, len(found.shares) - 0.33)
+        axes.annotate(label, end, ha="center", va="center", size=7.5, color=colour, weight="bold")
+        base = base + part
+    for k, both in enumerate(100 * found.at(BOTH)):
+        axes.plot([both], [k], "|", ms=24, mew=2.2, color=INK)
+        axes.annotate(f"{_signed(both)} %", (both, k - 0.36), ha="center", va="center", size=8, weight="bold")
+    axes.set_yticks(modes, [f"chordwise {k + 1}" for k in modes])
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(len(modes) - 0.1, -0.6)
+    axes.set_xlim(122 * found.at(BOTH).min(), 0)
+    axes.xaxis.set_major_locator(MultipleLocator(0.05))
+    axes.set_xlabel("error, %")
+    axes.set_title(f"{PAPER} elements: bars, each alone; tick, both", size=9)
+
+
+def _signed(percent: float) -> str:
+    return f"{percent:+.3f}".replace("-", "−")
+
+
+def _falling(axes: Axes, found: Taken) -> None:
+    axes.axvline(PAPER, color=FAINT, lw=1.0, zorder=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    ends = []
+    for name, (label, colour, marker) in LOOKS.items():
+        shown = slice(None, -2 if name == EXACT else None)  # the exact one is compared with its own finest
+        n, error = found.elements[shown], np.abs(found.errors[name][shown, -1])
+        axes.plot(n, error, color=colour, marker=marker, ms=4, mfc="white", lw=1.1)
+        order = -np.polyfit(np.log(n), np.log(error), 1)[0]
+        ends.append((float(error[-1]), f"{label}: order {order:.1f}", colour))
+    beside(axes, ends, size=8)
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xticks(found.elements, [str(n) for n in found.elements])
+    axes.set_xlabel("elements")
+    axes.set_ylabel("|error|, relative")
+    axes.set_title(f"chordwise {len(found.shares)}, refined", size=9)

@@ -1,0 +1,294 @@
+"""The report of a run as GitHub-flavoured Markdown: verdict first, then a heat table, then case by case."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from matplotlib.figure import Figure
+
+from ...cases.judge.results import Cell, Run, Setting, Verdict
+from ...cases.verify.lumping import CASE as LUMPED
+from ..condense import page
+from ..shared import summary
+from ..shared.markdown import anchor, plain, table
+from ..shared.style import save
+from ..shared.summary import SYMBOL, amount, broad, column, columns
+from ..shared.units import BY_KEY, Units
+from . import bench, closed_forms_figure, controls, error_budget, evidence, lumped, witnesses
+from .convergence import convergence
+from .figures import campbell, differences
+
+FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
+    "campbell": campbell,
+    "differences": differences,
+    "convergence": convergence,
+    "mistakes": controls.mistakes,
+}
+"""Drawn for each blade; the key ends the file's name."""
+
+LARGEST: dict[Verdict, str] = {
+    "known difference": "Largest known difference",
+    "pass": "Largest difference that passes",
+}
+"""What the headline names, gravest first."""
+
+SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a"}
+"""Verdicts as the heat table has them, under a legend that has them in full."""
+
+LEGEND = ", ".join(f"{sign} {v}{f' ({SHORT[v]})' if v in SHORT else ''}" for v, sign in SYMBOL.items())
+
+
+def write(run: Run, folder: Path) -> Path:
+    """Write ``report.md`` and ``figures/*.svg`` into ``folder``; the same run gives the same bytes.
+
+    Raises:
+        OSError: if something cannot be written.
+    """
+    figures = folder / "figures"
+    figures.mkdir(parents=True, exist_ok=True)
+    drawn: dict[str, list[str]] = {}
+    for case in summary.cases(run):
+        for kind, draw in FIGURES.items():
+            if figure := draw(run, case, units(run, case)):
+                name = f"{re.sub(r'[^A-Za-z0-9.-]+', '-', case)}-{kind}.svg"
+                save(figure, figures / name)
+                drawn.setdefault(case, []).append(f"figures/{name}")
+    if figure := lumped.lumping(run):
+        save(figure, figures / "lumped-mass.svg")
+    path = folder / "report.md"
+    beside = {
+        "cost": bench.beside(folder),
+        "condensed": page.beside(folder),
+        "known": closed_forms_figure.beside(folder),
+    }
+    path.write_text(render(run, drawn, **beside), encoding="utf-8")
+    return path
+
+
+def units(run: Run, case: str) -> Units:
+    """The units a case is read in; rad/s if the run says nothing of it."""
+    return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
+
+
+def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "", known: str = "") -> str:
+    """The report's text.
+
+    Args:
+        run: its results.
+        figures: paths of each case's figures, relative to the report.
+        cost: the tables of ``bench``.
+        condensed: the page of ``condense``.
+        known: that of ``closed-forms``.
+    """
+    environment = Environment(
+        loader=PackageLoader(__package__ or "", "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["plain"] = plain
+    found, borne_out = lumped.taken(run), witnesses.table(run)
+    return environment.get_template("report.md.jinja").render(
+        headline=first(run),
+        evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
+        remarks=[told for told in (witnesses.headline(run), controls.headline(run)) if told],
+        heat=heat(run, linked=True),
+        unasked=unasked(run),
+        legend=LEGEND,
+        cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
+        witnesses=table([{k: plain(v) for k, v in row.items()} for row in borne_out]) if borne_out else "",
+        controls=_controls(run),
+        lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
+        versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
+        if run.versions
+        else "",
+        command=run.command,
+        cost=cost,
+        condensed=condensed,
+        known=known,
+    )
+
+
+def _controls(run: Run) -> dict[str, str]:
+    if not run.controls:
+        return {}
+    tables = (
+        table([{k: plain(v) for k, v in row.items()} for row in controls.overview(run)]),
+        table([{plain(k): v for k, v in row.items()} for row in controls.by_case(run)]),
+    )
+    return {"overview": tables[0], "by_case": tables[1], "sentence": controls.sentence(run)}
+
+
+def headline(run: Run) -> list[str]:
+    """The verdict in a few sentences, the gravest first."""
+    lines = [evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
+    for verdict, what in LARGEST.items():
+        if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
+            lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
+    return lines + [told for told in (witnesses.headline(run), controls.headline(run)) if told]
+
+
+def first(run: Run) -> list[str]:
+    """The answer, and after it what ``evidence`` names first, as text."""
+    answer, *rest = evidence.first(run)
+    return [answer, *map(plain, rest)]
+
+
+def unasked(run: Run) -> str:
+    """Codes that answered nowhere, and why, in a line; empty if there are none."""
+    told = []
+    for name in _silent(run):
+        mine = [c for c in run.cells if broad(c) == name]
+        reasons = "; ".join(dict.fromkeys(c.reason for c in mine if c.verdict == "not run"))
+        told.append(f"{plain(name)} ({plain(reasons) or 'not applicable'})")
+    return ", ".join(told)
+
+
+def _silent(run: Run) -> list[str]:
+    """Columns without a single answer, if any other has one."""
+    names = columns(run.cells, broad)
+    empty = [n for n in names if all(c.verdict in ("not run", "not applicable") for c in run.cells if broad(c) == n)]
+    return empty if len(empty) < len(names) else []
+
+
+def heat(run: Run, linked: bool = False) -> str:
+    """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it.
+
+    Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases lead to their sections.
+    """
+    names = [n for n in columns(run.cells, broad) if n not in _silent(run)]
+    rows = []
+    for case in summary.cases(run):
+        mine = [c for c in run.cells if c.case == case]
+        shown = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
+        rows.append({"case": shown} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
+    if any(c.shares for c in run.cells):
+        shares = {plain(n): witnesses.shared([c for c in run.cells if broad(c) == n]) for n in names}
+        rows.append({"case": "*shares with core*"} | shares)
+    return table(rows)
+
+
+def _heat(cells: Sequence[Cell]) -> str:
+    if not cells:
+        return ""
+    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    size = summary.size(worst) if worst else None
+    shown = f"<br>{amount(size, worst.target)}" if worst and size is not None else ""
+    return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{shown}"
+
+
+@dataclass(frozen=True)
+class Section:
+    """One blade's part of the report, ready for the template."""
+
+    name: str
+    setting: Setting | None
+    first: bool
+    facts: str
+    focus: str
+    main: str
+    rest: list[tuple[str, str]]
+    told: str
+    figures: list[str]
+    mistakes: list[str]
+    reasons: str
+    count: int
+    shares: str
+    shares_at: str
+
+
+def section(run: Run, case: str, figures: list[str]) -> Section:
+    """One blade: its setting, frequencies and differences at the speed in focus and at the others, reasons."""
+    cells = [c for c in run.cells if c.case == case]
+    setting = next((s for s in run.settings if s.case == case), None)
+    unit = units(run, case)
+    speeds = sorted({c.omega for c in cells if c.mode})
+    printed = [c.omega for c in cells if c.role == "table"]
+    focus = max(printed or speeds, default=None)
+    tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
+    reasons, split = why(cells, unit), error_budget.rows(run, case)
+    return Section(
+        name=case,
+        setting=setting,
+        first=case == next((c for c in summary.cases(run) if c.partition("/")[0] == case.partition("/")[0]), case),
+        facts="; ".join(f"{k}: {v}" for k, v in setting.facts.items()) if setting else "",
+        focus=unit.at(focus) if focus is not None else "",
+        main=tables[focus] if focus is not None else "",
+        rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
+        told=told(cells),
+        figures=[f for f in figures if not f.endswith("-mistakes.svg")],
+        mistakes=[f for f in figures if f.endswith("-mistakes.svg")],
+        reasons=table(reasons) if reasons else "",
+        count=len(reasons),
+        shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
+        shares_at=error_budget.heading(run, case, unit),
+    )
+
+
+def told(cells: Sequence[Cell]) -> str:
+    """One case's cells by verdict, and the largest difference of each of those that have one."""
+    parts = []
+    for verdict, n in summary.counts(cells).items():
+        if n:
+            far = summary.largest(c for c in cells if c.verdict == verdict)
+            parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(far)}' if far else ''}")
+    return "; ".join(parts)
+
+
+def comparison(cells: Sequence[Cell], unit: Units) -> str:
+    """Modes × columns at one speed: core's frequency, and each column's difference ± uncertainty with its sign.
+
+    The source's own discretisation shows its frequency too. A code that lacks effects is compared with core lacking
+    them, whose modes may come in another order: rows are modes by name.
+    """
+    names = summary.labels(cells)
+    full = {names[c]: c.full for c in sorted(cells, key=lambda c: c.reference != c.full) if c.full is not None}
+    rows = []
+    for mode in dict.fromkeys(names[c] for c in sorted(cells, key=lambda c: (c.reference != c.full, c.mode))):
+        core = next(
+            (c.full for c in cells if names[c] == mode and c.full is not None and c.reference == c.full), full.get(mode)
+        )
+        row = {"mode": mode, f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        for name in columns(cells):
+            mine = next((c for c in cells if column(c) == name and names[c] == mode), None)
+            row[plain(name)] = _entry(mine, unit) if mine else ""
+        rows.append(row)
+    return table(rows)
+
+
+def _entry(cell: Cell, unit: Units) -> str:
+    frequency = ""
+    if cell.role in ("discretisation", "table") and cell.frequency is not None:
+        frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
+    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}".strip()
+
+
+def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
+    """A row for every cell that does not plainly pass; neighbours that differ in nothing but speed share one."""
+    names = summary.labels(cells)
+    grave = [
+        c
+        for verdict in summary.GRAVEST_FIRST
+        for c in cells
+        if c.verdict == verdict and (verdict != "pass" or c.reason)
+    ]
+    rows = []
+    for (verdict, name, mode, reason), group in groupby(
+        grave, lambda c: (c.verdict, column(c), names.get(c, ""), c.reason)
+    ):
+        at = [unit.at(c.omega) for c in group]
+        where = at[0] if len(at) == 1 else f"{len(at)} speeds" if not mode else ", ".join(at)
+        rows.append(
+            {
+                "verdict": f"{SYMBOL[verdict]} {verdict}",
+                "code": plain(name),
+                "mode": mode,
+                "speed": where,
+                "reason": plain(reason),
+            }
+        )
+    return rows

@@ -1,0 +1,105 @@
+"""A run's matrix, its negative controls and a blade's frequencies as tables for the terminal."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from rich import box
+from rich.table import Table
+
+from ...cases.campbell.sweep import Named
+from ...cases.judge.results import Cell, Run, Verdict
+from ..shared import summary
+from ..shared.summary import SYMBOL, broad, columns
+from ..shared.units import Units
+from . import controls as mistakes
+from . import witnesses
+
+COLOUR: dict[Verdict, str] = {
+    "pass": "green",
+    "known difference": "cyan",
+    "inconclusive": "yellow",
+    "fail": "bold red",
+    "not applicable": "dim",
+    "not run": "dim",
+}
+"""Beside sign and number, never instead of them."""
+
+NARROW = 10
+"""Columns that the matrix gives a code at least."""
+
+BETWEEN = 2
+"""Characters between two columns."""
+
+
+def matrix(run: Run, width: int) -> Iterator[Table]:
+    """Case × code: sign and largest difference; the gravest verdict of all modes and speeds.
+
+    In as many tables beneath each other as the ``width`` in characters wants.
+    """
+    names = columns(run.cells, broad)
+    cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
+    first = max((len(line) for case in (*cases, "shares with core") for line in case.split("\n")), default=0)
+    count = max(1, (width - first - BETWEEN) // (NARROW + BETWEEN))
+    for part in (names[k : k + count] for k in range(0, len(names), count)):
+        out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+        out.add_column("case", no_wrap=True)
+        for name in part:
+            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name)
+            out.add_column(head, overflow="fold", min_width=NARROW)
+        for case, shown in zip(summary.cases(run), cases, strict=True):
+            mine = [c for c in run.cells if c.case == case]
+            out.add_row(shown, *[_field([c for c in mine if broad(c) == name]) for name in part])
+        if any(c.shares for c in run.cells):
+            shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in part]
+            out.add_section()
+            out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
+        yield out
+
+
+def legend() -> str:
+    """What the fields of ``matrix`` say."""
+    signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
+    return f"largest difference from core in % (as 2e-14: relative); {signs}"
+
+
+def controls(run: Run) -> Table:
+    """What became of core made wrong on purpose: a line a mistake."""
+    out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for head in ("core made wrong on purpose", "outcome", "largest change", "caught by"):
+        out.add_column(head, overflow="fold")
+    for row in mistakes.overview(run):
+        names = row["caught by"].split(", ") if row["caught by"] else []
+        style = "bold red" if "missed" in row["outcome"] else ""
+        out.add_row(row["core made wrong"], row["outcome"], row["largest change"], str(len(names)), style=style)
+    return out
+
+
+def _field(cells: Sequence[Cell]) -> str:
+    if not cells:
+        return ""
+    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    size = summary.size(worst) if worst else None
+    number = f" {_short(size, worst.target)}" if worst and size is not None else ""
+    return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
+
+
+def _short(size: float, target: float) -> str:
+    """A relative number in ``NARROW`` characters: in percent, or as it is where the target is tiny."""
+    value = abs(size) if target < summary.TINY else 100 * abs(size)
+    if 0 < value < 1e-4 and target >= summary.TINY:
+        return "<1e-4"
+    text = f"{value:.0f}" if value >= 100 else f"{value:.2g}" if value >= 0.001 else f"{value:.0e}"
+    return text.replace("e-0", "e-")
+
+
+def frequencies(rows: Sequence[Named], title: str, units: Units) -> Table:
+    """Modes × speeds, rows by name, in the order of the first speed."""
+    out = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
+    speeds = list(dict.fromkeys(r.omega for r in rows))
+    out.add_column(units.frequency_label)
+    for omega in speeds:
+        out.add_column(units.at(omega), justify="right")
+    for name in dict.fromkeys(r.name for r in sorted(rows, key=lambda r: (r.omega, r.mode))):
+        at = {r.omega: f"{r.frequency * units.frequencies:.7g}" for r in rows if r.name == name}
+        out.add_row(name, *[at.get(omega, "") for omega in speeds])
+    return out

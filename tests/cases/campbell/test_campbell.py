@@ -1,0 +1,325 @@
+"""The Campbell diagram's numbers against closed forms; its figures and tables say what the numbers do."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from scipy.special import jn_zeros
+
+from southwell.cases.campbell.diagram import Campbell, Wanted, campbell, rises
+from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
+from southwell.cases.campbell.variation import Variation, variations
+from southwell.cases.input import library
+from southwell.cases.input.errors import CaseError
+from southwell.core.blade import uniform_blade
+from southwell.core.modes import STATIONS, Modes
+from southwell.core.solve import modes
+from southwell.reports.campbell import csv_tables, encounters, variation
+from southwell.reports.campbell.figure import draw
+from southwell.reports.campbell.marks import blend
+from southwell.reports.campbell.tables import markdown, sheets, verdict
+from southwell.reports.shared.style import save
+from southwell.reports.shared.units import RAD_S, RPM
+
+from ...support.veering import BLADE, EDGE, FLAP, oscillators
+
+RPM_TO = np.pi / 30
+
+
+def southwell(omega: float) -> Modes:
+    """A flap mode ``ω² = 4 + 1.5 Ω²`` and an edge mode ``ω² = 9 + 0.5 Ω²``, exactly."""
+    shapes = np.zeros((2, 21, 4), complex)
+    shapes[0, :, 2] = shapes[1, :, 1] = STATIONS**2
+    squares = np.array([4.0 + 1.5 * omega**2, 9.0 + 0.5 * omega**2])
+    order = np.argsort(squares)
+    return Modes(omega, np.sqrt(squares[order]), shapes[order], 10)
+
+
+def diagram(**changes: object) -> Campbell:
+    wanted = Wanted(tuple(np.linspace(0.0, 4.0, 17)), modes=2, per_rev=(1, 2, 3), operating=(1.0, 2.0))
+    return campbell(BLADE, replace(wanted, **changes), southwell)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def veering() -> Campbell:
+    wanted = Wanted(tuple(np.linspace(0.0, 6.0, 13)), modes=3, per_rev=(1, 2, 3), operating=(1.5, 5.0))
+    return campbell(BLADE, wanted, oscillators(1.5))
+
+
+def test_southwells_coefficients_are_those_the_modes_were_made_with() -> None:
+    flap, edge = diagram().southwell
+    assert flap is not None
+    assert edge is not None
+    assert (flap.rest, flap.coefficient) == (pytest.approx(2.0, rel=1e-12), pytest.approx(1.5, rel=1e-12))
+    assert (edge.rest, edge.coefficient) == (pytest.approx(3.0, rel=1e-12), pytest.approx(0.5, rel=1e-12))
+    assert max(flap.residual, edge.residual) < 1e-12
+
+
+def test_a_fits_residual_is_its_largest_deviation() -> None:
+    """ω² = 4 + Ω⁴ at Ω = 0, 1, 2: least squares gives a = 10/3…, by hand: Ω² = (0, 1, 4), ω² = (4, 5, 20)."""
+    bent = lambda omega: replace(southwell(omega), frequencies=np.sqrt([4.0 + omega**4, 400.0 + omega**2]))  # noqa: E731
+    found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), bent).southwell[0]
+    x, y = np.array([0.0, 1.0, 4.0]), np.array([4.0, 5.0, 20.0])
+    slope = ((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum()
+    rest = y.mean() - slope * x.mean()
+    assert found is not None
+    assert found.coefficient == pytest.approx(slope, rel=1e-12)
+    assert found.residual == pytest.approx(np.abs(np.sqrt((rest + slope * x) / y) - 1).max(), rel=1e-9)
+
+
+def test_resonances_are_where_the_closed_form_says() -> None:
+    """ω₀² + φ Ω² = n² Ω² at Ω = ω₀ / √(n² − φ): flap never meets 1P; within 4 rad/s edge meets 1P not."""
+    found = {(r.track, r.per_rev): r for r in diagram().resonances}
+    expected = {(0, n): 2.0 / np.sqrt(n**2 - 1.5) for n in (2, 3)} | {(1, n): 3.0 / np.sqrt(n**2 - 0.5) for n in (2, 3)}
+    assert set(found) == set(expected)
+    for key, omega in expected.items():
+        assert found[key].omega == pytest.approx(omega, rel=1e-9)
+        assert found[key].frequency == pytest.approx(key[1] * omega, rel=1e-9)
+
+
+def test_a_resonances_distance_from_the_operating_range_is_to_its_nearer_end() -> None:
+    found = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.8, 1.0)).resonances}
+    assert found[0, 3] == pytest.approx(2.0 / np.sqrt(7.5) / 0.8 - 1)  # 0.730 rad/s: below
+    assert found[1, 2] == pytest.approx(3.0 / np.sqrt(3.5) / 1.0 - 1)  # 1.604 rad/s: above
+    inside = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.7, 2.0)).resonances}
+    assert inside[0, 3] == inside[1, 2] == 0.0
+    assert all(r.apart is None for r in diagram(operating=None).resonances)
+
+
+def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> None:
+    found = {(m.track, m.per_rev): m for m in diagram().margins}
+    assert len(found) == 6
+    for (t, n), m in found.items():
+        square = (lambda o: 4 + 1.5 * o**2, lambda o: 9 + 0.5 * o**2)[t]
+        ends = [np.sqrt(square(o)) / (n * o) - 1 for o in (1.0, 2.0)]
+        assert (m.low, m.high) == (pytest.approx(ends[0], rel=1e-9), pytest.approx(ends[1], rel=1e-9))
+        meets = ends[0] * ends[1] < 0
+        assert m.least == pytest.approx(0.0 if meets else min(ends, key=abs), rel=1e-9)
+        assert m.kept == (abs(m.least) >= 0.1)
+    assert not found[0, 2].kept
+    assert found[0, 2].omega == pytest.approx(2.0 / np.sqrt(2.5), rel=1e-9)
+
+
+def test_a_margin_is_judged_by_what_the_user_asks() -> None:
+    """Flap at 2 rad/s is √10 rad/s, 58 % above 1P."""
+    exact = np.sqrt(10.0) / 2.0 - 1.0
+    for margin, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
+        (found,) = (m for m in diagram(margin=margin, per_rev=(1,)).margins if m.track == 0)
+        assert found.kept is kept
+
+
+def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
+    from_rest = {(m.track, m.per_rev): m for m in diagram(operating=(0.0, 2.0)).margins}
+    assert from_rest[0, 1].low > 1e6
+    assert from_rest[0, 1].least == pytest.approx(np.sqrt(10.0) / 2.0 - 1.0)
+    at_one = {(m.track, m.per_rev): m for m in diagram(operating=(2.0, 2.0)).margins}
+    assert at_one[0, 1].low == at_one[0, 1].high == pytest.approx(np.sqrt(10.0) / 2.0 - 1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"speeds": (1.0,)}, "speeds: 1 given: a diagram needs two at least"),
+        ({"operating": (1.0, 4.5)}, "operating range: 1 to 4.5 rad/s is not within the speeds, 0 to 4 rad/s"),
+        ({"speeds": (1.0, 3.0), "operating": (0.5, 2.0)}, "not within the speeds"),
+    ],
+)
+def test_what_cannot_be_asked_is_told(changes: dict[str, object], told: str) -> None:
+    with pytest.raises(CaseError, match=told):
+        diagram(**changes)
+
+
+def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: Campbell) -> None:
+    assert [veering.label(t) for t in range(3)] == ["flap 1 → edge 1", "edge 1 → flap 1", "flap 2"]
+    assert veering.local[0] == ("flap 1", "edge 1", "flap 2")
+    assert [veering.label_at(0, omega) for omega in (0.1, 5.9)] == ["flap 1", "edge 1"]
+    assert veering.label_over(0, 0.0, 1.0) == "flap 1"
+    assert veering.label_over(0, 1.0, 5.0) == "flap 1 → edge 1"
+
+
+def test_the_speed_without_a_steady_state_is_told() -> None:
+    blade = library.load("park-cantilever").variants[0].blade
+    with pytest.raises(CaseError, match=r"speed: 100000 rad/s: .*give lower speeds"):
+        campbell(blade, Wanted((0.0, 1e5), modes=2, elements=8))
+
+
+def test_core_has_the_modes_at_n_per_revolution_where_the_diagram_says() -> None:
+    blade = library.load("park-blade").variants[0].blade
+    found = campbell(blade, Wanted(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))
+    assert len(found.resonances) >= 4
+    for r in found.resonances:
+        solved = modes(blade, r.omega, 15, 3).frequencies
+        assert np.abs(solved / (r.per_rev * r.omega) - 1).min() < 2e-5
+
+
+@pytest.fixture(scope="module")
+def stand_ins() -> tuple[Variation, ...]:
+    return variations(elements=20)
+
+
+def test_the_papers_rises_at_20_and_30_rpm(stand_ins: tuple[Variation, ...]) -> None:
+    """Park et al. (2010), Fig. 3: at most 8 % and 16.5 %. Their blade is unpublished; the surrogate's first mode is theirs."""
+    for v in stand_ins[1:]:
+        assert v.rises.argmax(1).tolist() == [0, 0]
+        np.testing.assert_allclose(v.rises[:, 0], [0.08, 0.165], atol=0.01)
+        np.testing.assert_allclose(v.lumped[:, 0], [0.08, 0.165], atol=0.01)
+    f = stand_ins[0].diagram.tracks.frequencies
+    np.testing.assert_allclose(stand_ins[0].rises, f[[8, 12]] / f[0] - 1, rtol=1e-12)
+    assert rises(stand_ins[0].diagram, 10.0)[0] != rises(stand_ins[0].diagram, 10.0)[0]  # beyond 30 rpm: not a number
+
+
+def test_the_papers_figure_and_table_label_stand_ins_as_such(stand_ins: tuple[Variation, ...]) -> None:
+    table = variation.sheet(stand_ins)
+    assert table.rows[-1] == ("Park et al. (2010)", "largest", "+8.0 %", "+16.5 %")
+    assert sum("not the paper's blade" in row[0] for row in table.rows) == 1
+    assert [row[1] for row in table.rows[:5]] == ["flap 1", "edge 1", "flap 2", "edge 2", "flap 3"]
+    shown = variation.figure(stand_ins)
+    assert len(shown.axes) == 6
+    for axes in shown.axes[1::2]:
+        crosses = [line.get_xydata() for line in axes.lines if line.get_marker() == "x"]
+        np.testing.assert_allclose(np.concatenate(crosses), [[20, 8], [30, 16.5]])  # type: ignore[arg-type]
+
+
+def test_a_blade_that_hangs_is_stiffened_by_gravity_as_a_chain_is() -> None:
+    """A heavy chain, ω = ½ j₀ₖ √(g/L) (Bernoulli 1733; Routh 1905); bending adds about √(EI/mgL³), here 2e-3 and less."""
+    length, mass = 10.0, 5.0
+    stiff = 1e-6 * mass * STANDARD_GRAVITY * length**3
+    rope = uniform_blade("rope", length, 0.0, EA=1e8, GJ=1e3, EI_y=stiff, EI_z=4 * stiff, mass=mass, I_y=1e-3, I_z=1e-3)
+    found = modes(rope, 0.0, 60, 4, gravity=gravity(np.pi)).frequencies
+    exact = 0.5 * jn_zeros(0, 2) * np.sqrt(STANDARD_GRAVITY / length)
+    np.testing.assert_allclose(found, np.repeat(exact, 2), rtol=1.2e-2)
+
+
+def test_gravity_turns_against_the_rotation_and_with_the_tilt() -> None:
+    """In the hub's axes, which turn from the vertical (x) towards the direction of motion (y)."""
+    g = STANDARD_GRAVITY
+    np.testing.assert_allclose(gravity(0.0), [-g, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(gravity(0.5 * np.pi), [0, g, 0], atol=1e-12)
+    np.testing.assert_allclose(gravity(np.pi), [g, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(gravity(1.0, 0.5 * np.pi), [0, 0, -g], atol=1e-12)
+    assert np.linalg.norm(gravity(0.7, 0.1)) == pytest.approx(g)
+
+
+def texts(figure: Figure) -> list[str]:
+    return [t.get_text() for t in figure.findobj(Text) if t.get_text()]  # type: ignore[attr-defined]
+
+
+def test_the_figure_names_modes_rays_the_range_and_the_veering(veering: Campbell) -> None:
+    said = texts(draw(veering, RPM, "oscillators"))
+    assert {"1P", "2P", "3P", "operating"} <= set(said)
+    for label in ("flap 1 → edge 1", "edge 1 → flap 1", "flap 2"):
+        assert any(text.startswith(f"{label}  ") for text in said)
+    gap = next(text for text in said if text.startswith("veering\n"))
+    exact = (np.sqrt(EDGE + 1.5) - np.sqrt(EDGE - 1.5)) / (2 * np.pi)
+    assert gap == f"veering\ngap {exact:.2g} Hz"
+
+
+def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> None:
+    shown = encounters.draw(veering, RPM, "close")
+    assert shown
+    assert len(shown.axes) == len(veering.encounters) == 1
+    assert shown.axes[0].get_title(loc="left") == f"veering, {np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi:.4g} rpm"
+    many = encounters.draw(replace(veering, encounters=veering.encounters * 12), RPM, "close")
+    assert many
+    assert len(many.axes) == encounters.MOST
+    assert any("3 more in the table" in text for text in texts(many))
+    assert encounters.draw(replace(veering, encounters=()), RPM, "close") is None
+
+
+def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
+    close = lambda omega: replace(southwell(omega), frequencies=np.array([5.0, 5.01]))  # noqa: E731
+    shown = draw(campbell(BLADE, Wanted((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
+    shown.canvas.draw()
+    labels = [t for t in shown.findobj(Text) if t.get_text().startswith(("flap 1 ", "edge 1 "))]  # type: ignore[attr-defined]
+    boxes = [t.get_window_extent() for t in labels]
+    assert len(boxes) == 2
+    assert not boxes[0].overlaps(boxes[1])
+
+
+def test_the_figures_bytes_depend_on_its_numbers_alone(veering: Campbell, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        save(draw(veering, RPM, "oscillators"), tmp_path / f"{name}.svg")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+def test_the_same_figure_without_an_operating_range_judges_nothing() -> None:
+    said = texts(draw(diagram(operating=None), RPM, "plain"))
+    assert "operating" not in said
+    assert "resonance in operation" not in said
+    assert "resonance" in said
+
+
+def test_colours_of_pure_motions_are_their_families_and_of_mixtures_between() -> None:
+    flap, edge, half = blend([1, 0, 0, 0]), blend([0, 1, 0, 0]), blend([0.5, 0.5, 0, 0])
+    assert half == pytest.approx((np.array(flap) + np.array(edge)) / 2)
+
+
+def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
+    page = {s.title: s for s in sheets(veering, RPM)}
+    assert set(page) == {
+        "Modes",
+        "Margins in the operating range",
+        "Where a mode meets n per revolution",
+        "Modes that meet",
+    }
+    modes_ = page["Modes"].rows
+    assert modes_[2][0] == "flap 2"
+    assert float(modes_[2][2]) == pytest.approx(30.0 / (2 * np.pi), abs=5e-5)
+    assert modes_[2][5:] == ("3", "< 0.0001 %")
+    (met,) = page["Modes that meet"].rows
+    assert met[0] == "veering"
+    assert float(met[1]) == pytest.approx(np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi, abs=1e-3)
+    resonances = page["Where a mode meets n per revolution"].rows
+    assert len(resonances) == len(veering.resonances)
+    text = markdown(page["Where a mode meets n per revolution"])
+    assert text.count("**✘ within**") == sum(r.apart == 0 for r in veering.resonances) > 0
+
+
+def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
+    def jump(omega: float) -> Modes:
+        shapes = np.zeros((2, 21, 4), complex)
+        shapes[0, :, 2] = STATIONS
+        shapes[1, :, 1 if omega < 1.2 else 0] = STATIONS
+        return Modes(omega, np.array([5.0, 9.0]), shapes, 10)
+
+    found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
+    told = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
+    assert "Not judged, since not followed over all of it: " in told
+    (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Not clear")
+    assert sheet.rows[0][0] == "edge 1"
+    assert sheet.rows[0][3] == "none"
+    assert "?" in texts(draw(found, RAD_S, "jump"))
+
+
+def test_the_answer_in_one_line() -> None:
+    assert verdict(diagram(margin=0.05, per_rev=(1,)), RAD_S) == (
+        "Every mode keeps 5 % from n per revolution over 1 to 2 rad/s."
+    )
+    told = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P
+    assert told == "✘ Over 1.1 to 2 rad/s, flap 1 meets 2P; edge 1 meets 2P and comes within 10 % of 3P."
+    assert "none is judged" in verdict(diagram(operating=None), RAD_S)
+
+
+def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:
+    csv_tables.write(veering, tmp_path)
+    with (tmp_path / "campbell.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == veering.tracks.place.size
+    third = [r for r in rows if r["name"] == "flap 2"]
+    np.testing.assert_allclose(
+        [float(r["frequency_rad_s"]) for r in third],
+        np.sqrt(900 + 3 * np.array([float(r["omega_rad_s"]) for r in third]) ** 2),
+        rtol=1e-12,
+    )
+    assert sum(int(r["asked_for"]) for r in third) == 13
+    assert all(float(r["flap"]) == pytest.approx(1.0) for r in third)
+    with (tmp_path / "encounters.csv").open() as file:
+        (met,) = csv.DictReader(file)
+    assert met["kind"] == "veering"
+    for name, count in (("resonances", len(veering.resonances)), ("margins", 9)):
+        with (tmp_path / f"{name}.csv").open() as file:
+            assert len(list(csv.DictReader(file))) == count

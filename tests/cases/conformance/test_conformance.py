@@ -1,0 +1,255 @@
+"""Every adapter of ours passes the conformance suite, core itself does, and every mistake that one can make fails it."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.cases.conformance.suite import CHECKS, Check, judge
+from southwell.core import solve
+from southwell.core.blade import Blade
+from southwell.core.effects import FULL, Model
+from southwell.core.modes import Modes
+from southwell.references.protocol import registry
+from southwell.references.protocol.interface import DIGITS, CodeError, Shares
+
+
+@pytest.mark.parametrize("name", registry.OURS)
+def test_ours_conform(name: str) -> None:
+    """Passes, or declines with a reason; one that declined everything would be caught by the capabilities' table."""
+    code = registry.code(name)
+    if code.version() is None:
+        pytest.skip(f"not installed: {code.hint}")
+    outcomes = [judge(code, check) for check in CHECKS]
+    assert [(str(o.check), o.reason) for o in outcomes if o.verdict not in ("pass", "not applicable")] == []
+    assert all(o.reason for o in outcomes if o.verdict != "pass")
+    passed = {str(o.check) for o in outcomes if o.verdict == "pass"}
+    assert passed >= {"declarations", "refusals", "cantilever at rest", "counts", "repeats itself", "shapes", "units"}
+
+
+@dataclass
+class Core:
+    """Core as a code, with a mistake if wanted: in the blade it is given, in the modes it returns, in what it says."""
+
+    given: Callable[[Blade], Blade] = lambda blade: blade
+    returned: Callable[[Modes], Modes] = lambda modes: modes
+    refused: Callable[[Blade], str | None] = lambda _: None
+    solved: Callable[[Blade], str | None] = lambda _: None
+    kept: Model = FULL
+    name: str = "core"
+    title: str = "Core"
+    shares: Shares = "discretisation"
+    model: Model = FULL
+    levels: tuple[int, ...] = (8, 12, 18)
+    order: int = 4
+    hint: str = ""
+    installed: bool = True
+    digits: int = DIGITS
+
+    def version(self) -> str | None:
+        return "1.0" if self.installed else None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        return self.refused(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        if reason := self.solved(blade):
+            raise CodeError(reason)
+        return self.returned(solve.modes(self.given(blade), omega, elements, count, model=self.kept))
+
+
+def failures(code: Any, *, among: str = "") -> dict[str, str]:
+    """Check → what it said, of those that fail; ``among`` names the only ones to ask."""
+    asked: tuple[Check, ...] = tuple(c for c in CHECKS if re.search(among, c.name))
+    return {str(o.check): o.reason for o in (judge(code, c) for c in asked) if o.verdict == "fail"}
+
+
+def test_core_conforms() -> None:
+    outcomes = {str(check): judge(Core(), check) for check in CHECKS}
+    assert {name for name, o in outcomes.items() if o.verdict != "pass"} == {"refusals"}
+    assert outcomes["refusals"].reason == "it takes every blade asked"
+
+
+def shapes(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Modes], Modes]:
+    return lambda modes: replace(modes, shapes=change(modes.shapes.copy()))
+
+
+def drop(**plain: Any) -> Callable[[Blade], Blade]:
+    return lambda blade: replace(blade, **plain)
+
+
+def masses(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Blade], Blade]:
+    return lambda blade: replace(blade, mass=change(blade.mass.copy()))
+
+
+def diagonal(matrices: np.ndarray) -> np.ndarray:
+    return np.where(np.eye(6, dtype=bool), matrices, 0.0)
+
+
+def sections_of_the_root(blade: Blade) -> Blade:
+    n = len(blade.stations)
+    first = {name: np.repeat(getattr(blade, name)[:1], n, axis=0) for name in ("stiffness", "mass", "twist")}
+    return replace(blade, **first)
+
+
+def straightened(blade: Blade) -> Blade:
+    return replace(blade, curve=np.outer(blade.stations, [1.0, 0.0, 0.0]))
+
+
+def rigid_in_shear(blade: Blade) -> Blade:
+    stiffness = blade.stiffness.copy()
+    stiffness[:, [1, 2], [1, 2]] = np.inf
+    return replace(blade, stiffness=stiffness)
+
+
+def one_more(m: Modes) -> Modes:
+    return Modes(m.omega, np.append(m.frequencies, 1e6), np.append(m.shapes, m.shapes[:1], axis=0), m.elements)
+
+
+def printed(m: Modes, digits: int) -> Modes:
+    """As a code prints them."""
+    return replace(m, frequencies=np.array([float(f"{f:.{digits}g}") for f in m.frequencies]))
+
+
+def first_column_of_tip_mass(blade: Blade) -> Blade:
+    m = blade.tip_mass[0, 0]
+    return replace(blade, tip_mass=np.diag([m, m, m, 0.0, 0.0, 0.0]))
+
+
+MISTAKES: dict[str, tuple[Core, set[str]]] = {
+    "hertz": (Core(returned=lambda m: replace(m, frequencies=m.frequencies / (2 * np.pi))), {"cantilever at rest"}),
+    "descending": (
+        Core(returned=lambda m: replace(m, frequencies=m.frequencies[::-1], shapes=m.shapes[::-1])),
+        {"counts"},
+    ),
+    "one mode too many": (Core(returned=one_more), {"counts"}),
+    "millimetres": (Core(given=lambda b: replace(b, hub_radius=b.hub_radius * 1000)), {"keeps hub radius"}),
+    "y and z exchanged": (Core(returned=shapes(lambda s: s[:, :, [0, 2, 1, 3]])), {"turning beam", "pitch's sense"}),
+    "flap counted down": (Core(returned=shapes(lambda s: s * [1, 1, -1, 1])), {"pitch's sense", "twist's sense"}),
+    "rotation in the first column": (Core(returned=shapes(lambda s: s[:, :, [3, 1, 2, 0]])), {"torsion"}),
+    "tip first": (Core(returned=shapes(lambda s: s[:, ::-1])), {"shapes"}),
+    "other stations": (Core(returned=shapes(lambda s: s[:, np.arange(21) ** 2 // 20])), {"shapes"}),
+    "pitch the other way": (Core(given=lambda b: replace(b, pitch=-b.pitch)), {"pitch's sense"}),
+    "twist the other way": (Core(given=lambda b: replace(b, twist=-b.twist)), {"twist's sense"}),
+    "pitch dropped": (Core(given=drop(pitch=0.0)), {"quarter pitch", "pitch's sense", "keeps pitch"}),
+    "twist dropped": (Core(given=lambda b: replace(b, twist=0 * b.twist)), {"twist's sense", "keeps twist"}),
+    "precone dropped": (Core(given=drop(precone=0.0)), {"keeps precone"}),
+    "hub dropped": (Core(given=drop(hub_radius=0.0)), {"keeps hub radius"}),
+    "tip mass dropped": (
+        Core(given=drop(tip_mass=np.zeros((6, 6)))),
+        {"tip mass at rest", "tip mass turning", "keeps tip mass"},
+    ),
+    "tip mass a point": (
+        Core(given=first_column_of_tip_mass),
+        {"keeps tip mass's offset", "keeps tip mass's moments of inertia"},
+    ),
+    "root clamped anyway": (Core(given=drop(root=np.full(6, np.inf))), {"hinged root", "keeps springs at the root"}),
+    "sections of the root": (Core(given=sections_of_the_root), {"keeps taper", "keeps twist"}),
+    "couplings dropped": (
+        Core(given=lambda b: replace(b, stiffness=diagonal(b.stiffness))),
+        {"coupled planes", "keeps bend–twist coupling", "keeps extension–bending coupling"},
+    ),
+    "mass on the axis": (Core(given=masses(diagonal)), {"keeps mass off the axis"}),
+    "curve dropped": (Core(given=straightened), {"keeps sweep", "keeps prebend"}),
+    "shear dropped": (Core(given=rigid_in_shear), {"shear", "keeps shear flexibility"}),
+    "rotary inertia dropped": (
+        Core(given=masses(lambda m: m * np.diag([1, 1, 1, 0, 0, 0]))),
+        {"keeps rotary inertia", "model"},
+    ),
+    "no Coriolis, unsaid": (Core(kept=Model(coriolis=False)), {"model"}),
+    "no prestretch, unsaid": (Core(kept=Model(prestretch=False)), {"model"}),
+    "Coriolis, though said to lack it": (Core(model=Model(coriolis=False)), {"model"}),
+    "no geometric stiffness": (Core(kept=Model(geometric=False)), {"turning beam"}),
+    "an order too high": (Core(order=8), {"order"}),
+    "levels too close": (Core(levels=(8, 9, 10)), {"declarations"}),
+    "a name with a blank": (Core(name="my code"), {"declarations"}),
+    "not installed, and no hint": (Core(installed=False), {"declarations"}),
+    "a constant in newtons": (
+        Core(given=lambda b: replace(b, stiffness=b.stiffness + np.diag([0, 0, 0, 0, 1.0, 1.0]))),
+        {"units"},
+    ),
+    "a constant that does a millionth": (
+        Core(given=lambda b: replace(b, stiffness=b.stiffness + np.diag([0, 0, 0, 0, 1e-4, 1e-4]))),
+        {"units"},
+    ),
+    "six digits, unsaid": (Core(returned=lambda m: printed(m, 6)), {"units"}),
+    "five digits, six said": (Core(returned=lambda m: printed(m, 5), digits=6), {"units"}),
+    "too few digits to judge": (Core(returned=lambda m: printed(m, 4), digits=4), {"declarations"}),
+    "declines, and answers": (Core(refused=lambda b: "coned" if b.precone else None), {"refusals"}),
+    "declines without a word": (
+        Core(refused=lambda b: " " if b.precone else None, solved=lambda b: "coned" if b.precone else None),
+        {"refusals"},
+    ),
+    "declines what is least": (Core(refused=lambda _: "too little"), {"declarations"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistakes_are_caught(mistake: str) -> None:
+    code, by = MISTAKES[mistake]
+    names = "|".join(f"^{re.escape(name)}$" for name in by)
+    found = failures(code, among=names)
+    assert set(found) == by
+    assert all(reason.strip() and "\n" not in reason for reason in found.values())
+
+
+@pytest.mark.parametrize("digits", [5, 7])
+def test_digits_that_are_said_are_enough(digits: int) -> None:
+    """A code that prints few is asked for no more, and keeps every law."""
+    assert failures(Core(returned=lambda m: printed(m, digits), digits=digits)) == {}
+
+
+def test_memory_of_another_call_is_caught() -> None:
+    """A speed left over from the call before."""
+    before = [0.0]
+
+    def solved(blade: Blade) -> None:
+        before[0] += 1e-9
+
+    found = failures(Core(solved=solved, given=lambda b: replace(b, hub_radius=b.hub_radius + before[0])))
+    assert set(found) == {"repeats itself"}
+
+
+def test_whatever_a_code_raises_is_a_failure_in_one_line() -> None:
+    def break_down(blade: Blade) -> str | None:
+        raise ZeroDivisionError("division\nby zero")
+
+    found = failures(Core(solved=break_down), among="turning beam")
+    assert found == {"turning beam": "ZeroDivisionError: division by zero"}
+
+
+def test_a_code_that_is_not_there_is_not_run() -> None:
+    outcomes = [judge(Core(installed=False, hint="pip install it"), check) for check in CHECKS]
+    assert outcomes[0].verdict == "pass"
+    assert {(o.verdict, o.reason) for o in outcomes[1:]} == {("not run", "not installed: pip install it")}
+
+
+def test_what_a_tip_mass_weighs_is_not_what_it_pulls() -> None:
+    """pyBModes 1.19.1 puts a tip mass into its mass matrix alone: right at rest, 2.48 instead of Bir's 4.543 at speed 4."""
+    pytest.importorskip("pybmodes")
+    from southwell.references.pybmodes import beam as pybmodes_beam
+
+    class Credulous(pybmodes_beam.PyBModes):
+        def unsupported(self, blade: Blade) -> str | None:
+            return None
+
+    written, mass = pybmodes_beam._write, []
+
+    def with_tip_mass(folder, blade, omega, s, count):
+        path = written(folder, blade, omega, s, count)
+        text = path.read_text().replace(
+            "---- Tip mass ----\n0.0", f"---- Tip mass ----\n{float(blade.tip_mass[0, 0])!r}"
+        )
+        mass.append(blade.tip_mass[0, 0])
+        path.write_text(text)
+        return path
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pybmodes_beam, "_write", with_tip_mass)
+        found = failures(Credulous(), among="^tip mass")
+    assert set(found) == {"tip mass turning"}
+    assert "2.478" in found["tip mass turning"]
+    assert set(mass) == {6.0}

@@ -1,0 +1,117 @@
+"""Damaged files: a lost line or a cut never gives another blade without a word, and nothing in a file gives a traceback."""
+
+import random
+import shutil
+from pathlib import Path
+
+import pytest
+
+from southwell.cases.input import readers
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.readers import Mount, Reading
+from southwell.tests.cases.input.readers.test_readers_elastodyn import same
+from southwell.tests.cases.input.readers.test_readers_windio_as_beamdyn import samples, written
+
+DATA = Path(__file__).parents[3] / "data" / "blades"
+
+SETS: dict[str, tuple[str, ...]] = {
+    "elastodyn_main.dat": ("elastodyn_main.dat", "elastodyn_blade.dat"),
+    "beamdyn_main.dat": ("beamdyn_main.dat", "beamdyn_blade.dat"),
+    "beamdyn_old_main.dat": ("beamdyn_old_main.dat",),
+    "bmodes.bmi": ("bmodes.bmi", "bmodes_sections.dat"),
+    "hawc2.htc": ("hawc2.htc", "hawc2_st.dat"),
+    "windio.yaml": ("windio.yaml",),
+}
+"""The file that is read, and those that it needs, each to be damaged."""
+
+PAIRS = [(first, damaged) for first, needed in SETS.items() for damaged in needed]
+
+WORDS = (
+    "nan",
+    "inf",
+    "-1",
+    "0",
+    "x",
+    "",
+    "1e400",
+    '"',
+    "1.0D+03",
+    "-",
+    "99999999",
+    "0.5",
+    ",",
+    "#",
+    "-1e9",
+    "\t",
+    "{",
+    "[",
+    "!a",
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    shutil.copytree(DATA, tmp_path / "it")
+    written(tmp_path / "it" / "windio.yaml", samples()[1])
+    return tmp_path / "it"
+
+
+def read(path: Path) -> Reading | None:
+    """What is read, or None if it is refused, in one line that names a file of the folder."""
+    try:
+        return readers.reading(path, Mount())
+    except CaseError as error:
+        said = str(error)
+    assert "\n" not in said
+    assert said.startswith(str(path.parent))
+    return None
+
+
+def honest(whole: Reading, found: Reading) -> bool:
+    """Whether the blade is the same, or the notes say what is not."""
+    try:
+        same(whole.blade, found.blade)
+    except AssertionError:
+        return set(found.source.notes) != set(whole.source.notes)
+    return True
+
+
+@pytest.mark.parametrize(("first", "damaged"), PAIRS)
+def test_without_any_one_of_its_lines_a_file_is_refused_or_the_blade_is_the_same(
+    folder: Path, first: str, damaged: str
+) -> None:
+    whole = readers.reading(folder / first)
+    lines = (folder / damaged).read_text().splitlines()
+    refused = 0
+    for k in range(len(lines)):
+        (folder / damaged).write_text("\n".join(lines[:k] + lines[k + 1 :]) + "\n")
+        found = read(folder / first)
+        refused += found is None
+        if found is not None:
+            assert honest(whole, found), f"without line {k + 1}: {lines[k]}"
+    assert refused > 3
+
+
+@pytest.mark.parametrize(("first", "damaged"), PAIRS)
+def test_cut_short_a_file_is_refused_or_the_blade_is_the_same(folder: Path, first: str, damaged: str) -> None:
+    whole = readers.reading(folder / first)
+    lines = (folder / damaged).read_text().splitlines()
+    for k in range(len(lines)):
+        (folder / damaged).write_text("\n".join(lines[:k]) + "\n")
+        found = read(folder / first)
+        if found is not None:
+            assert honest(whole, found), f"cut before line {k + 1}: {lines[k]}"
+
+
+@pytest.mark.parametrize(("first", "damaged"), PAIRS)
+def test_no_word_in_a_file_gives_a_traceback(folder: Path, first: str, damaged: str) -> None:
+    random.seed(f"{first} {damaged}")
+    text = (folder / damaged).read_text().splitlines()
+    for _ in range(60):
+        lines = list(text)
+        k = random.randrange(len(lines))
+        words = lines[k].split(" ")
+        words[random.randrange(len(words))] = random.choice(WORDS)
+        lines[k] = " ".join(words)
+        (folder / damaged).write_text("\n".join(lines) + "\n")
+        read(folder / first)

@@ -1,0 +1,157 @@
+"""Modes find their partners by shape: whatever the order, scale, phase, or basis of a degenerate space."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from southwell.cases.judge.pairing import aligned, families, groups, mac, pair, shares, weights
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.core.modes import STATIONS, Modes
+
+BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2, I_y=1e-3, I_z=2e-3)
+WEIGHT = weights(BLADE)
+AXIAL, CHORD, FLAP, TORSION = range(4)
+TURN = st.floats(0.0, 2 * np.pi)
+
+
+def shape(column: int, waves: float) -> np.ndarray:
+    """Something orthogonal to the same with another odd number of quarter waves."""
+    out = np.zeros((21, 4), complex)
+    out[:, column] = np.sin(waves * np.pi / 2 * STATIONS)
+    return out
+
+
+def modes(frequencies: list[float], shapes: list[np.ndarray]) -> Modes:
+    return Modes(10.0, np.array(frequencies), np.array(shapes), 10)
+
+
+REFERENCE = modes([10.0, 15.0, 70.0, 71.0], [shape(CHORD, 1), shape(FLAP, 1), shape(CHORD, 3), shape(FLAP, 3)])
+
+
+def test_weights_add_up_to_the_blades_mass_and_inertia() -> None:
+    total = WEIGHT.sum(0)
+    np.testing.assert_allclose(np.diag(total), [7.2, 7.2, 7.2, 6 * 3e-3], rtol=1e-12)
+
+
+def test_weights_integrate_a_tapered_blade_and_its_tip_mass() -> None:
+    tip = np.diag([2.0, 2.0, 2.0, 0.1, 0.0, 0.0])
+    blade = Blade(
+        "tapered",
+        stations=np.array([0.0, 4.0]),
+        stiffness=np.repeat(section_stiffness(1.0, 1.0, 1.0, 1.0), 2, axis=0),
+        mass=section_mass([3.0, 1.0]),
+        twist=np.zeros(2),
+        tip_mass=tip,
+    )
+    assert weights(blade)[:, 2, 2].sum() == pytest.approx(8.0 + 2.0)
+
+
+def test_weights_turn_an_offset_mass_with_the_twist() -> None:
+    """Mass 1 kg/m, its centre at y = 0.5 m in section axes: rotation about x moves it along z; twisted by 90°, along −y."""
+    mass = section_mass([1.0, 1.0])
+    mass[:, 2, 3] = mass[:, 3, 2] = 0.5
+    mass[:, 3, 3] = 0.25
+    blade = replace(BLADE, mass=mass, twist=np.full(2, np.pi / 2))
+    total = weights(blade).sum(0)
+    np.testing.assert_allclose(total[3], [0.0, -3.0, 0.0, 1.5], atol=1e-12)
+
+
+@given(st.permutations(range(4)), st.tuples(TURN, TURN, TURN, TURN))
+def test_order_scale_and_phase_do_not_matter(order: list[int], phases: tuple[float, ...]) -> None:
+    shapes = [3.0 * np.exp(1j * phases[k]) * REFERENCE.shapes[k] for k in order]
+    other = modes([1.0, 2.0, 3.0, 4.0], shapes)
+    found = pair(REFERENCE, other, range(4), WEIGHT)
+    assert [order[p.mode] for p in found if p.mode is not None] == [0, 1, 2, 3]
+    assert all(p.mac == pytest.approx(1.0) and not p.note for p in found)
+
+
+def test_the_lag_of_a_gyroscopic_mode_counts() -> None:
+    lead = REFERENCE.shapes[0] + 1j * shape(AXIAL, 1)
+    assert mac(np.array([lead]), np.array([lead.conj()]), WEIGHT)[0, 0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_metres_and_radians_are_weighed_by_mass() -> None:
+    """A metre of flap with a whole radian of twist is still flapping: I/ρA = 0.0025 m²."""
+    both = shape(FLAP, 1) + shape(TORSION, 1)
+    assert families(modes([1.0], [both]), WEIGHT) == ("flapwise",)
+    assert shares(modes([1.0], [both]), WEIGHT)[0, TORSION] == pytest.approx(0.0025 / 1.0025)
+
+
+@given(TURN, TURN)
+def test_a_degenerate_pair_is_compared_as_a_subspace(angle: float, phase: float) -> None:
+    reference = modes([10.0, 10.0, 70.0], [shape(CHORD, 1), shape(FLAP, 1), shape(CHORD, 3)])
+    c, s, e = np.cos(angle), np.sin(angle), np.exp(1j * phase)
+    a, b = reference.shapes[0], reference.shapes[1]
+    other = modes([10.001, 10.002, 70.0], [c * a + e * s * b, -s * a + e * c * b, reference.shapes[2]])
+    first, second, third = pair(reference, other, range(3), WEIGHT)
+    assert {first.mode, second.mode} == {0, 1}
+    assert third.mode == 2
+    assert first.mac > 0.8
+    if 0.5 < angle % (np.pi / 2) < 1.0:
+        assert "subspace of 2" in first.note
+        assert first.mac == pytest.approx(1.0)
+
+
+def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:
+    reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
+    mixed = (shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2)
+    other = modes([10.0, 10.0], [mixed, shape(TORSION, 1)])
+    for found in pair(reference, other, range(2), WEIGHT):
+        assert found.mode is None
+        assert "no partner: its most similar mode, at 10 rad/s, has MAC" in found.note
+
+
+def test_shapes_that_are_one_and_the_same_twice_are_no_pair() -> None:
+    reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
+    mixed = shape(CHORD, 1) + shape(FLAP, 1)
+    assert [p.mode for p in pair(reference, modes([10.0, 10.0], [mixed, mixed]), range(2), WEIGHT)] == [None, None]
+
+
+def test_distinct_frequencies_are_not_excused_as_a_subspace() -> None:
+    turned = [(shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2), (shape(CHORD, 1) - shape(FLAP, 1)) / np.sqrt(2)]
+    found = pair(REFERENCE, modes([10.0, 15.0], turned), [0], WEIGHT)
+    assert found[0].mode is None
+
+
+def test_a_missing_mode_has_no_partner_and_does_not_take_another_ones() -> None:
+    other = modes([10.0, 70.0, 71.0], [REFERENCE.shapes[k] for k in (0, 2, 3)])
+    found = pair(REFERENCE, other, range(4), WEIGHT)
+    assert [p.mode for p in found] == [0, None, 1, 2]
+
+
+def test_a_rival_is_mentioned() -> None:
+    rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
+    found = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0], WEIGHT)
+    assert found[0].mode == 0
+    assert found[0].note.startswith("ambiguous: MAC 0.61 with 12 rad/s")
+
+
+def test_no_modes_no_partner() -> None:
+    empty = Modes(0.0, np.zeros(0), np.zeros((0, 21, 4), complex), 1)
+    assert pair(REFERENCE, empty, [0], WEIGHT)[0].mode is None
+
+
+def test_motion_without_mass_is_like_nothing() -> None:
+    massless = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2)
+    twisting = np.array([shape(TORSION, 1)])
+    assert mac(twisting, twisting, weights(massless))[0, 0] == 0.0
+
+
+@given(TURN)
+def test_equal_frequencies_are_turned_to_one_motion_each(angle: float) -> None:
+    c, s = np.cos(angle), np.sin(angle)
+    a, b = shape(CHORD, 1), shape(FLAP, 1)
+    turned = aligned(modes([10.0, 10.0], [c * a + s * b, -s * a + c * b]), WEIGHT)
+    assert sorted(families(turned, WEIGHT)) == ["chordwise", "flapwise"]
+    assert shares(turned, WEIGHT).max(1) == pytest.approx([1.0, 1.0])
+
+
+def test_an_even_mixture_is_called_mixed() -> None:
+    assert families(modes([1.0], [shape(CHORD, 1) + shape(FLAP, 1)]), WEIGHT) == ("mixed",)
+
+
+def test_groups_chain_close_neighbours() -> None:
+    assert groups(np.array([1.0, 1.001, 1.002, 2.0, 3.0, 3.0])) == [[0, 1, 2], [3], [4, 5]]

@@ -1,0 +1,81 @@
+"""Verdicts at and around their borders, and the reasons that go with them."""
+
+import pytest
+
+from southwell.cases.judge.verdict import Effect, bracketed, discretised, judge, known, percent
+
+TARGET = 1e-3
+
+
+@pytest.mark.parametrize(
+    ("difference", "uncertainty", "verdict"),
+    [
+        (0.0, 0.0, "pass"),
+        (6e-4, 3.9e-4, "pass"),
+        (-6e-4, 3.9e-4, "pass"),
+        (6e-4, 4.1e-4, "inconclusive"),
+        (1.5e-3, 5.1e-4, "inconclusive"),
+        (1.5e-3, 4.9e-4, "fail"),
+        (-1.5e-3, 4.9e-4, "fail"),
+        (0.0, 1.1e-3, "inconclusive"),
+        (0.0, None, "inconclusive"),
+        (1.0, None, "inconclusive"),
+    ],
+)
+def test_difference_and_uncertainty_against_target(difference: float, uncertainty: float | None, verdict: str) -> None:
+    got, reason = judge(difference, uncertainty, TARGET)
+    assert got == verdict
+    assert bool(reason) == (verdict != "pass")
+
+
+def test_the_papers_own_tenth_of_a_percent_needs_the_rounding_of_its_digits() -> None:
+    """189.7 against 189.9, printed as 0.1 %: it is 0.105 %, and 0.026 % + 0.026 % of rounding."""
+    rounding = 0.05 / 189.7 + 0.05 / 189.9
+    assert judge(189.7 / 189.9 - 1.0, rounding, TARGET)[0] == "inconclusive"
+
+
+def test_a_missing_effect_that_matters_is_named_and_quantified() -> None:
+    effects = [Effect("prestretch", -0.0123), Effect("rotary inertia", 1e-7)]
+    verdict, reason = known(-0.0123, TARGET, effects)
+    assert verdict == "known difference"
+    assert "no prestretch: −1.23 %" in reason
+    assert "rotary" not in reason
+
+
+def test_two_missing_effects_are_quantified_apart_and_together() -> None:
+    _, reason = known(-0.05, TARGET, [Effect("prestretch", -0.02), Effect("coriolis", -0.03)])
+    assert "no prestretch: −2.00 %, no coriolis: −3.00 %, together −5.00 %" in reason
+
+
+def test_a_missing_effect_that_does_not_matter_is_a_plain_pass() -> None:
+    assert known(-9e-4, TARGET, [Effect("prestretch", -9e-4)]) == ("pass", "")
+
+
+def test_a_mode_that_only_exists_without_the_effect_is_a_known_difference() -> None:
+    verdict, reason = known(None, TARGET, [Effect("geometric", -0.7)])
+    assert verdict == "known difference"
+    assert "no geometric" in reason
+
+
+def test_a_wide_but_true_bracket_is_a_known_difference_and_a_wrong_one_fails() -> None:
+    inside = judge(0.010, 0.012, TARGET)
+    assert bracketed(0.010, 0.012, inside)[0] == "known difference"
+    assert "±" not in bracketed(0.010, 0.012, inside)[1]
+    assert "1.20 %" in bracketed(0.010, 0.012, inside)[1]
+    assert bracketed(0.013, 0.012, inside)[0] == "fail"
+    assert bracketed(1e-5, 1e-5, ("pass", "")) == ("pass", "")
+
+
+def test_a_coarse_discretisation_is_excused_only_by_its_own_refinement() -> None:
+    assert discretised(-1.3e-3, 1e-7, TARGET, 2e-7, "50 elements")[0] == "known difference"
+    assert "−0.13 %" in discretised(-1.3e-3, 1e-7, TARGET, 2e-7, "50 elements")[1]
+    assert discretised(-1.3e-3, 1e-7, TARGET, -1.2e-3, "50 elements")[0] == "fail"
+    assert discretised(-1.3e-3, 1e-7, TARGET, None, "50 elements")[0] == "fail"
+    assert discretised(-4e-4, 1e-7, TARGET, None, "50 elements") == ("pass", "")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(-0.0123, "−1.23 %"), (4.4e-4, "+0.044 %"), (1e-3, "+0.10 %"), (0.314, "+31.40 %")]
+)
+def test_percent(value: float, text: str) -> None:
+    assert percent(value) == text

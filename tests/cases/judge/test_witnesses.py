@@ -1,0 +1,118 @@
+"""Who counts as a witness: by what it shares with core, once for each model, and only if it agrees throughout."""
+
+import re
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.witnesses import independent, witnesses
+from southwell.reports.verification import report as matrix_report
+from southwell.reports.verification import terminal
+from southwell.reports.verification import witnesses as told
+
+from ...support import samples
+
+
+def cell(code: str, shares: str = "nothing", **changes: object) -> Cell:
+    return samples.cell(code=code, shares=shares, **changes)
+
+
+OURS = [
+    cell("twin", "discretisation", role="same discretisation", target=1e-8, difference=1e-12, uncertainty=1e-12),
+    cell("chain", "mechanical model"),
+]
+TABLES = [cell(f"author2000/{series}", role="table", version="") for series in ("a", "b")]
+CLOSED = cell("exact", version="southwell 0.1.0")
+
+
+def test_two_codes_on_cores_model_are_one_witness_and_no_independent_one() -> None:
+    (one,) = witnesses(OURS)
+    assert (one.name, one.kind, one.standing, one.fine) == ("twin, chain", "core's model", "agrees", None)
+    assert independent([one]) == []
+
+
+def test_two_series_of_one_source_are_one_witness() -> None:
+    (one,) = witnesses(TABLES)
+    assert (one.name, one.kind, one.answers) == ("author2000", "printed source", 2)
+    assert one.fine is None
+
+
+def test_kinds_and_count() -> None:
+    found = witnesses([cell("alpha"), CLOSED, *TABLES, *OURS, cell("core", "", role="discretisation")])
+    assert [w.kind for w in found] == ["code", "closed form", "printed source", "core's model"]
+    assert len(independent(found)) == 3
+
+
+@pytest.mark.parametrize(
+    ("changes", "standing", "fine"),
+    [
+        ({}, "agrees", "agrees"),
+        ({"difference": 5e-4}, "agrees", "disagrees"),
+        ({"difference": 5e-6, "uncertainty": 2e-4}, "agrees", "open"),
+        ({"difference": 2e-3, "verdict": "fail"}, "disagrees", "disagrees"),
+        ({"uncertainty": None, "verdict": "inconclusive"}, "open", "open"),
+        ({"difference": 3e-2, "uncertainty": 8e-2, "verdict": "known difference"}, "explained", "explained"),
+        ({"full": 11.8, "verdict": "known difference"}, "agrees", "agrees"),  # like with like it agrees
+    ],
+)
+def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: str) -> None:
+    """The gravest of a code's numbers: one that agrees beside it does not help."""
+    (one,) = witnesses([cell("alpha"), cell("alpha", mode=2, **changes)])
+    assert (one.standing, one.fine) == (standing, fine)
+
+
+@pytest.mark.parametrize(("verdict", "standing"), [("fail", "disagrees"), ("inconclusive", "open")])
+def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str) -> None:
+    """A mode without a partner, a crash, a time limit."""
+    (one,) = witnesses([cell("alpha"), samples.empty(verdict, "no partner", code="alpha", shares="nothing")])
+    assert (one.standing, one.fine, one.answers) == (standing, standing, 1)
+    assert independent([one]) == []
+
+
+def test_who_gave_no_number_is_no_witness() -> None:
+    assert witnesses([samples.empty("not run", "not installed", code="delta", shares="nothing")]) == []
+
+
+RUN = Run(
+    (cell("alpha"), CLOSED, *TABLES, *OURS, cell("beta", case="other"), cell("rough", difference=2e-3, case="other"))
+)
+
+
+def test_the_report_counts_them() -> None:
+    first, second = told.table(RUN)
+    assert first["independent witnesses"] == "3"
+    assert first["printed sources"] == "author2000"
+    assert "twin, chain" in first["same model as core (one witness, of the implementation)"]
+    assert (second["independent witnesses"], second["no witness"]) == ("1", "rough (disagrees)")
+    assert "for each blade: 1 (other) to 3" in told.headline(RUN)
+
+
+def test_the_matrix_says_what_each_column_shares() -> None:
+    last = matrix_report.heat(RUN).splitlines()[-1]
+    assert "discretisation" in last
+    assert "mechanical model" in last
+    (table,) = terminal.matrix(RUN, 140)
+    assert table.row_count == 3
+
+
+@pytest.mark.parametrize("width", [24, 40, 80, 140])
+def test_on_a_terminal_of_any_width_nothing_of_the_matrix_is_cut_off(width: int) -> None:
+    names = [f"code-{k}" for k in range(12)]
+    run = Run(tuple(samples.cell(code=name, difference=1.234e-5 * k**6) for k, name in enumerate(names)))
+    console = Console(width=width, file=StringIO(), highlight=False)
+    for table in terminal.matrix(run, width):
+        console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in shown
+    assert all(len(line) <= width for line in shown.splitlines())
+    for size in ("0", "0.0012", "0.079", "0.9", "5.1", "19", "58", "145", "323", "656", "1234", "2186"):
+        assert re.search(rf"(?<![\d.]){re.escape(size)}(?![\d.])", shown), size
+
+
+def test_rows_that_do_not_say_leave_it_out() -> None:
+    old = Run((samples.cell(),))
+    assert told.table(old) == []
+    assert told.headline(old) == ""
+    assert "shares" not in matrix_report.heat(old)

@@ -1,0 +1,267 @@
+"""The gate: what counts against a run and what does not, as tables, JUnit, a summary and annotations."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from southwell.cases.judge import results
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.regression import gate, history
+from southwell.cases.regression.gate import compare
+from southwell.reports.ci import gate_text, junit
+
+from ...reports.cli.test_cli import southwell
+from .test_history import CELL, RUN
+
+BEAM = tuple(replace(CELL, mode=k, frequency=10.0 * k) for k in (1, 2, 3))
+OTHER = tuple(replace(c, code="other", seconds=0.5) for c in BEAM)
+BEFORE = replace(RUN, cells=BEAM + OTHER)
+
+
+def at(cells: tuple[Cell, ...], k: int, **changes) -> tuple[Cell, ...]:
+    return tuple(replace(c, **changes) if i == k else c for i, c in enumerate(cells))
+
+
+def compared(after: Run, before: Run = BEFORE, **options) -> gate.Comparison:
+    return compare(history.entry(before, "before", "m"), history.entry(after, "after", "m"), **options)
+
+
+def test_the_same_run_passes() -> None:
+    found = compared(BEFORE)
+    assert found.passed(strict=True)
+    assert (found.moved, found.worse, found.gone, found.uncaught, found.better, found.new) == ((),) * 6
+
+
+@pytest.mark.parametrize(("change", "listed"), [(0.9e-9, False), (1.1e-9, True), (-1.1e-9, True), (1e-3, True)])
+def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, listed: bool) -> None:
+    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.0 * (1 + change))))
+    assert [(c.after.mode, c.moved) for c in found.moved] == ([(2, pytest.approx(change, rel=1e-6))] if listed else [])
+    assert found.passed()
+    assert found.passed(strict=True) is not listed
+
+
+VERDICTS = ("pass", "known difference", "inconclusive", "fail")
+
+
+@pytest.mark.parametrize("before", VERDICTS)
+@pytest.mark.parametrize("after", VERDICTS)
+def test_a_worse_verdict_counts_and_a_better_one_does_not(before, after) -> None:
+    old = replace(BEFORE, cells=at(BEFORE.cells, 0, verdict=before))
+    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict=after)), old)
+    steps = VERDICTS.index(after) - VERDICTS.index(before)
+    assert (len(found.worse), len(found.better), found.passed()) == (int(steps > 0), int(steps < 0), steps <= 0)
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_a_cell_that_was_not_there_counts_if_it_is_a_miss(verdict) -> None:
+    new = replace(CELL, mode=4, verdict=verdict)
+    found = compared(replace(BEFORE, cells=(*BEFORE.cells, new)))
+    assert found.passed() is (verdict in ("pass", "known difference"))
+    assert [p.mode for p in found.new] == [4]
+
+
+@pytest.mark.parametrize("verdict", ["not run", "not applicable", "fail"])
+def test_a_code_that_answers_no_more_counts(verdict) -> None:
+    silent = replace(CELL, code="other", mode=0, family="", frequency=None, verdict=verdict)
+    found = compared(replace(BEFORE, cells=(*BEAM, silent)))
+    assert [(g.point.code, g.point.mode, g.instead) for g in found.gone] == [("other", k, verdict) for k in (1, 2, 3)]
+    assert not found.passed()
+
+
+def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> None:
+    assert [g.instead for g in compared(replace(BEFORE, cells=BEAM)).gone] == [None] * 3
+    silent = replace(BEFORE, cells=(*BEAM, replace(CELL, code="other", mode=0, frequency=None, verdict="not run")))
+    assert compared(replace(BEFORE, cells=BEAM), silent).passed()
+    installed = compared(BEFORE, silent)
+    assert installed.passed()
+    assert len(installed.new) == 3
+
+
+def test_a_control_that_nobody_catches_any_more_counts() -> None:
+    (control,) = BEFORE.controls
+    other = replace(BEFORE, controls=(replace(control, caught=("another",), missed=("some-code",)),))
+    assert compared(other).passed()  # somebody does
+    blind = replace(BEFORE, controls=(replace(control, caught=(), missed=("some-code",)),))
+    assert [c.control for c in compared(blind).uncaught] == ["frozen frame"]
+    assert not compared(blind).passed()
+    assert not compared(replace(BEFORE, controls=())).passed()  # nor is it tried any more
+    assert compared(BEFORE, blind).passed()
+
+
+def test_a_blind_harness_counts_whatever_was_before() -> None:
+    found = compared(BEFORE, missed=["frozen frame"])
+    assert not found.passed()
+    assert "1 mistakes in core missed" in gate_text.verdict(found, strict=False)
+
+
+def slower(factor: float) -> Run:
+    return replace(BEFORE, cells=tuple(replace(c, seconds=(c.seconds or 0.0) * factor) for c in BEFORE.cells))
+
+
+def test_times_never_count_and_come_with_their_noise() -> None:
+    found = compared(slower(100.0))
+    assert found.passed(strict=True)
+    assert [(t.code, t.before, t.after, t.ratios) for t in found.timings] == [
+        ("some-code", 0.25, 25.0, (100.0, 100.0, 100.0)),
+        ("other", 0.5, 50.0, (100.0, 100.0, 100.0)),
+    ]  # once a solution, not once a mode
+    assert not any(t.noise for t in found.timings)
+    past = [history.entry(slower(f), "past", "m") for f in (0.5, 1.0, 1.8)]
+    elsewhere = [history.entry(slower(1000.0), "past", "another machine")]
+    first, _ = compared(slower(1.5), earlier=past + elsewhere).timings
+    assert (first.earlier, first.noise) == ((0.125, 0.45), True)
+    first, _ = compared(slower(2.0), earlier=past + elsewhere).timings
+    assert (first.earlier, first.noise) == ((0.125, 0.45), False)
+
+
+HOSTILE = "50 %: a|b, <c> & \x00d\n::error::e"
+BAD = replace(
+    RUN,
+    cells=(
+        *at(BEAM, 0, verdict="fail", reason=HOSTILE)[:2],
+        replace(CELL, case="beam/odd", code="other", mode=1, verdict="inconclusive", reason="unsure"),
+    ),
+    controls=(),
+)
+
+
+def test_junit_has_a_test_case_a_cell_and_one_for_what_is_gone() -> None:
+    root = ElementTree.fromstring(junit.render(BAD, compared(BAD)))
+    suites = {s.get("name"): s for s in root}
+    assert {name: (s.get("tests"), s.get("failures")) for name, s in suites.items()} == {
+        "beam": ("2", "1"),
+        "beam/odd": ("1", "1"),
+        "against the earlier run": ("5", "5"),  # mode 3, three of the other code, and the control
+    }
+    failure = suites["beam"].find("testcase/failure")
+    assert failure is not None
+    assert failure.get("type") == "worse"
+    assert "50 %: a|b, <c> & \ufffdd" in (failure.text or "")
+    times = [float(t.get("time", "")) for t in suites["beam"]]
+    assert sum(times) == pytest.approx(0.25)  # one solution, shared by its modes
+
+
+def test_junit_of_a_run_alone_and_what_is_skipped() -> None:
+    root = ElementTree.fromstring(junit.render(RUN))
+    (suite,) = root
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "0", "1")
+
+
+def test_junit_when_moves_count() -> None:
+    after = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
+    for strict in (False, True):
+        root = ElementTree.fromstring(junit.render(after, compared(after), strict))
+        assert len(root.findall(".//failure")) == int(strict)
+
+
+def test_annotations_name_the_case_s_file_and_are_escaped(tmp_path: Path) -> None:
+    (tmp_path / "some").mkdir()
+    (tmp_path / "some" / "a,b.toml").write_text('name = "beam"\n')
+    (tmp_path / ".hidden").mkdir()
+    (tmp_path / ".hidden" / "x.toml").write_text('name = "beam"\n')
+    (tmp_path / "broken.toml").write_text("name = \n")
+    lines = gate_text.annotations(compared(BAD), tmp_path)
+    assert lines[0].startswith("::error file=some/a%2Cb.toml,title=beam::some-code: mode 1 at 10 rad/s: pass → fail")
+    assert [line.split(" ")[0] for line in lines] == ["::error"] * len(lines)
+    assert all("\n" not in line for line in lines)
+    assert sum("answers gone" in line for line in lines) == 2
+    assert sum("nobody catches" in line for line in lines) == 1
+    old = gate_text.annotations(compared(BAD, BAD), tmp_path)
+    assert [line.split(" ")[0] for line in old] == ["::warning"] * 2  # misses, but old ones
+
+
+def test_a_summary_s_tables_are_cut_and_say_so() -> None:
+    many = tuple(replace(CELL, mode=k, frequency=float(k)) for k in range(1, 72))
+    after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-6)) for c in many)
+    found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
+    shown = gate_text.markdown(found, strict=False)
+    assert "✔ gate passed: 71 cells" in shown
+    assert "… and 21 more" in shown
+    assert shown.count("+1.0e-06") == 50
+    assert "| 1.000001 " in shown
+
+
+@pytest.fixture
+def folders(tmp_path: Path) -> Callable[[str], str]:
+    for name, run in {"before": BEFORE, "after": BAD}.items():
+        (tmp_path / name).mkdir()
+        results.append(tmp_path / name / "results.jsonl", run.cells, run=run)
+    moved = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
+    results.append(tmp_path / "moved.jsonl", moved.cells, run=moved)
+    more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
+    results.append(tmp_path / "two.jsonl", more.cells, run=more)
+    results.append(tmp_path / "one.jsonl", BEAM, run=BEFORE)
+    for commit in ("good1", "bad2"):
+        run = BEFORE if commit == "good1" else BAD
+        history.append(tmp_path / "history.jsonl", history.entry(run, commit))
+    (tmp_path / "empty").write_bytes(b"")
+    return lambda line: line.format(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "told"),
+    [
+        ("{0}/before --against {0}/before", 0, "✔ gate passed: 6 cells against .*before: nothing moved"),
+        ("{0}/before --against {0}/before/results.jsonl", 0, "nothing moved"),
+        ("{0}/after --against {0}/before", 1, "✘ gate failed: 3 cells .*: 2 worse, 4 gone, 1 controls no longer"),
+        ("{0}/after --against {0}/history.jsonl", 0, "against bad2"),
+        ("{0}/after", 1, "3 cells against nothing: 2 worse, 3 new"),
+        ("{0}/before", 0, "✔ gate passed: 6 cells against nothing: 6 new"),
+        ("{0}/one.jsonl --against {0}/two.jsonl", 1, "3 cells .*: 3 gone"),
+        ("{0}/one.jsonl --against {0}/two.jsonl --partial", 0, "nothing moved"),
+        ("{0}/after --against {0}/history.jsonl --commit goo", 1, "against good1"),
+        ("{0}/moved.jsonl --against {0}/before", 0, r"20 +20.1 +\+5.0e-03"),
+        ("{0}/moved.jsonl --against {0}/before --strict", 1, "✘ gate failed: 6 cells .*: 1 moved"),
+        ("{0}/moved.jsonl --against {0}/before --strict --tolerance 0.01", 0, "nothing moved"),
+    ],
+)
+def test_the_command(folders, capsys: pytest.CaptureFixture[str], line: str, expected: int, told: str) -> None:
+    status, out, err = southwell(f"gate {folders(line)}", capsys)
+    assert (status, err) == (expected, "")
+    assert re.search(told, out)
+
+
+def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "summary.md").write_text("before\n")
+    line = "gate after --against before --junit j.xml --summary summary.md --annotations"
+    status, out, _ = southwell(line, capsys)
+    assert status == 1
+    assert "::error title=beam::some-code" in out
+    shown = (tmp_path / "summary.md").read_text()
+    assert shown.startswith("before\n### Southwell\n\n**No: 1 answer contradicts core.** 3 cells: 1 ✘ fail")
+    assert "**✘ gate failed" in shown
+    assert len(ElementTree.parse(tmp_path / "j.xml").findall(".//testcase")) == 8
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("{0}/none --against {0}/before", "none: cannot be read"),
+        ("{0}/after --against {0}/none", "none: cannot be read"),
+        ("{0}/after --against {0}/empty", "no runs in it"),
+        ("{0}/after --against {0}/history.jsonl --commit god1", "did you mean good1"),
+        ("{0}/after --against {0}/before --commit x", "one run, not a history"),
+        ("{0}/after --against {0}/before --junit {0}/none/j.xml", "--junit .*cannot be written"),
+        ("{0}/after --against {0}/before --tolerance -1", "tolerance"),
+        ("{0}/after --commit x", "of which history"),
+    ],
+)
+def test_bad_input_is_one_line(folders, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
+    status, _, err = southwell(f"gate {folders(line)}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert re.search(told, err)
+
+
+def test_verify_writes_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "j.xml"
+    line = f"verify rotating-cable --codes southwell-equation --workers 1 --out {tmp_path} --junit {file}"
+    status, _, _ = southwell(line, capsys)
+    run = results.read(tmp_path / "results.jsonl")
+    root = ElementTree.parse(file)
+    assert status == 0
+    assert len(root.findall(".//testcase")) == len(run.cells) > 0

@@ -1,0 +1,212 @@
+"""Results without an adapter: read with their rounding, judged like any code's, refused in one line."""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import library
+from southwell.cases.input.errors import CaseError
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.verify import matrix, user_results
+from southwell.reports.cli import app as cli
+
+HEAD = "speed [rad/s], frequency [rad/s], mode\n"
+
+# the full extensible beam, by two independent spectral solutions that agree to 1e-6
+EXACT = {"chordwise 1": 11.710953, "flapwise 1": 15.400199, "chordwise 2": 70.419355, "flapwise 2": 71.126584}
+
+
+def read(tmp_path: Path, text: str, name: str = "rig") -> user_results.Added:
+    path = tmp_path / "results.csv"
+    path.write_text(text, encoding="utf-8")
+    return user_results.read(name, path)
+
+
+def park(speeds: tuple[float, ...] = (0.0, 10.0)):
+    case = library.load("park-cantilever")
+    (variant,) = case.variants
+    return replace(case, variants=(replace(variant, speeds=np.array(speeds)),))
+
+
+def run(*files: user_results.Added) -> Run:
+    with ThreadPoolExecutor(1) as executor:
+        return matrix.run([park()], ["yoo-shin"], executor, added=files)
+
+
+def of(run: Run, name: str = "rig") -> list[Cell]:
+    return [c for c in run.cells if c.code == name]
+
+
+def test_units_and_digits(tmp_path: Path) -> None:
+    text = "frequency [Hz], speed [rpm], mode, family # any order\n\n1.50, 30, 2, flapwise\n4e1, 0, 3,\n"
+    one, two = read(tmp_path, text).rows
+    assert (one.family, one.mode, one.line, one.blade) == ("flapwise", 2, 3, "")
+    assert one.omega == pytest.approx(math.pi)
+    assert one.value.value == pytest.approx(3 * math.pi)
+    assert one.value.uncertainty == pytest.approx(0.005 / 1.5)
+    assert one.slack == pytest.approx(0.5 * math.pi / 30)
+    assert (two.family, two.mode) == ("", 3)
+    assert two.value.uncertainty == pytest.approx(5 / 40)
+
+
+def test_families_by_the_names_that_others_use(tmp_path: Path) -> None:
+    rows = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n10, 70, lag 2\n10, 15.4, flap 1\n10, 1, torsion 1").rows
+    assert [(r.family, r.mode) for r in rows] == [("chordwise", 1), ("chordwise", 2), ("flapwise", 1), ("torsion", 1)]
+
+
+def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> None:
+    text = "speed [gamma], frequency [gamma], mode, uncertainty [%]\n2, 3.6, chordwise 1, 0.5\n2, 3.6, flapwise 1,\n"
+    one, two = read(tmp_path, text).rows
+    assert one.value.uncertainty == pytest.approx(5e-3)
+    assert two.value.uncertainty == pytest.approx(0.05 / 3.6)
+
+
+def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
+    lines = [f"10, {value:.6f}, {name}" for name, value in EXACT.items()]
+    right, coarse, wrong = lines[:2], f"10, {EXACT['chordwise 2']:.1f}, chordwise 2", "10, 71.30, flapwise 2"
+    cells = of(run(read(tmp_path, HEAD + "\n".join([*right, coarse, wrong, "10, 190.1, 6", "10, 800, axial 1"]))))
+    assert [c.verdict for c in cells] == ["pass", "pass", "pass", "fail", "pass", "not applicable"]
+    assert [f"{c.family} {c.mode}" for c in cells[:5]] == [
+        "chordwise 1",
+        "flapwise 2",
+        "chordwise 3",
+        "flapwise 4",
+        "flapwise 6",
+    ]
+    assert {c.shares for c in cells} == {"nothing"}
+    assert cells[2].uncertainty == pytest.approx(0.05 / 70.4, rel=1e-2)
+    assert cells[3].difference == pytest.approx(71.30 / EXACT["flapwise 2"] - 1.0, abs=1e-6)
+    assert "line 7: the case does not compare mode axial 1 here: it compares chordwise 1" in cells[5].reason
+
+
+def test_few_digits_are_inconclusive_and_not_a_pass(tmp_path: Path) -> None:
+    """11.7 is 11.7 ± 0.05: 0.43 %, which is more than the target and says nothing within it."""
+    (cell,) = of(run(read(tmp_path, HEAD + "10, 11.7, chordwise 1")))
+    assert cell.verdict == "inconclusive"
+    assert cell.uncertainty == pytest.approx(0.05 / 11.7, rel=1e-3)
+
+
+def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> None:
+    """10 rad/s are 95.4930 rpm; printed as 95.49 the speed is off by 3e-5, and so may the frequency be."""
+    text = "speed [rpm], frequency [rad/s], mode\n95.49, 15.400199, flapwise 1\n"
+    (cell,) = of(run(read(tmp_path, text)))
+    off = 10.0 / (95.49 * math.pi / 30) - 1.0
+    assert cell.omega == 10.0
+    assert cell.uncertainty == pytest.approx(abs(off) + 0.5e-6 / 15.4, rel=1e-2)
+    assert cell.verdict == "pass"
+
+
+def test_what_is_added_is_a_witness_too(tmp_path: Path) -> None:
+    one = run(read(tmp_path, HEAD + "10, 11.710953, chordwise 1"))
+    caught = next(r for r in one.controls if (r.control, r.omega) == ("no hub radius", 10.0)).caught
+    assert "rig" in caught
+    assert one.versions["rig"] == "results in results.csv"
+
+
+BAD = [
+    ("", "empty: was it written"),
+    (HEAD, "no results in it"),
+    ("speed [rad/s], frequency [rad/s]\n10, 11.7\n", "line 1: column 'mode' is missing"),
+    (
+        "speed [m/s], frequency [Hz], mode\n1, 1, 1\n",
+        r"line 1: unknown column 'speed [m/s]': did you mean speed [rad/s]",
+    ),
+    ("speed [rpm], frequency, mode\n1, 1, 1\n", "line 1: unknown column 'frequency'"),
+    ("frequency [Hz], mode\n1, 1\n", "line 1: 0 columns of speed: give exactly one of speed [rad/s]"),
+    ("speed [rpm], speed [rad/s], frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: 2 columns of speed"),
+    ("speed [rpm], mode, frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: column 'mode' is there 2 times"),
+    (HEAD + "10, 11.7\n", "line 2: 2 columns instead of 3: a missing or stray comma?"),
+    (HEAD + "10, 11,7, chordwise 1\n", "line 2: 4 columns instead of 3"),
+    (HEAD + "ten, 11.7, chordwise 1\n", "line 2: speed [rad/s]: 'ten' is not a number, 0 or more"),
+    (HEAD + "-10, 11.7, chordwise 1\n", "line 2: speed [rad/s]: '-10' is not a number, 0 or more"),
+    (HEAD + "10, 0.0, chordwise 1\n", "line 2: frequency [rad/s]: '0.0' is not a number above 0"),
+    (HEAD + "10, nan, chordwise 1\n", "line 2: frequency [rad/s]: 'nan' is not a number above 0"),
+    (HEAD + "10, , chordwise 1\n", "line 2: frequency [rad/s]: '' is not a number above 0"),
+    (HEAD + "10, 11.7, flapways 1\n", "line 2: mode: 'flapways' is no family: did you mean flapwise?"),
+    (HEAD + "10, 11.7, chordwise\n", "line 2: mode: 'chordwise': give a family and a whole number"),
+    (HEAD + "10, 11.7, chordwise 0\n", "line 2: mode: '0': give"),
+    (HEAD + "10, 11.7, 1.5\n", "line 2: mode: '1.5': give"),
+    (
+        HEAD + "# note\n10, 11.7, chordwise 1\n10, 11.8, chordwise 1\n",
+        "line 4: mode: chordwise 1 at this speed is in line 3",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), BAD)
+def test_a_bad_file_is_told_in_one_line(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(CaseError) as told:
+        read(tmp_path, text)
+    message = str(told.value)
+    assert message.startswith(str(tmp_path / "results.csv"))
+    assert words in message
+    assert "\n" not in message
+
+
+def test_not_text_and_not_there(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match=r"none\.csv: no such file: give NAME=FILE\.csv"):
+        user_results.read("rig", tmp_path / "none.csv")
+    (tmp_path / "binary.csv").write_bytes(b"\x7f\xfe\x00\x01")
+    with pytest.raises(CaseError, match="not a text file"):
+        user_results.read("rig", tmp_path / "binary.csv")
+
+
+@pytest.mark.parametrize(
+    ("case", "text", "words"),
+    [
+        (
+            "park-cantilever",
+            HEAD + "12, 11.7, chordwise 1\n",
+            "line 2: speed: 12 rad/s is not among the speeds of park-c",
+        ),
+        ("park-blade", HEAD + "0, 5.8, flapwise 1\n", "line 2: blade: not given, and the run has 3: add a column"),
+        (
+            "park-blade",
+            HEAD.replace("mode", "mode, blade") + "0, 5.8, flapwise 1, park-blade/windpakt\n",
+            "line 2: blade: 'park-blade/windpakt' is not in this run: did you mean park-blade/windpact?",
+        ),
+    ],
+)
+def test_what_is_not_of_the_run_is_bad_input(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], case: str, text: str, words: str
+) -> None:
+    path = tmp_path / "results.csv"
+    path.write_text(text)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["verify", case, "--codes", "yoo-shin", "--add", f"rig={path}", "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+    assert not (tmp_path / "out").exists()  # nothing is overwritten by a run that cannot be
+
+
+@pytest.mark.parametrize(
+    ("add", "words"),
+    [
+        ("results.csv", "--add results.csv: give a name and a file, as in --add rig=results.csv"),
+        ("=results.csv", "give a name and a file"),
+        ("rig=", "give a name and a file"),
+        ("yoo-shin={}", "--add yoo-shin: there is a code or another file of that name"),
+    ],
+)
+def test_names_are_needed_and_their_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], add: str, words: str
+) -> None:
+    path = tmp_path / "results.csv"
+    path.write_text(HEAD + "10, 11.7, chordwise 1\n")
+    arguments = ["verify", "park-cantilever", "--codes", "yoo-shin", "--add", add.format(path)]
+    with pytest.raises(SystemExit) as ended:
+        cli.main([*arguments, "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+
+
+def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
+    one = read(tmp_path, HEAD + "10, 11.7, chordwise 1\n")
+    with pytest.raises(CaseError, match="another file of that name"):
+        user_results.check([one, one], park().variants, ["yoo-shin"])

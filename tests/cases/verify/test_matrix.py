@@ -1,0 +1,220 @@
+"""The run, end to end, with made-up codes whose right verdict is known; and its results on disk."""
+
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.schema import Case, read
+from southwell.cases.judge import results
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.verify import matrix
+from southwell.cases.verify.matrix import Progress
+
+CASE = """
+name = "rest"
+title = "At rest"
+description = "A slender uniform beam, at rest, where the frequencies are in every textbook."
+source = "Rayleigh (1877)"
+
+[blade]
+kind = "dimensionless"
+slenderness = 1000
+
+[speeds]
+gamma = SPEEDS
+
+[compare]
+motions = ["chordwise", "flapwise"]
+modes = 4
+
+[discretisation]
+elements = 10
+mass = "half_end"
+stiffness = "parent"
+"""
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = str(Path(__file__).parents[2] / "support")
+    monkeypatch.setenv("PYTHONPATH", folder)
+    monkeypatch.syspath_prepend(folder)
+
+
+@pytest.fixture
+def case(tmp_path: Path):
+    def at(speeds: str = "[0]", old: str = "", new: str = "") -> Case:
+        path = tmp_path / "rest.toml"
+        path.write_text(CASE.replace("SPEEDS", speeds).replace(old, new) if old else CASE.replace("SPEEDS", speeds))
+        return read(path)
+
+    return at
+
+
+def solve(case: Case, *codes: str, timeout: float = 60.0) -> Run:
+    with ThreadPoolExecutor(2) as executor:
+        return matrix.run([case], codes, executor, timeout=timeout)
+
+
+def of(run: Run, code: str) -> list[Cell]:
+    return [c for c in run.cells if c.code == code]
+
+
+def test_a_right_code_passes_with_numbers_to_show_for_it(case) -> None:
+    run = solve(case(), "analytic:GOOD")
+    cells = of(run, "good")
+    assert [c.verdict for c in cells] == ["pass"] * 4
+    assert [c.mode for c in cells] == [1, 2, 3, 4]
+    assert sorted(c.family for c in cells[:2]) == ["chordwise", "flapwise"]
+    for c in cells:
+        assert c.uncertainty is not None
+        assert c.difference is not None
+        assert abs(c.difference) < 1e-6 + 1e-5  # slenderness 1000: no stretch at rest
+        assert c.order == pytest.approx(2.0, abs=0.01)
+        assert c.uncertainty <= 2e-4
+        assert c.mac == pytest.approx(1.0, abs=1e-3)
+        assert c.full == pytest.approx(c.reference)
+    exact = np.repeat([3.51601527, 22.03449156], 2)  # Blevins, Formulas for Natural Frequency and Mode Shape, table 8-1
+    assert [c.frequency for c in cells] == pytest.approx(exact.tolist(), rel=1e-7)
+    assert {(v.mode, v.elements) for v in run.levels if v.code == "good"} >= {
+        (m, n) for m in (1, 4) for n in (10, 20, 40)
+    }
+    assert run.versions["good"] == "1.0"
+    assert run.settings[0].case == "rest"
+
+
+def test_a_code_is_refined_until_it_is_sure(case) -> None:
+    """Error 5 n⁻²·⁵ of a code said to be of order 2: GCI with factor 3 is 2.3e-3 at 40, 4.1e-4 at 80, 7e-5 at 160 elements."""
+    run = solve(case(), "analytic:GOOD", "analytic:ROUGH")
+    assert {c.elements for c in of(run, "good")} == {40}
+    for cell in of(run, "rough"):
+        assert cell.elements == 160
+        assert cell.uncertainty == pytest.approx(5 * (80**-2.5 - 160**-2.5), rel=1e-2)
+        assert cell.verdict == "pass"
+
+
+@pytest.mark.parametrize(
+    ("code", "verdict", "told"),
+    [
+        ("WRONG", "fail", "+0.20 % ±"),
+        ("SLOW", "inconclusive", "observed order 0.20 instead of 2"),
+        ("CRUDE", "known difference", "an estimate, by its own account within 4.00 %"),
+        ("LYING", "fail", "lies outside"),
+        ("SPECTRAL", "pass", ""),
+    ],
+)
+def test_verdicts(case, code: str, verdict: str, told: str) -> None:
+    for cell in of(solve(case(), f"analytic:{code}"), code.lower()):
+        assert cell.verdict == verdict
+        assert told in cell.reason
+
+
+def test_a_motion_that_a_code_does_not_have_is_not_applicable(case) -> None:
+    by_family = {c.family: c for c in of(solve(case(), "analytic:PLANAR"), "planar")[:2]}
+    assert by_family["flapwise"].verdict == "pass"
+    assert by_family["chordwise"].verdict == "not applicable"
+    assert by_family["chordwise"].reason == "no mode of this code has any chordwise motion"
+
+
+def test_modes_without_a_partner_fail(case) -> None:
+    for cell in of(solve(case(), "analytic:BACKWARDS"), "backwards"):
+        assert cell.verdict == "fail"
+        assert cell.reason.startswith("no partner: its most similar mode, at")
+        assert cell.frequency is None
+    assert {c.verdict for c in of(solve(case(), "analytic:SIDEWAYS"), "sideways")} == {"not applicable"}
+
+
+def test_who_cannot_or_is_not_there_says_so_at_every_speed(case) -> None:
+    run = solve(case("[0, 1]"), "analytic:UNABLE", "analytic:ABSENT")
+    assert [(c.verdict, c.reason) for c in of(run, "unable")] == [("not applicable", "blades only on Sundays")] * 2
+    assert [(c.verdict, c.reason) for c in of(run, "absent")] == [("not run", "not installed: pip install nothing")] * 2
+
+
+def test_the_same_discretisation_is_held_to_rounding(case) -> None:
+    run = solve(case("[0, 2]"), "analytic:TWIN", "analytic:BAD_TWIN")
+    assert {(c.role, c.verdict, c.target) for c in of(run, "twin")} == {("same discretisation", "pass", 1e-8)}
+    assert len(of(run, "twin")) == 8
+    assert {c.verdict for c in of(run, "bad-twin")} == {"fail"}
+
+
+def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case) -> None:
+    cells = [c for c in solve(case()).cells if c.role == "discretisation"]
+    assert [c.verdict for c in cells] == ["known difference"] * 4
+    assert all(c.elements == 10 for c in cells)
+    assert "discretisation error of 10 elements, half-end masses, parent stiffness: −" in cells[0].reason
+
+
+@pytest.mark.parametrize(
+    ("code", "verdict", "told"),
+    [
+        ("misbehaving:SEGFAULT", "fail", "SIGSEGV"),
+        ("misbehaving:HANG", "inconclusive", "no answer within 3 s"),
+        ("misbehaving:NOT_A_NUMBER", "fail", "not finite"),
+        ("misbehaving:GIVE_UP", "fail", "no steady state"),
+    ],
+)
+def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, told: str) -> None:
+    run = solve(case("[2]"), code, "analytic:TWIN", timeout=3.0)
+    (cell,) = of(run, "misbehaving")
+    assert (cell.verdict, cell.mode, cell.frequency) == (verdict, 0, None)
+    assert told in cell.reason
+    assert {c.verdict for c in of(run, "twin")} == {"pass"}
+
+
+def test_what_was_solved_before_a_failure_still_counts(case) -> None:
+    cells = of(solve(case("[0, 2]"), "misbehaving:SEGFAULT"), "misbehaving")
+    assert len(cells) > 1  # at rest it answers first, at 2 it crashes
+
+
+def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
+    seen: list[Progress] = []
+    with ThreadPoolExecutor(1) as executor:
+        run = matrix.run([case()], ["analytic:GOOD", "analytic:UNABLE"], executor, seen.append)
+    assert [p.done for p in seen] == [0, 1, 2, 3, 4]
+    assert {p.total for p in seen} == {4}
+    assert seen[0].running == ("rest × core",)
+    assert sorted((c.code, c.mode) for p in seen for c in p.cells) == sorted((c.code, c.mode) for c in run.cells)
+
+
+def test_processes_and_threads_agree(case) -> None:
+    with ProcessPoolExecutor(1) as executor:
+        far = matrix.run([case()], ["analytic:GOOD"], executor)
+    near = solve(case(), "analytic:GOOD")
+    assert [(c.code, c.mode, c.frequency, c.verdict) for c in far.cells] == [
+        (c.code, c.mode, c.frequency, c.verdict) for c in near.cells
+    ]
+
+
+def test_a_speed_without_steady_state_is_bad_input(case) -> None:
+    """Stretching resonates with the rotation where γ = α π/2: past it nothing holds the beam together."""
+    fast = case("[0, 1600]")
+    with pytest.raises(CaseError, match=r"rest: speeds: 1600 rad/s: no steady state: .*: give lower speeds"):
+        solve(fast, "analytic:GOOD")
+
+
+def test_more_modes_than_there_are_is_bad_input(case) -> None:
+    many = case("[0]", 'motions = ["chordwise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
+    with pytest.raises(CaseError, match=r"compare\.modes: 4: at 0 rad/s 0 of the lowest 36 modes move so"):
+        solve(many)
+
+
+def test_results_survive_the_disk_and_a_torn_last_line(case, tmp_path: Path) -> None:
+    run = solve(case(), "analytic:GOOD", "analytic:ABSENT")
+    path = tmp_path / "results.jsonl"
+    for cell in run.cells:
+        results.append(path, [cell])
+    results.append(path, levels=run.levels, run=run)
+    assert results.read(path) == run
+    with path.open("ab") as file:
+        file.write(b'{"kind": "cell", "case": "re')
+    assert results.read(path) == run
+
+
+def test_a_foreign_line_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "results.jsonl"
+    path.write_text('{"kind": "cell", "case": "x"}\n')
+    with pytest.raises(ValueError, match=r"results\.jsonl: line 1: not a result"):
+        results.read(path)

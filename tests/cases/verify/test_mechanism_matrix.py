@@ -1,0 +1,247 @@
+"""Mechanisms in the matrix: every code and closed form at every speed, pairing by shape, damping judged, faults told."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell import multibody as mb
+from southwell.cases.input import library, mechanisms
+from southwell.cases.input.errors import CaseError
+from southwell.cases.verify import mechanism_case, mechanism_columns
+from southwell.cases.verify.cells import Head
+from southwell.cases.verify.columns import columns as blade_columns
+from southwell.cases.verify.mechanism_columns import cells
+from southwell.core.effects import FULL
+from southwell.references.protocol import mechanism_worker, registry
+from southwell.references.protocol.mechanism_interface import MechanismModes
+from southwell.references.protocol.worker import Failure
+from southwell.references.theories import blade_formulae
+from southwell.reports.cli import app as cli
+
+HEAD = Head("case", "code", "1", "same discretisation", 1e-8)
+TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
+
+
+def rows(name: str, column: str) -> list:
+    case = mechanism_case.case(library.mechanism(name))
+    known = {n: registry.code(n) for n in registry.FOR_MECHANISMS}
+    (turning,) = case.variants
+    core = mechanism_columns.references(turning)[FULL]
+    (one,) = (c for c in mechanism_columns.columns(case, known, 60.0) if c.name == column)
+    return one(turning.speeds.tolist(), core)[0]
+
+
+@pytest.mark.parametrize("column", [*registry.FOR_MECHANISMS, "closed form"])
+@pytest.mark.parametrize("name", library.mechanisms())
+def test_every_code_at_every_speed(name: str, column: str) -> None:
+    found = rows(name, column)
+    if found[0].verdict == "not run":
+        pytest.skip(found[0].reason)
+    text = TEXT[name].text
+    assert text.compare is not None
+    assert len(found) == 4 * text.compare.modes
+    for cell in found:
+        assert (cell.verdict, cell.role, cell.target, cell.reason) == ("pass", "same discretisation", 1e-8, ""), cell
+        assert abs(cell.frequency / cell.reference - 1.0) + cell.uncertainty <= cell.target
+        assert cell.mac > 1 - 1e-9
+    assert {c.family for c in found} == {"flap", "lag" if name == "hinged-blade" else "pitch"}
+
+
+def reference():
+    (turning,) = mechanism_case.case(library.mechanism("hinged-blade")).variants
+    return mechanism_columns.references(turning)[FULL][2]
+
+
+def told(change) -> list:
+    core = reference()
+    answer = MechanismModes(core.modes.coordinates, core.modes.steady, core.modes.values, core.modes.shapes)
+    return cells(HEAD, 30.0, core, change(answer), 2)
+
+
+def test_core_itself_passes() -> None:
+    assert [c.verdict for c in told(lambda a: a)] == ["pass", "pass"]
+
+
+def test_modes_are_paired_by_shape_not_by_number() -> None:
+    turned = told(lambda a: replace(a, values=a.values[::-1], shapes=1j * a.shapes[::-1]))
+    assert [c.verdict for c in turned] == ["pass", "pass"]
+
+
+def test_coordinates_may_come_in_another_order_and_some_be_missing() -> None:
+    def fewer(a: MechanismModes) -> MechanismModes:
+        order = [2, 1]  # lag and flap, without the prescribed shaft
+        return replace(
+            a, coordinates=tuple(a.coordinates[k] for k in order), steady=a.steady[order], shapes=a.shapes[:, order]
+        )
+
+    assert [c.verdict for c in told(fewer)] == ["pass", "pass"]
+
+
+def test_a_frequency_that_is_off_fails() -> None:
+    bad = told(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
+    assert [c.verdict for c in bad] == ["pass", "fail"]
+    assert "more than" in bad[1].reason
+
+
+def test_a_damping_ratio_that_is_off_fails_though_the_frequency_is_right() -> None:
+    bad = told(lambda a: replace(a, values=1j * np.abs(a.values)))
+    assert [c.verdict for c in bad] == ["fail", "pass"]
+    assert "damping ratio 0, core's 0.1397" in bad[0].reason
+
+
+def test_a_shape_like_no_other_has_no_partner() -> None:
+    bad = told(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
+    assert [c.verdict for c in bad] == ["fail", "fail"]
+    assert "no partner, its most similar has MAC 0.5" in bad[0].reason
+
+
+@pytest.mark.parametrize(
+    ("kind", "verdict"), [("crashed", "fail"), ("timed out", "inconclusive"), ("not installed", "not run")]
+)
+def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
+    (cell,) = told(lambda _: Failure(kind, "because"))
+    assert (cell.verdict, cell.reason, cell.mode) == (verdict, "because", 0)
+
+
+def test_codes_for_blades_have_no_column_unless_there_is_no_other() -> None:
+    case = mechanism_case.case(library.mechanism("hinged-blade"))
+    both = {n: registry.code(n) for n in ("southwell-equation", "exudyn-loops")}
+    assert [c.name for c in mechanism_columns.columns(case, both, 1.0)] == ["exudyn-loops", "closed form"]
+    alone = mechanism_columns.columns(case, {"southwell-equation": both["southwell-equation"]}, 1.0)
+    (cell,) = alone[0]([10.0], [reference()])[0]
+    assert (cell.verdict, cell.reason) == ("not applicable", "it takes blades, not mechanisms")
+
+
+def test_codes_for_mechanisms_have_no_column_of_a_blade_unless_there_is_no_other() -> None:
+    case = library.load("wright-flapwise")
+    both = {n: registry.code(n) for n in ("southwell-equation", "exudyn-loops")}
+    assert "exudyn-loops" not in [c.name for c in blade_columns(case, case.variants[0], both, 1.0)]
+    alone = blade_columns(case, case.variants[0], {"exudyn-loops": both["exudyn-loops"]}, 1.0)
+    (cell,) = next(c for c in alone if c.name == "exudyn-loops").work([(1.0, None)])[0]
+    assert (cell.verdict, cell.reason) == ("not applicable", "it takes mechanisms, not blades")
+
+
+def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
+    m = library.mechanism("pitch-link").mechanism
+    request = mechanism_worker.Request("code", {"flap.rz": 0.1}, [m])
+    back = mechanism_worker.decode(mechanism_worker.encode(request).decode(), mechanism_worker.Request)
+    for ours, theirs in zip(m.bodies, back.mechanisms[0].bodies, strict=True):
+        np.testing.assert_array_equal(ours.inertia, theirs.inertia)
+    for ours, theirs in zip(m.joints, back.mechanisms[0].joints, strict=True):
+        np.testing.assert_array_equal(ours.at_parent, theirs.at_parent)
+        assert (ours.name, ours.kind, ours.cut) == (theirs.name, theirs.kind, theirs.cut)
+    modes = reference().modes
+    again = mechanism_worker.decode(
+        mechanism_worker.encode(mechanism_worker.Reply(modes)).decode(), mechanism_worker.Reply
+    )
+    np.testing.assert_array_equal(again.modes.shapes, modes.shapes)
+    np.testing.assert_array_equal(again.modes.values, modes.values)
+
+
+class Wild:
+    """A code that raises what it likes."""
+
+    name = title = "wild"
+    shares, model, hint = "nothing", FULL, "pip install wild"
+
+    def version(self) -> str:
+        return "1"
+
+    def unsupported_mechanism(self, mechanism: mb.Mechanism) -> None:
+        return None
+
+    def solve_mechanism(self, mechanism: mb.Mechanism, guess) -> MechanismModes:
+        raise RuntimeError("out of\n  cheese")
+
+
+CODE = Wild()
+
+
+class Torso:
+    """Half a code."""
+
+    solve_mechanism = None
+
+
+TORSO = Torso()
+
+
+def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
+    with pytest.raises(registry.UnknownCodeError, match="lacks name, model, version, unsupported_mechanism"):
+        registry.code("southwell.tests.test_mechanism_matrix:TORSO")
+
+
+def test_a_code_that_raises_is_one_cells_outcome() -> None:
+    m = library.mechanism("pitch-link").mechanism
+    (answer,) = mechanism_worker.answers("southwell.tests.test_mechanism_matrix:CODE", [m], {}, 60.0)
+    assert answer == Failure("nonsense", "RuntimeError: out of cheese")
+
+
+def write(folder: Path, name: str, *changes: tuple[str, str]) -> Path:
+    text = Path(library.__file__).with_name("data").joinpath("mechanisms", f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = folder / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+BAD = [
+    ("rad_s = [10.0, 20.0, 30.0, 40.0]", "rad_s = [10.0, 5.0]", "speeds.rad_s: .*not ascending"),
+    ("rad_s = [10.0, 20.0, 30.0, 40.0]", "gamma = [1.0]", "speeds.gamma"),
+    ("[compare]\nmodes = 2", "", "compare: missing"),
+    ("modes = 2", "modes = 3", "compare.modes: 3: it has 2: lower it"),
+    ("[speeds]\nrad_s = [10.0, 20.0, 30.0, 40.0]", "", "speeds: missing"),
+    ('rotor = "shaft.rz"', 'rotor = "lag.rz"', "rotor: coordinate 'lag.rz': no motion at a rate"),
+    ('formula = "flap-lag"', 'formula = "flap-lap"', "closed_form.formula: 'flap-lap'.*did you mean flap-lag"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "match"), BAD, ids=[match for _, _, match in BAD])
+def test_what_makes_no_case_is_told(tmp_path: Path, old: str, new: str, match: str) -> None:
+    path = write(tmp_path, "hinged-blade", (old, new))
+    with pytest.raises(CaseError, match=match):
+        mechanism_columns.references(mechanism_case.case(mechanisms.read(path)).variants[0])
+
+
+def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(
+            ["verify", str(path), "--codes", "southwell-equation", "--out", str(tmp_path / "out"), "--workers", "1"]
+        )
+    return int(ended.value.code or 0), capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "status", "said"),
+    [
+        ((), 0, "8 ✔ pass"),
+        ((("lag_damper = 600.0", "lag_damper = 601.0"),), 1, "4 ✘ fail"),
+        ((("first = 80.0 ", "first = 81.0 "),), 1, "8 ✘ fail"),
+        ((("offset = 0.3\n", ""),), 1, "✘ fail"),
+    ],
+    ids=["right", "another damper", "another blade", "a parameter missing"],
+)
+def test_verify_judges_a_mechanism_by_its_file(capsys, tmp_path: Path, change, status: int, said: str) -> None:
+    """The closed form's parameters are stated apart from the mechanism, so that one that is wrong is seen."""
+    found, out = verify(capsys, tmp_path, write(tmp_path, "hinged-blade", *change))
+    assert (found, said in out) == (status, True), out
+
+
+def test_formulae_of_limiting_blades() -> None:
+    """No offset: flap Ω; a lag spring alone: √(k/I); a stiff pitch link turns flap into pitch, δ3 = atan(x_h/y_h)."""
+    _, M, _, K = blade_formulae.flap_lag(
+        7.0, offset=0.0, first=1, flap_inertia=2, lag_inertia=2, own_inertia=0, lag_spring=8.0
+    )
+    np.testing.assert_allclose(np.diagonal(K) / np.diagonal(M), [49.0, 4.0])
+    blade = {"offset": 0.3, "xx": 100.0, "yy": 0.2, "zz": 0.0, "xy": 0.0, "first_x": 50.0, "first_y": 0.0}
+    horn = {"horn_x": -0.1, "horn_y": 0.2, "control_spring": 1e12, "control_damper": 0.0}
+    found = blade_formulae.solve("flap-pitch", 30.0, {**blade, **horn, "rod_mass": 0.0, "link_mass": 0.0})
+    delta = np.array([1.0, 0.5])  # 0.2 θ = 0.1 β
+    K = 900.0 * np.diag([0.3 * 50 + 100, 0.2])
+    expected = np.sqrt(delta @ K @ delta / (delta @ np.diag([100.0, 0.2]) @ delta))
+    assert found.values[0].imag == pytest.approx(expected, rel=1e-6)
+    np.testing.assert_allclose(found.shapes[0, 1] / found.shapes[0, 0], 0.5, rtol=1e-6)

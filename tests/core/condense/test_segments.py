@@ -1,0 +1,262 @@
+"""Segments, ties and the chain they make, without a solid: textbook beams, closed forms, and what is refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as ss
+from matplotlib.collections import PolyCollection
+
+from southwell.core.condense import ties
+from southwell.core.condense.compressed import chain_from_segments, chain_modes
+from southwell.core.condense.segments import between, segment_from_matrix
+from southwell.core.condense.ties import CondensationError, FiniteElements
+from southwell.core.element import sections
+from southwell.core.multibody.mechanism import inertia
+from southwell.core.solve import modes
+from southwell.core.space import spatial as sp
+from southwell.references.solid.mesh import blade
+from southwell.reports.condense.figure import stages
+from southwell.reports.shared.style import save
+from southwell.tests.support.beams import PARK
+from southwell.tests.support.solids import at
+
+Array = np.ndarray
+
+
+# What a matrix says
+
+
+def beam_segment(length: float, blade=PARK) -> tuple[Array, Array, Array]:
+    """12×12 of a uniform beam, its 6×6 and the pose of b seen from a."""
+    part = replace(blade, stations=np.array([0.0, length]), curve=np.zeros((0, 3)))
+    rest = at(length)
+    k = np.linalg.inv(sections.integrate(part, part.stations).flexibility[0])
+    D = np.concatenate([-np.eye(6), sp.adjoint(rest)], axis=1)
+    return D.T @ k @ D, k, rest
+
+
+def test_the_textbook_beam_is_its_complex_stiffness() -> None:
+    """Przemieniecki 1968, table 5.2: 12 E I/l³, −6 E I/l², 4 E I/l, 2 E I/l, E A/l, G J/l."""
+    length, EA, EI, GJ = 0.5, 7e10 * 4e-4, 7e10 * 2e-7, 7e10 / 2.6 * 4e-7
+    k12, k, rest = beam_segment(length)
+    y = [1, 5, 7, 11]
+    bending = EI / length**3 * np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], float)
+    unit = np.diag([1, length, 1, length])
+    np.testing.assert_allclose(k12[np.ix_(y, y)], unit @ bending @ unit, rtol=1e-9)
+    np.testing.assert_allclose([k12[0, 6], k12[3, 9]], [-EA / length, -GJ / length], rtol=1e-9)
+    np.testing.assert_allclose(between(k12, rest, "beam"), k, rtol=1e-9, atol=1e-9 * np.abs(k).max())
+
+
+def test_the_body_of_a_uniform_beam_rides_as_its_cubic_does() -> None:
+    """Mean of w = v (3t² − 2t³) + θ l (t³ − t²): displacement v/2 − θ l/12, rotation 6 v/5 l − θ/10 (by least squares)."""
+    length = 0.5
+    k12, _, rest = beam_segment(length)
+    ride = segment_from_matrix(k12, rest, np.eye(6)).ride
+    b = sp.adjoint(sp.inverse(rest))  # ρ is seen at a's origin; the cubic's v and θ are at b
+    ride = ride @ np.linalg.inv(b)
+    centre = at(-0.5 * length)
+    ride = sp.adjoint(centre) @ ride  # at the middle
+    np.testing.assert_allclose(ride[np.ix_([1, 5], [1, 5])], [[0.5, -length / 12], [1.2 / length, -0.1]], rtol=1e-8)
+    np.testing.assert_allclose(ride[np.ix_([0, 3], [0, 3])], 0.5 * np.eye(2), atol=1e-8)
+
+
+def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
+    length = PARK.length / n
+    k12, _, rest = beam_segment(length)
+    mass = 1.2 * length
+    polar, cross = 1.2 * length * 1e-3, mass * (5e-4 + length**2 / 12)
+    body = inertia(mass, [polar, cross, cross], [length / 2, 0, 0])
+    chain = chain_from_segments([segment_from_matrix(k12, rest, body)] * n, at(PARK.hub_radius))
+    return chain_modes(chain, omega, count).frequencies
+
+
+def test_bending_converges_with_fourth_order() -> None:
+    """From one rigid body a segment, to core's own converged beam; turning too, 20 segments leave 5e-6."""
+    exact = modes(PARK, 0.0, 160, 4).frequencies
+    errors = [np.abs(uniform_chain(n)[:4] / exact - 1) for n in (10, 20)]
+    assert (np.log2(errors[0] / errors[1]) > 3.7).all()
+    np.testing.assert_allclose(uniform_chain(20, 10.0)[:4], modes(PARK, 10.0, 160, 4).frequencies, rtol=1e-5)
+
+
+def test_torsion_is_that_of_masses_in_the_middle() -> None:
+    """A shaft of n segments whose discs move as the mean of their ends: ω = (2/l) √(GJ/I_x) tan(β l/2), β = (k − ½)π/L."""
+    n = 20
+    length = PARK.length / n
+    k12, _, rest = beam_segment(length)
+    body = inertia(1.2 * length, [1e2 * length, 60.0, 60.0], [length / 2, 0, 0])
+    found = chain_modes(chain_from_segments([segment_from_matrix(k12, rest, body)] * n, np.eye(4)), 0.0, 20).frequencies
+    beta = (np.arange(1, 4) - 0.5) * np.pi / PARK.length
+    exact = 2 / length * np.sqrt(7e10 / 2.6 * 4e-7 / 1e2) * np.tan(beta * length / 2)
+    nearest = np.abs(found[:, None] / exact - 1).min(0)
+    assert nearest.max() < 1e-6
+
+
+# Ties
+
+
+def freedoms_of_a_section(seed: int = 3, count: int = 7) -> FiniteElements:
+    """Nodes scattered on a plane, each with three displacements and three rotations; springs to nowhere."""
+    rng = np.random.default_rng(seed)
+    points = np.column_stack([np.full(count, 0.4), rng.normal(size=(count, 2))])
+    n = 6 * count
+    every = FiniteElements(
+        "section", np.repeat(points, 6, axis=0), np.tile(np.arange(6), count), ss.csr_array(ss.eye_array(n)), np.ones(n)
+    )
+    return every
+
+
+def somewhere() -> Array:
+    return sp.exp(np.array([[0.4, 0.2, -0.3, 0.3, -0.5, 0.7]]))[0]
+
+
+@pytest.mark.parametrize("kind", ["rigid", "average"])
+def test_a_tie_follows_its_frame_and_balances_its_wrench(kind: ties.Kind) -> None:
+    """Moved as a rigid body the section's mean is the frame's twist; forces of a unit wrench have that wrench."""
+    model = freedoms_of_a_section()
+    every = np.arange(len(model.directions))
+    make = ties.rigid if kind == "rigid" else ties.average
+    tie = make(model, every, somewhere(), "section")
+    np.testing.assert_allclose(tie.mean @ tie.motion, np.eye(6), atol=1e-12)
+    assert (model.directions[tie.freedoms] < 3).all() == (kind == "average")
+
+
+def test_rigid_motion_is_the_frames_own_screw() -> None:
+    """Turning the frame by a finite small twist moves points as ``motion`` says, to second order."""
+    model, frame = freedoms_of_a_section(), somewhere()
+    twist = 1e-5 * np.array([1.0, -2.0, 0.5, 0.3, 0.8, -1.1])
+    moved = frame @ sp.exp(twist[None])[0] @ sp.inverse(frame)
+    points = model.points[::6]
+    displaced = points @ moved[:3, :3].T + moved[:3, 3] - points
+    linear = (ties.motion(model.points, model.directions, frame) @ twist).reshape(-1, 2, 3)
+    np.testing.assert_allclose(linear[:, 0], displaced, atol=1e-8)
+    np.testing.assert_allclose(linear[:, 1], np.tile(frame[:3, :3] @ twist[3:], (len(points), 1)), atol=1e-15)
+
+
+# The picture
+
+
+def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
+    """Faces of the mesh, 5 sections, 4 boxes and 4 springs; a box's outline is the segment's own, and bytes do not vary."""
+    mass, side, length = 3.0, 0.2, 0.5
+    body = inertia(
+        mass, mass / 12 * np.array([2 * side**2, side**2 + length**2, side**2 + length**2]), [length / 2, 0, 0]
+    )
+    k12, _, rest = beam_segment(length)
+    pieces = [segment_from_matrix(k12, rest, body)] * 4
+    bricks = blade(np.linspace(1.0, 3.0, 9), side, side, across=(3, 2))
+    figure = stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999)
+    mesh, cut, compressed = (
+        [np.array([p.vertices for p in c.get_paths()]) for c in a.collections if isinstance(c, PolyCollection)]
+        for a in figure.axes
+    )
+    assert [len(faces) for faces in mesh] == [2 * (8 * 3 + 8 * 2 + 3 * 2)]
+    assert [faces.shape[1] for faces in cut] == [11] * 5  # 10 corners round, closed
+    assert [len(faces) for faces in compressed] == [6] * 4
+    apart = [np.ptp([faces[..., 0].mean() for faces in drawn]) for drawn in (cut, compressed)]
+    assert apart[1] == pytest.approx(3 / 4 * apart[0], rel=1e-9)
+    edges = np.diff(compressed[0], axis=1).reshape(-1, 2)
+    for corner in (3, 8):  # along y and z from the first
+        assert np.abs(edges - (cut[0][0, corner] - cut[0][0, 0])).sum(axis=1).min() < 1e-9
+    assert {t.get_text() for t in figure.texts} == {
+        "Finite element model: 48 hexahedra, 999 freedoms",
+        "5 sections, each tied to a frame",
+        "Compressed model: 4 rigid bodies, 4 complex stiffness elements, 24 freedoms",
+    }
+    for name in ("one.svg", "two.svg"):
+        save(stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999), tmp_path / name)
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
+
+
+# Bad input
+
+
+def bad(change) -> tuple[Array, Array]:
+    k, _, rest = beam_segment(0.5)
+    return change(k.copy()), rest
+
+
+def put(k: Array, entry: tuple[int, int], value: float) -> Array:
+    k[entry] = value
+    return k
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (lambda k: k[:11, :11], r"shape \(11, 11\), expected \(12, 12\)"),
+        (lambda k: put(k, (3, 4), np.nan), r"not finite at index \[3, 4\]"),
+        (lambda k: put(k, (1, 5), 1.1 * k[1, 5]), "from symmetric: one triangle only"),
+        (lambda k: np.triu(k), "from symmetric"),
+        (lambda k: -k, "diagonal .* not positive semi-definite"),
+        (
+            lambda k: put(put(k, (1, 7), 2 * k[1, 7]), (7, 1), 2 * k[7, 1]),
+            "not positive semi-definite .lowest eigenvalue",
+        ),
+        (lambda k: k + np.diag([1e-3 * k[0, 0]] + [0.0] * 11), "translation along x as a rigid body is resisted"),
+        (
+            lambda k: k + np.diag([0.0] * 9 + [0.1 * k[9, 9]] + [0.0] * 2),
+            "rotation about x as a rigid body is resisted",
+        ),
+    ],
+    ids=["size", "nan", "asymmetric", "one triangle", "sign", "indefinite", "grounded", "grounded in rotation"],
+)
+def test_a_matrix_that_is_no_segments_is_refused(change, match: str) -> None:
+    with pytest.raises(CondensationError, match=f"stiffness of 'root to 1 m': .*{match}"):
+        between(*bad(change), "root to 1 m")
+
+
+def test_a_matrix_of_another_place_is_refused() -> None:
+    """In millimetres where metres were meant: rotations no longer fit translations."""
+    k, _, rest = beam_segment(0.5)
+    wrong = rest.copy()
+    wrong[0, 3] *= 1e3
+    with pytest.raises(CondensationError, match=r"as a rigid body is resisted .*units"):
+        between(k, wrong, "segment")
+
+
+def test_a_mechanism_between_sections_is_refused() -> None:
+    """Turning about x and y by as much each way meets no force; and turning about x alone."""
+    rest = at(0.5)
+    D = np.concatenate([-np.eye(6), sp.adjoint(rest)], axis=1)
+    free = np.eye(6)
+    free[3, 4] = free[4, 3] = 1.0
+    with pytest.raises(CondensationError, match="'segment': more than six motions without force"):
+        between(D.T @ free @ D, rest, "segment")
+    with pytest.raises(CondensationError, match="nothing resists the rotation about x of frame a"):
+        between(D.T @ np.diag([1.0, 1, 1, 0, 1, 1]) @ D, rest, "segment")
+
+
+def test_coinciding_frames_are_refused() -> None:
+    k = np.block([[np.eye(6), -np.eye(6)], [-np.eye(6), np.eye(6)]])
+    with pytest.raises(CondensationError, match="the end frames of 'joint' coincide"):
+        segment_from_matrix(k, np.eye(4), np.eye(6), "joint")
+
+
+def lump(**changes) -> FiniteElements:
+    return replace(freedoms_of_a_section(), **changes)
+
+
+@pytest.mark.parametrize(
+    ("act", "match"),
+    [
+        (lambda: ties.rigid(lump(), np.zeros(0, int), np.eye(4), "tip"), "section 'tip': a tie with no nodes"),
+        (lambda: ties.average(lump(), np.zeros(0, int), np.eye(4), "tip"), "section 'tip': a tie with no nodes"),
+        (lambda: ties.section(lump(), at(0.5), "0.5 m"), "section '0.5 m': no nodes .* nearest are -0.1 m"),
+        (lambda: ties.average(lump(), np.arange(12), at(0.4), "two"), "6 freedoms cannot tell six motions"),
+        (
+            lambda: ties.average(lump(mass=np.zeros(42)), np.arange(42), at(0.4), "bare"),
+            "weights are the lumped masses",
+        ),
+        (lambda: ties.average(lump(), np.arange(42), at(0.4), "edge", -np.ones(42)), "weights reach down to -1"),
+        (lambda: lump(stiffness=ss.csr_array(np.eye(41))), r"stiffness has shape \(41, 41\), expected \(42, 42\)"),
+        (lambda: lump(points=np.zeros((42, 2))), r"points has shape \(42, 2\)"),
+        (lambda: lump(stiffness=ss.csr_array(np.tri(42))), "from symmetric"),
+        (lambda: lump(stiffness=ss.csr_array(np.full((42, 42), np.inf))), "not finite"),
+        (lambda: chain_from_segments([], np.eye(4)), "segments: none given"),
+    ],
+)
+def test_bad_ties_and_models_are_refused(act, match: str) -> None:
+    with pytest.raises(CondensationError, match=match):
+        act()

@@ -1,0 +1,126 @@
+"""What a blade or a mechanism is does not depend on the axes it is written down in: shifted axis, shifted body frames."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from southwell import multibody as mb
+from southwell.cases.input import library
+from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.core.element import beams as bm
+from southwell.core.solve import modes
+from southwell.core.space import spatial as sp
+
+OFFSET = np.array([0.0, 0.17, -0.09])
+
+
+def blade(rng: np.random.Generator) -> Blade:
+    """Straight, tapered, with shear, every strain coupled with every other, mass centre off the axis."""
+    n, taper = 4, np.linspace(1.0, 0.4, 4)[:, None, None]
+    stiffness = section_stiffness(2e7, 1e5, 3e5, 9e5, 4e6, 6e6) * taper
+    root = np.sqrt(np.diagonal(stiffness, axis1=1, axis2=2))
+    mix = rng.normal(size=(6, 6))
+    coupling = 0.1 * (mix + mix.T) * (1 - np.eye(6)) / 4
+    shift = sp.adjoint(sp.pose(np.eye(3), np.array([0.0, -0.05, 0.03])))  # from the axis to the mass centre
+    inverse = np.linalg.inv(shift)
+    return Blade(
+        "coupled",
+        np.linspace(0.0, 5.0, n),
+        stiffness + coupling * root[:, :, None] * root[:, None, :],
+        inverse.T @ (section_mass(4.0, 0.02, 0.09) * taper) @ inverse,
+        np.zeros(n),
+        hub_radius=0.5,
+        tip_mass=inverse.T @ section_mass(3.0, 0.1, 0.2)[0] @ inverse,
+    )
+
+
+def about(blade: Blade, offset: np.ndarray) -> Blade:
+    """The same blade about an axis that lies ``offset`` beside its own.
+
+    Velocities and strains of the section seen there are v + ω × d and γ + κ × d, d from the old point to the new.
+    """
+    to_new = sp.adjoint(sp.pose(np.eye(3), -offset))
+    back = np.linalg.inv(to_new)
+    return replace(
+        blade,
+        stiffness=back.T @ blade.stiffness @ back,
+        mass=back.T @ blade.mass @ back,
+        tip_mass=back.T @ blade.tip_mass @ back,
+        curve=blade.curve + offset,
+    )
+
+
+def test_the_shift_is_that_of_a_rigid_body() -> None:
+    """A point mass on the old axis has, about the new one, the first and second moments of −d."""
+    one = replace(blade(np.random.default_rng(0)), mass=np.repeat(section_mass(2.0), 4, axis=0))
+    moved = about(one, OFFSET).mass[0]
+    np.testing.assert_allclose(moved[3:, :3], 2.0 * sp.skew(-OFFSET), atol=1e-15)
+    np.testing.assert_allclose(np.diagonal(moved)[3], 2.0 * (0.17**2 + 0.09**2), rtol=1e-14)
+
+
+@pytest.mark.parametrize("mass", ["consistent", "half_end"])
+@pytest.mark.parametrize("stiffness", ["corotational", "parent"])
+def test_frequencies_at_rest_do_not_depend_on_the_reference_axis(mass, stiffness) -> None:
+    """Discretised alike, the same elements and bodies: to rounding, not to the discretisation's error."""
+    own = blade(np.random.default_rng(3))
+    found = [modes(b, 0.0, 12, 8, mass=mass, stiffness=stiffness).frequencies for b in (own, about(own, OFFSET))]
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("elements", "tolerance"), [(12, 1e-8), (24, 1e-9), (48, 1e-10)])
+def test_frequencies_turning_do_not_depend_on_the_reference_axis(elements, tolerance) -> None:
+    """Reissner's strains transform as Γ + κ × d exactly; what elements of fourth order leave vanishes as they do."""
+    own = blade(np.random.default_rng(3))
+    found = [modes(b, 12.0, elements, 5).frequencies for b in (own, about(own, OFFSET))]
+    np.testing.assert_allclose(found[1], found[0], rtol=tolerance)
+
+
+def test_an_axis_shifted_on_one_side_only_is_seen() -> None:
+    """The negative control: stiffness taken about the other axis, mass not."""
+    own = blade(np.random.default_rng(3))
+    wrong = replace(own, stiffness=about(own, OFFSET).stiffness)
+    found = [modes(b, 12.0, 12, 8).frequencies for b in (own, wrong)]
+    assert np.abs(found[1] / found[0] - 1).max() > 1e-2
+
+
+def reframed(m: mb.Mechanism, rng: np.random.Generator) -> mb.Mechanism:
+    """Every body described in another frame of its own: x = new⁻¹ old."""
+    new = {b.name: sp.exp(rng.normal(size=6) * 0.5) for b in m.bodies} | {"ground": np.eye(4)}
+    old = {name: sp.inverse(x) for name, x in new.items()}  # the old frame seen from the new
+
+    def body(b: mb.Body) -> mb.Body:
+        to_old = sp.adjoint(new[b.name])
+        return mb.Body(b.name, to_old.T @ b.inertia @ to_old)
+
+    def point(name: str, p: np.ndarray) -> np.ndarray:
+        return old[name][:3, :3] @ p + old[name][:3, 3]
+
+    return replace(
+        m,
+        bodies=tuple(body(b) for b in m.bodies),
+        joints=tuple(
+            replace(j, at_parent=old[j.parent] @ j.at_parent, at_child=old[j.child] @ j.at_child) for j in m.joints
+        ),
+        springs=tuple(
+            replace(s, point_a=point(s.body_a, s.point_a), point_b=point(s.body_b, s.point_b)) for s in m.springs
+        ),
+        beams=tuple(replace(b, at_a=old[b.body_a] @ b.at_a, at_b=old[b.body_b] @ b.at_b) for b in m.beams),
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_modes_do_not_depend_on_the_bodies_frames(seed: int) -> None:
+    """A blade on its pitch link, with a spring and a bushing besides: frequencies, damping, and shapes, coordinate by one."""
+    rng = np.random.default_rng(seed)
+    m = library.mechanism("pitch-link").mechanism
+    m = replace(
+        m,
+        springs=(mb.Spring("hub", "blade", np.array([0.1, 0, 0.4]), np.array([1.0, 0.1, 0]), 5e3, 20.0, 0.8),),
+        beams=(mb.Beam("knuckle", "blade", bm.bushing(np.eye(4), np.diag([1e4] * 3 + [50.0] * 3))),),
+        gravity=(0.0, 0.0, -9.81),
+    )
+    own, other = mb.solve(m), mb.solve(reframed(m, rng))
+    np.testing.assert_allclose(other.values, own.values, rtol=1e-10)
+    np.testing.assert_allclose(other.shapes, own.shapes, atol=1e-9)
+    np.testing.assert_allclose(list(other.steady.values()), list(own.steady.values()), atol=1e-10)

@@ -1,0 +1,89 @@
+"""Element stiffness from integrated flexibility, against textbook statics."""
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.core.element import sections
+from southwell.core.space import spatial as sp
+
+L, EA, GJ, EY, EZ, GA = 3.0, 5e8, 2e6, 4e6, 7e6, 9e7
+
+
+def beam(shear: float) -> Blade:
+    return uniform_blade("beam", L, 0.0, EA=EA, GJ=GJ, EI_y=EY, EI_z=EZ, mass=1.0, GA_y=shear, GA_z=shear)
+
+
+def tip(blade: Blade, wrench: np.ndarray, elements: int = 1) -> np.ndarray:
+    """Displacement and rotation (6,) of the tip under a wrench there, the root clamped; elements chained."""
+    s = np.linspace(0.0, blade.length, elements + 1)
+    seg = sections.integrate(blade, s)
+    x = sections.frames(blade, s)
+    at_tip = np.array([0, 0, 0, *np.cross(x[-1, :3, 3], wrench[:3])])  # moment about the ground's origin
+    spatial = np.concatenate([wrench[:3], wrench[3:]]) + at_tip
+    twist = np.zeros(6)
+    for k in range(elements):
+        lever = sp.adjoint(x[k])
+        twist += lever @ seg.flexibility[k] @ lever.T @ spatial
+    return np.concatenate([twist[:3] + np.cross(twist[3:], x[-1, :3, 3]), twist[3:]])
+
+
+@pytest.mark.parametrize("shear", [np.inf, GA], ids=["Euler-Bernoulli", "Timoshenko"])
+@pytest.mark.parametrize("elements", [1, 3])
+def test_uniform_cantilever_statics(shear: float, elements: int) -> None:
+    b = beam(shear)
+    slip = 0.0 if np.isinf(shear) else L / shear
+    expected = {
+        0: [L / EA, 0, 0, 0, 0, 0],
+        1: [0, L**3 / 3 / EZ + slip, 0, 0, 0, L**2 / 2 / EZ],
+        2: [0, 0, L**3 / 3 / EY + slip, 0, -(L**2) / 2 / EY, 0],
+        3: [0, 0, 0, L / GJ, 0, 0],
+        4: [0, 0, -(L**2) / 2 / EY, 0, L / EY, 0],
+        5: [0, L**2 / 2 / EZ, 0, 0, 0, L / EZ],
+    }
+    for j, value in expected.items():
+        np.testing.assert_allclose(tip(b, np.eye(6)[j], elements), value, rtol=1e-10, atol=1e-10 * max(np.abs(value)))
+
+
+def test_bend_twist_coupling_statics() -> None:
+    """A tip moment about y twists a coupled beam by the 2×2 compliance times the length."""
+    k = section_stiffness(EA, GJ, EY, EZ)
+    k[:, 3, 4] = k[:, 4, 3] = 0.3 * np.sqrt(GJ * EY)
+    b = Blade("coupled", np.array([0.0, L]), np.repeat(k, 2, 0), np.repeat(section_mass(1.0), 2, 0), np.zeros(2))
+    c = np.linalg.inv(k[0, 3:5, 3:5])
+    np.testing.assert_allclose(tip(b, np.array([0, 0, 0, 0, 1.0, 0]))[3:5], c[:, 1] * L, rtol=1e-10)
+    np.testing.assert_allclose(tip(b, np.array([0, 0, 1.0, 0, 0, 0]))[2], c[1, 1] * L**3 / 3, rtol=1e-10)
+
+
+def test_linear_taper_statics() -> None:
+    """Tip load on EI falling linearly: w = ∫ (L−s)²/EI ds, in closed form with logarithms; converges as the elements do."""
+    e0, e1 = 4e6, 1e6
+    b = Blade(
+        "taper",
+        np.array([0.0, L]),
+        section_stiffness(EA, GJ, [e0, e1], [EZ, EZ]),
+        np.repeat(section_mass(1.0), 2, 0),
+        np.zeros(2),
+    )
+    a = (e1 - e0) / L  # EI = e1 + a (s − L): with t = L − s, EI = e1 − a t
+    exact = -(L**2) / (2 * a) - e1 * L / a**2 - e1**2 / a**3 * np.log(1 - a * L / e1)
+    errors = [abs(tip(b, np.array([0, 0, 1.0, 0, 0, 0]), n)[2] / exact - 1) for n in (4, 8)]
+    assert errors[1] < 1e-7
+    assert np.log2(errors[0] / errors[1]) > 5.0  # three Gauss points: sixth order
+
+
+def test_quarter_circle_in_plane() -> None:
+    """A prebent quarter circle under an out-of-plane tip force: w = F R³ (π/4 /EI + (3π/4 − 2)/GJ) (Timoshenko 1930)."""
+    radius, n = 2.0, 81
+    angle = np.linspace(0.0, np.pi / 2, n)
+    curve = np.stack([radius * np.sin(angle), radius * (1 - np.cos(angle)), np.zeros(n)], axis=1)
+    b = Blade(
+        "arc",
+        radius * angle,
+        np.repeat(section_stiffness(1e12, GJ, EY, EZ), n, 0),
+        np.repeat(section_mass(1.0), n, 0),
+        np.zeros(n),
+        curve=curve,
+    )
+    exact = radius**3 * (np.pi / 4 / EY + (3 * np.pi / 4 - 2) / GJ)
+    assert tip(b, np.array([0, 0, 1.0, 0, 0, 0]), 8)[2] == pytest.approx(exact, rel=2e-6)

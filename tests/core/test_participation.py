@@ -1,0 +1,158 @@
+"""Modes are named by their kinetic energy: closed forms, and what must not matter (axis, units of length, precone)."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from southwell.cases.input import library
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.core.modes import STATIONS, Modes
+from southwell.core.participation import DOMINANT, families, numbered, participation, spoken
+from southwell.core.solve import modes as solve
+from southwell.core.space import spatial as sp
+
+FLAP, EDGE, TORSION, AXIAL = range(4)
+LENGTH, MASS, POLAR = 6.0, 1.2, 3e-3
+BEAM = uniform_blade("beam", LENGTH, 0.3, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=MASS, I_y=1e-3, I_z=2e-3)
+POINTLIKE = uniform_blade("points", LENGTH, 0.3, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=MASS)
+
+
+def modes(*shapes: np.ndarray) -> Modes:
+    return Modes(0.0, np.arange(1.0, len(shapes) + 1), np.array(shapes, complex), 10)
+
+
+def shape(**columns: np.ndarray) -> np.ndarray:
+    out = np.zeros((21, 4), complex)
+    for name, values in columns.items():
+        out[:, "xyzt".index(name)] = values
+    return out
+
+
+def test_displacements_share_by_their_squares() -> None:
+    sine = np.sin(0.5 * np.pi * STATIONS)
+    (share,) = participation(modes(shape(y=3.0 * sine, z=4.0 * sine)), POINTLIKE)
+    np.testing.assert_allclose(share, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
+
+
+def test_torsion_counts_through_the_polar_inertia_not_in_radians() -> None:
+    """θ and w of equal shape: energies m w² and I_p θ²; in a code that adds squared metres and radians both would be half."""
+    sine = np.sin(0.5 * np.pi * STATIONS)
+    rigid = replace(BEAM, mass=np.repeat(section_mass(MASS, POLAR, 0.0), 2, axis=0))
+    (share,) = participation(modes(shape(z=sine, t=sine)), rigid)
+    bending = POLAR * (0.5 * np.pi / LENGTH) ** 2  # I_y w'² turns with flap; ∫cos² = ∫sin² over the quarter wave
+    whole = MASS + POLAR + bending
+    np.testing.assert_allclose(share, [(MASS + bending) / whole, 0, POLAR / whole, 0], atol=2e-6)
+
+
+def test_a_flap_mode_that_turns_more_radians_than_it_moves_metres_is_flap() -> None:
+    """Summing m² and rad² calls this torsion: 0.25 against 1; its energies are 0.3 against 0.003."""
+    sine = np.sin(0.5 * np.pi * STATIONS)
+    shares = participation(modes(shape(z=0.5 * sine, t=sine)), BEAM)
+    assert families(shares) == ("flap",)
+    assert shares[0, TORSION] == pytest.approx(POLAR / (POLAR + 0.25 * MASS), rel=2e-3)
+
+
+def test_a_phase_lag_does_not_matter() -> None:
+    sine = np.sin(0.5 * np.pi * STATIONS)
+    (share,) = participation(modes(np.exp(0.7j) * shape(y=3j * sine, z=4.0 * sine)), POINTLIKE)
+    np.testing.assert_allclose(share, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
+
+
+def test_a_tapered_blades_mass_and_its_tip_mass_count_where_they_are() -> None:
+    """y = s, z = s²: ∫(3 − s/2) s² ds = 32 and ∫(3 − s/2) s⁴ ds = 273.07 over 4 m; the tip adds 2·16 and 2·256."""
+    blade = Blade(
+        "tapered",
+        stations=np.array([0.0, 4.0]),
+        stiffness=np.repeat(section_stiffness(1.0, 1.0, 1.0, 1.0), 2, axis=0),
+        mass=section_mass([3.0, 1.0]),
+        twist=np.array([0.4, -0.2]),
+        tip_mass=np.diag([2.0, 2.0, 2.0, 0.0, 0.0, 0.0]),
+    )
+    s = 4.0 * STATIONS
+    (share,) = participation(modes(shape(y=s, z=s**2)), blade)
+    edge, flap = 3 * 4**3 / 3 - 4**4 / 8 + 2 * 4**2, 3 * 4**5 / 5 - 4**6 / 12 + 2 * 4**4
+    np.testing.assert_allclose(share[[EDGE, FLAP]], [edge / (edge + flap), flap / (edge + flap)], rtol=1e-12)
+
+
+def test_torsion_about_an_axis_off_the_mass_centre_is_flap_too() -> None:
+    """A pitching section whose mass centre lies 0.5 m from the axis: m d² θ² is motion of the mass, I_c θ² is torsion."""
+    mass = section_mass([1.0, 1.0], 0.06, 0.04)
+    mass[:, 2, 3] = mass[:, 3, 2] = 0.5
+    mass[:, 3, 3] += 0.25
+    mass[:, 0, 5] = mass[:, 5, 0] = -0.5
+    mass[:, 5, 5] += 0.25
+    (share,) = participation(modes(shape(t=np.ones(21))), replace(BEAM, mass=mass))
+    np.testing.assert_allclose(share, [0.25 / 0.35, 0, 0.1 / 0.35, 0], atol=1e-12)
+
+
+def shifted(blade: Blade, y: float, z: float) -> Blade:
+    """The same solid described about an axis moved by (y, z) in its (untwisted) sections."""
+    x = sp.adjoint(sp.pose(np.eye(3), np.array([0.0, y, z])))  # twist at the new point → twist at the old
+    stiffness = np.linalg.inv(np.linalg.inv(x) @ np.linalg.inv(blade.stiffness) @ np.linalg.inv(x).T)
+    mass = x.T @ blade.mass @ x
+    curve = blade.curve + np.array([0.0, y, z])
+    return replace(blade, stiffness=stiffness, mass=mass, curve=curve)
+
+
+@settings(max_examples=6, deadline=None)
+@given(y=st.floats(-0.4, 0.4), z=st.floats(-0.4, 0.4))
+def test_shares_do_not_depend_on_the_reference_axis(y: float, z: float) -> None:
+    solid = uniform_blade(
+        "solid", LENGTH, 0.3, EA=1e7, GJ=8e2, EI_y=1e4, EI_z=6e4, GA_y=1e7, GA_z=1e7, mass=MASS, I_y=1e-2, I_z=6e-2
+    )
+    here = solve(solid, 0.0, 30, 8)
+    there = solve(shifted(solid, y, z), 0.0, 30, 8)
+    np.testing.assert_allclose(there.frequencies, here.frequencies, rtol=1e-8)
+    np.testing.assert_allclose(participation(there, shifted(solid, y, z)), participation(here, solid), atol=1e-4)
+
+
+@pytest.mark.parametrize("angle", [0.1, -0.3])
+def test_precone_and_pitch_turn_the_axes_with_the_blade(angle: float) -> None:
+    for turned in (replace(BEAM, precone=angle), replace(BEAM, pitch=angle)):
+        shares = participation(solve(turned, 0.0, 20, 6), turned)
+        np.testing.assert_allclose(shares.max(1), 1.0, atol=1e-6)
+        assert numbered(families(shares))[:4] == ("flap 1", "edge 1", "flap 2", "edge 2")
+
+
+def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
+    """Clamped-free: flap and edge at (βL)² √(EI/m)/L², torsion at (k − ½)π √(GJ/I_p)/L (Rayleigh 1877)."""
+    beam = uniform_blade("soft", LENGTH, 0.0, EA=1e9, GJ=4.0, EI_y=1e4, EI_z=1.4e4, mass=MASS, I_y=1e-3, I_z=1e-3)
+    found = solve(beam, 0.0, 40, 8)
+    names = numbered(families(participation(found, beam)))
+    roots = np.array([1.87510407, 4.69409113])
+    expected = {
+        **{f"flap {k + 1}": r**2 * np.sqrt(1e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
+        **{f"edge {k + 1}": r**2 * np.sqrt(1.4e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
+        **{f"torsion {k}": (k - 0.5) * np.pi * np.sqrt(4.0 / 2e-3) / LENGTH for k in (1, 2, 3)},
+    }
+    for name, frequency in expected.items():
+        assert found.frequencies[names.index(name)] == pytest.approx(frequency, rel=2e-3), name
+
+
+def test_without_moments_of_inertia_nothing_is_torsion_however_far_it_turns() -> None:
+    (share,) = participation(modes(shape(z=STATIONS, t=100.0 * STATIONS)), POINTLIKE)
+    np.testing.assert_allclose(share, [1, 0, 0, 0], atol=1e-12)
+
+
+def test_axial_motion_is_told() -> None:
+    assert families(participation(modes(shape(x=STATIONS, z=0.1 * STATIONS)), POINTLIKE)) == ("axial",)
+
+
+def test_a_mode_without_a_dominant_motion_is_mixed_and_its_shares_are_given() -> None:
+    shares = np.array([[0.55, 0.42, 0.03, 0.0], [DOMINANT, 1 - DOMINANT, 0, 0], [0.02, 0.9, 0.08, 0]])
+    assert numbered(families(shares)) == ("mixed 1", "flap 1", "edge 1")
+    assert spoken(shares[0]) == "55 % flap, 42 % edge"
+    assert spoken(shares[2]) == "90 % edge, 8 % torsion"
+
+
+def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
+    """At 60 rpm BModes prints 4.1912 Hz; a sum of squared metres and radians would call it the first torsion."""
+    for variant in library.load("windpact-1.5").variants:
+        found = solve(variant.blade, 2 * np.pi, 40, 6)
+        shares = participation(found, variant.blade)
+        assert 4.1 < found.frequencies[2] / (2 * np.pi) < 4.4
+        assert numbered(families(shares)) == ("flap 1", "edge 1", "flap 2", "edge 2", "flap 3", "torsion 1")
+        assert shares[2, FLAP] > 0.99

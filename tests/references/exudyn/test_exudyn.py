@@ -1,0 +1,206 @@
+"""Exudyn's ANCF cable and kinematic tree against closed forms, exact tables, and each other."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.core.modes import STATIONS
+from southwell.references.protocol.interface import CodeError
+
+from ...support.exudyn_beams import (
+    ANCF,
+    FULL,
+    INEXTENSIBLE,
+    NO_ROTARY,
+    PARK,
+    RHO,
+    STRETCHED,
+    TREE,
+    A,
+    E,
+    I,
+    both,
+    cantilever,
+    extrapolated,
+    families,
+    needs_exudyn,
+    roots,
+    unit,
+)
+
+
+@pytest.fixture(scope="module")
+def windpact() -> Blade:
+    file = resources.files("southwell.cases.data") / "windpact-3.0.csv"
+    s, twist, mass, flap, edge, GJ, EA = np.loadtxt(file.open(), delimiter=",", skiprows=3).T
+    return Blade(
+        name="windpact 3.0",
+        stations=s * 47.025,
+        stiffness=section_stiffness(EA, GJ, flap, edge),
+        mass=section_mass(mass),
+        twist=np.radians(twist),
+        hub_radius=2.475,
+    )
+
+
+@needs_exudyn
+class TestAnswers:
+    @both
+    def test_at_rest_converges_to_the_closed_form(self, code):
+        exact = roots(3) ** 2 * np.sqrt(E * I / (RHO * A)) / 6.0**2
+        value, order = extrapolated(code, lambda n: code.solve(NO_ROTARY, 0.0, n, 6).frequencies[::2])
+        np.testing.assert_allclose(value, exact, rtol=2e-6 if code is TREE else 1e-7)
+        assert (abs(order - code.order) < 0.05 * code.order).all()
+
+    def test_tree_turning_converges_to_the_exact_beam(self):
+        value, order = extrapolated(TREE, lambda n: families(TREE.solve(PARK, 10.0, n, 6), 3))
+        np.testing.assert_allclose(value, FULL, rtol=2e-6)
+        assert (abs(order - 2) < 0.05).all()
+
+    @both
+    def test_turning_without_rotary_inertia(self, code):
+        value, order = extrapolated(code, lambda n: families(code.solve(NO_ROTARY, 10.0, n, 6), 3))
+        np.testing.assert_allclose(value, STRETCHED, rtol=2e-6)
+        assert (abs(order - code.order) < 0.05 * code.order).all()
+        # stretch lowers frequencies, by no more than the strain of 8e-5 and Coriolis (1.2e-4) can
+        assert ((value < INEXTENSIBLE) & (value > INEXTENSIBLE * (1 - 2e-4))).all()
+
+    @both
+    @pytest.mark.parametrize("omega", [10.0, 30.0])
+    def test_chordwise_is_not_flapwise(self, code, omega):
+        """The inextensible beam's ω_flap² − ω_chord² is Ω² exactly; a frozen frame would make it nothing."""
+        chordwise, flapwise = families(code.solve(NO_ROTARY, omega, code.levels[0], 6), 3)
+        np.testing.assert_allclose(flapwise**2 - chordwise**2, omega**2, rtol=0.03)
+
+    @pytest.mark.parametrize(("hub", "gamma"), [(0.0, 2.0), (0.0, 10.0), (1.0, 10.0), (5.0, 2.0)])
+    def test_both_agree_where_coriolis_and_stretch_matter(self, hub, gamma):
+        """Two formulations, fourth order and second, meet; strains up to 0.03."""
+        cable, _ = extrapolated(ANCF, lambda n: ANCF.solve(unit(hub), gamma, n, 6).frequencies)
+        tree, _ = extrapolated(TREE, lambda n: TREE.solve(unit(hub), gamma, n, 6).frequencies)
+        np.testing.assert_allclose(tree, cable, rtol=3e-5)
+
+    def test_both_agree_at_a_strain_of_a_quarter(self):
+        """γ = 50: the root's boundary layer, 1/35 of the length, is resolved by 80 cubics or 192 hinges."""
+        cable = ANCF.solve(unit(), 50.0, 80, 6).frequencies
+        values = [TREE.solve(unit(), 50.0, n, 6).frequencies for n in (96, 192)]
+        np.testing.assert_allclose((4 * values[1] - values[0]) / 3, cable, rtol=1e-4)
+
+    @both
+    def test_coriolis_coupling_is_felt(self, code):
+        """α = 70, γ = 10: 5.0490 uncoupled, 4.9700 coupled (Yoo and Shin 1998), lower still for the steady stretch."""
+        value, _ = extrapolated(code, lambda n: families(code.solve(unit(), 10.0, n, 6), 1))
+        assert 4.97 * (1 - 0.5 * 10**2 / 70**2) < value[0, 0] < 4.97
+
+    @both
+    def test_beyond_the_speed_of_endless_stretch_there_is_no_steady_state(self, code):
+        """x'' + (Ω/α)² x = 0 along the blade (x its deformed radius, L = 1): endless at Ω = απ/2 = 109.96."""
+        assert code.solve(unit(), 105.0, 20, 2).frequencies[0] > 0
+        with pytest.raises(CodeError, match=r"no (stable )?steady state"):
+            code.solve(unit(), 115.0, 20, 2)
+
+    def test_windpact_at_rest_and_turning(self, windpact):
+        """First flap of the public 3 MW blade: 0.932 Hz at rest, +10.3 % at 20 rpm (printed digits)."""
+        value = {}
+        for rpm in (0.0, 20.0):
+            value[rpm], order = extrapolated(
+                TREE, lambda n, rpm=rpm: TREE.solve(windpact, rpm * np.pi / 30, n, 5).frequencies
+            )
+            assert (abs(order - 2) < 0.25).all()  # stations fall inside elements
+        first = value[0.0][0] / (2 * np.pi)
+        assert abs(first - 0.932) < 0.0005
+        assert abs(value[20.0][0] / value[0.0][0] - 1.103) < 0.0005
+
+
+@needs_exudyn
+class TestShapes:
+    @both
+    def test_at_rest_they_are_the_cantilevers(self, code):
+        """In the plane of a degenerate pair, whatever combination comes out has the one shape along the span."""
+        modes = code.solve(NO_ROTARY, 0.0, code.levels[-1], 4)
+        for shape, beta in zip(modes.shapes, np.repeat(roots(2), 2), strict=True):
+            across = shape[:, 1:3] / np.linalg.norm(shape[-1, 1:3])
+            expected = np.outer(cantilever(STATIONS, beta) / cantilever(np.array(1.0), beta), across[-1])
+            np.testing.assert_allclose(across, expected, atol=5e-4)
+            assert abs(shape[:, [0, 3]]).max() < 1e-6 * abs(shape).max()
+
+    @both
+    def test_flapwise_moves_along_z_and_chordwise_along_y(self, code):
+        modes = code.solve(NO_ROTARY, 10.0, code.levels[0], 4)
+        for shape, direction, nodes in zip(modes.shapes, (1, 2, 1, 2), (0, 0, 1, 1), strict=True):
+            moved = (shape[:, direction] / shape[-1, direction]).real
+            assert np.count_nonzero(np.diff(np.sign(moved[1:]))) == nodes
+            assert moved[0] == pytest.approx(0.0, abs=1e-12)
+            assert abs(shape[:, 3 - direction]).max() < 1e-6 * abs(shape[:, direction]).max()
+
+    @both
+    def test_stretch_lags_chordwise_motion_by_a_quarter(self, code):
+        """Coriolis: moving forwards (+y) is flung outwards; u and v are 90° apart, the same way in both codes."""
+        shape = code.solve(unit(), 10.0, code.levels[0], 1).shapes[0, -1]
+        ratio = shape[0] / shape[1]
+        assert abs(ratio.real) < 1e-6 * abs(ratio)
+        assert ratio.imag > 1e-3
+
+
+@needs_exudyn
+class TestManners:
+    @both
+    def test_silent_even_in_failure_and_leaves_no_files(self, code, capfd, monkeypatch, tmp_path):
+        monkeypatch.chdir(tmp_path)
+        code.solve(unit(), 10.0, 4, 2)
+        with pytest.raises(CodeError):
+            code.solve(unit(), 115.0, 4, 2)
+        assert capfd.readouterr().out == ""
+        assert list(tmp_path.iterdir()) == []
+
+    @both
+    def test_the_same_call_gives_the_same_bits_in_any_order(self, code):
+        first = code.solve(unit(), 10.0, 8, 3)
+        code.solve(PARK, 30.0, 5, 2)
+        again = code.solve(unit(), 10.0, 8, 3)
+        assert (first.frequencies == again.frequencies).all()
+        assert (first.shapes == again.shapes).all()
+
+
+@both
+def test_found_without_being_imported(code):
+    module = type(code).__module__
+    text = f"import sys; from {module} import CODE; CODE.version(); sys.exit('exudyn' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", text], check=False).returncode == 0
+
+
+REFUSED = {
+    "two bending stiffnesses": (ANCF, unit(EI_z=2.0), "EI_y = 1, EI_z = 2 N m² at station 0: .* one bending stiffness"),
+    "taper": (ANCF, replace(unit(), mass=np.array([np.eye(6), 2 * np.eye(6)])), "vary"),
+    "twist": (ANCF, replace(unit(), twist=np.array([0.0, 0.1])), "twist"),
+    "precone": (ANCF, replace(unit(), precone=0.1), "precone"),
+    "tip mass": (ANCF, replace(unit(), tip_mass=np.eye(6)), "tip mass"),
+    "shear": (ANCF, unit(GA_y=10.0), "shear"),
+    "no stretch": (ANCF, unit(EA=np.inf), "finite EI and EA"),
+    "coupled": (TREE, replace(unit(), mass=np.eye(6) + 0.1 * np.eye(6, k=4) * np.ones((2, 1, 1))), "couple"),
+    "prebend": (TREE, replace(unit(), curve=np.array([[0.0, 0, 0], [1, 0, 0.1]])), "prebend"),
+    "no bending": (TREE, unit(EI_y=np.inf), "rigid in bending"),
+}
+
+
+@pytest.mark.parametrize(("code", "blade", "reason"), REFUSED.values(), ids=REFUSED.keys())
+def test_what_cannot_be_solved_is_refused_with_the_reason(code, blade, reason):
+    found = code.unsupported(blade)
+    assert found is not None
+    with pytest.raises(CodeError, match=reason):
+        code.solve(blade, 1.0, 4, 2)
+
+
+@both
+def test_what_can_be_solved_is_not_refused(code):
+    assert code.unsupported(PARK) is None
+    assert code.unsupported(unit(5.0)) is None
+
+
+def test_each_level_is_at_least_1_4_times_the_one_before():
+    for code in (ANCF, TREE):
+        assert (np.array(code.levels[1:]) / code.levels[:-1] >= 1.4).all()

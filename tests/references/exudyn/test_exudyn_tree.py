@@ -1,0 +1,116 @@
+"""What only Exudyn's kinematic tree takes, each property by a case whose answer is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import section_mass
+from southwell.core.modes import STATIONS
+from southwell.references.exudyn import hinged_segments
+from southwell.references.exudyn import tree as exudyn_tree
+from southwell.references.exudyn.tree import CODE as TREE
+
+from ...support.exudyn_beams import extrapolated, families, needs_exudyn, unit
+
+pytestmark = needs_exudyn
+
+
+@pytest.mark.parametrize("omega", [1.0, 3.4])
+def test_precone_of_a_right_angle_makes_a_whirling_shaft(omega):
+    """Along the rotor's axis, seen in turning axes, every frequency at rest splits into ω ± Ω, discretised or not."""
+    rest = TREE.solve(unit(EA=1e6), 0.0, 12, 8).frequencies[::2]
+    shaft = TREE.solve(replace(unit(EA=1e6), precone=np.pi / 2), omega, 12, 8).frequencies
+    np.testing.assert_allclose(shaft, np.sort([rest - omega, rest + omega], axis=None)[:8], rtol=1e-7)
+
+
+@pytest.mark.parametrize(("omega", "flapwise"), [(0.0, (1.557, 16.25)), (6.0, (6.509, 29.29)), (12.0, (12.48, 50.86))])
+def test_tip_mass(omega, flapwise):
+    """Tip mass equal to the beam's mass: flapwise frequencies of G. Bir's table, to the printed digit."""
+    blade = replace(unit(EA=1e7), tip_mass=np.diag([1.0, 1, 1, 0, 0, 0]))
+    value, _ = extrapolated(TREE, lambda n: families(TREE.solve(blade, omega, n, 4), 2))
+    last_digit = [0.001, 0.01] if flapwise[0] < 10 else [0.01, 0.01]
+    assert (abs(value[1] - flapwise) < 0.5 * np.array(last_digit)).all()
+
+
+@pytest.mark.parametrize("omega", [0.0, 8.0])
+def test_torsion_with_rotary_inertia(omega):
+    """ω² = ((2k−1)π/2)² GJ/I_x + Ω² (I_z − I_y)/I_x: rotor blades turn flat (the propeller moment)."""
+    I_y, I_z = 1e-4, 9e-4
+    blade = unit(EI_y=1e4, EI_z=2e4, EA=1e8, I_y=I_y, I_z=I_z)
+    value, order = extrapolated(TREE, lambda n: TREE.solve(blade, omega, n, 2).frequencies)
+    exact = (np.array([1, 3]) * np.pi / 2) ** 2 / (I_y + I_z) + omega**2 * (I_z - I_y) / (I_y + I_z)
+    np.testing.assert_allclose(value, np.sqrt(exact), rtol=1e-5)
+    assert (abs(order - 2) < 0.05).all()
+    shape = TREE.solve(blade, omega, 96, 1).shapes[0, :, 3].real
+    np.testing.assert_allclose(shape / shape[-1], np.sin(np.pi / 2 * STATIONS), atol=2e-3)
+
+
+def test_without_rotary_inertia_torsion_has_no_modes():
+    modes = TREE.solve(unit(), 5.0, 6, 40)
+    assert len(modes.frequencies) == 3 * 6  # three displacements of each segment's end
+    assert abs(modes.shapes[:, :, 3]).max() < 1e-9
+
+
+def test_shear():
+    """A Timoshenko beam so soft in shear that it is a shear beam: ω = (2k−1)π/2 √(GA/ρA)."""
+    blade = unit(EI_y=1e5, EI_z=1e5, EA=1e6, GA_y=1.0, GA_z=4.0)
+    value, _ = extrapolated(TREE, lambda n: families(TREE.solve(blade, 0.0, n, 6), 2))
+    np.testing.assert_allclose(value, np.outer([1, 2], np.array([1, 3]) * np.pi / 2), rtol=1e-4)
+
+
+@pytest.mark.parametrize("turned", ["twist", "pitch"])
+def test_twist_and_pitch_turn_from_y_towards_z(turned):
+    blade = unit(EI_y=1.0, EI_z=25.0)
+    angle = 0.3
+    blade = replace(blade, **{turned: np.full(2, angle) if turned == "twist" else angle})
+    soft = TREE.solve(blade, 0.0, 12, 1).shapes[0, -1].real
+    np.testing.assert_allclose(soft[1] / soft[2], -np.tan(angle), rtol=1e-6)
+
+
+def test_steady_stretch_is_exact_in_the_limit():
+    """γ = 50: tip at tan(λ)/λ with λ = γ/α, from x'' + λ² x = 0."""
+    rate = 50 / 70
+    exact, errors = np.tan(rate) / rate - 1, []
+    for elements in (12, 24, 48):
+        tree = hinged_segments.plant(unit(), elements)
+        *_, q = exudyn_tree.linearize(tree, 50.0)
+        errors.append(q[tree.strain == 0].sum() / exact - 1)
+    assert abs(errors[2]) < 2e-4
+    assert abs(np.log2(errors[1] / errors[2]) - 2) < 0.05
+
+
+def test_mass_matrix_is_what_the_motion_says():
+    """Exudyn's M against Σ Jᵀ (m, I) J, with our J (the one mode shapes are read with), away from rest too."""
+    blade = replace(unit(0.2, I_y=0.01, I_z=0.03), twist=np.array([0.2, 0.9]), pitch=0.1)
+    tree = hinged_segments.plant(blade, 5)
+    M, _, _, q = exudyn_tree.linearize(tree, 20.0)
+    assert abs(q).max() > 0.01
+    J = exudyn_tree.jacobian(tree, q, tree.centre[:, 0])
+    angle = 0.3 + 0.7 * 0.1 * np.arange(1, 10, 2) + np.cumsum(q[tree.strain == 3])  # untwisted by the propeller moment
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[np.eye(3)[0], [0, ci, -si], [0, si, ci]] for ci, si in zip(c, s, strict=True)])
+    inertia = turn @ tree.inertia @ turn.transpose(0, 2, 1)
+    expected = np.einsum("e,eik,eil->kl", tree.mass, J[:, :3], J[:, :3])
+    expected += np.einsum("eik,eij,ejl->kl", J[:, 3:], inertia, J[:, 3:])
+    np.testing.assert_allclose(M, expected, atol=1e-12 * abs(M).max())
+
+
+def test_segments_have_the_mass_and_inertia_of_the_blade():
+    """Beyond the first hinge, about the root: ∫m, ∫ms, ∫ms² + ∫I of a tapered blade, in closed form."""
+    mass = section_mass(np.array([3.0, 1.0]), np.array([0.2, 0.1]), np.array([0.5, 0.3]))
+    blade = replace(unit(), mass=mass, tip_mass=np.diag([2.0, 2, 2, 0.3, 0.1, 0.2]))
+    tree = hinged_segments.plant(blade, 4)
+    start, hinges = 0.125, np.array([0.125, 0.375, 0.625, 0.875])
+    at = hinges + tree.centre[:, 0]
+    m = np.polynomial.Polynomial([3.0, -2.0])
+    s = np.polynomial.Polynomial([0.0, 1.0])
+
+    def span(p):
+        return p.integ()(1.0) - p.integ()(start)
+
+    assert tree.mass.sum() == pytest.approx(span(m) + 2, rel=1e-12)
+    assert tree.mass @ at == pytest.approx(span(m * s) + 2, rel=1e-12)
+    I_x, I_y = np.polynomial.Polynomial([0.7, -0.3]), np.polynomial.Polynomial([0.2, -0.1])
+    assert tree.inertia[:, 0, 0].sum() == pytest.approx(span(I_x) + 0.3, rel=1e-12)
+    assert tree.inertia[:, 1, 1].sum() + tree.mass @ at**2 == pytest.approx(span(m * s**2 + I_y) + 2.1, rel=1e-12)

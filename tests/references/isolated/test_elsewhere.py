@@ -1,0 +1,150 @@
+"""Environments of their own: made with pinned versions, spoken to in JSON, and said to be missing when they are."""
+
+import ast
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from southwell.references import isolated
+from southwell.references.isolated import ENVIRONMENTS, READY, SHARPY, Environment
+from southwell.references.protocol.interface import CodeError
+from southwell.reports.cli import app as cli
+
+ECHO = Environment("echo", ("one==1.0",), ("echo==2.5",), "echo")
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def made(environment: Environment) -> None:
+    """As if it had been installed, with this interpreter."""
+    environment.python.parent.mkdir(parents=True)
+    environment.python.symlink_to(sys.executable)
+    (environment.folder / READY).touch()
+
+
+def script(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str) -> None:
+    """In place of the folder's scripts."""
+    (tmp_path / "echo.py").write_text(text)
+    monkeypatch.setattr(isolated, "__file__", str(tmp_path / "__init__.py"))
+
+
+def test_the_cache_is_where_the_user_wants_it(cache: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert isolated.cache() == cache
+    monkeypatch.delenv("SOUTHWELL_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert isolated.cache() == tmp_path / "southwell"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert isolated.cache() == Path.home() / ".cache" / "southwell"
+
+
+def test_other_pins_are_another_environment() -> None:
+    assert ECHO.folder != replace(ECHO, requires=("one==1.1",)).folder
+    assert ECHO.folder == replace(ECHO, script="other").folder
+
+
+def test_every_requirement_is_pinned() -> None:
+    for environment in ENVIRONMENTS.values():
+        assert all("==" in pin for pin in (*environment.requires, *environment.bare))
+
+
+def test_it_is_there_only_when_it_is_complete() -> None:
+    assert ECHO.version() is None
+    made(ECHO)
+    assert ECHO.version() == "2.5"
+    (ECHO.folder / READY).unlink()
+    assert ECHO.version() is None
+
+
+def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made(ECHO)
+    script(monkeypatch, tmp_path, "import json, sys\nprint(json.dumps({'got': json.load(sys.stdin)}))")
+    assert isolated.ask(ECHO, {"x": [0.1, 2.0]}, 30.0) == {"got": {"x": [0.1, 2.0]}}
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("import sys; sys.exit('library: not found')", "its process ended with 1: library: not found"),
+        ('print(\'{"error": "no steady state"}\')', "echo: no steady state"),
+        ("import time; time.sleep(30)", r"no answer within 0\.5 s"),
+        ("", "its process ended with 0: no message"),
+    ],
+)
+def test_what_goes_wrong_there_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, told: str) -> None:
+    made(ECHO)
+    script(monkeypatch, tmp_path, text)
+    with pytest.raises(CodeError, match=told):
+        isolated.ask(ECHO, {}, 0.5)
+
+
+def test_missing_it_says_how_to_get_it() -> None:
+    with pytest.raises(CodeError, match="sharpy is not installed: southwell codes install sharpy"):
+        isolated.ask(SHARPY, {}, 1.0)
+
+
+def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
+    """Record what pip is asked; ``fails``: the package it cannot find."""
+    asked: list[list[str]] = []
+
+    def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
+        asked.append(command)
+        bad = bool(fails) and any(word.startswith(fails) for word in command)
+        return subprocess.CompletedProcess(
+            command, int(bad), "", f"noise\nERROR: No matching distribution found for {fails}\n"
+        )
+
+    monkeypatch.setattr(isolated.subprocess, "run", run)
+    monkeypatch.setattr(isolated.venv, "create", lambda folder, with_pip: folder.mkdir(parents=True))
+    return asked
+
+
+def test_installing_pins_and_leaves_the_code_without_dependencies(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = pip(monkeypatch)
+    (ECHO.folder / "left over").mkdir(parents=True)
+    assert isolated.install(ECHO) == ECHO.folder
+    assert [command[0] for command in asked] == [str(ECHO.python)] * 2
+    assert [command[6:] for command in asked] == [["one==1.0"], ["--no-deps", "echo==2.5"]]
+    assert ECHO.version() == "2.5"
+    assert not (ECHO.folder / "left over").exists()
+
+
+def test_an_installation_that_fails_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    pip(monkeypatch, fails="echo")
+    with pytest.raises(isolated.EnvironmentMissingError, match=r"echo==2\.5: ERROR: No matching distribution"):
+        isolated.install(ECHO)
+    assert ECHO.version() is None
+
+
+def southwell(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(arguments)
+    return int(ended.value.code or 0)
+
+
+def test_the_command_line_installs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pip(monkeypatch)
+    assert southwell("codes", "install", "sharpy") == 0
+    assert capsys.readouterr().out.strip() == f"sharpy 2.4 in {SHARPY.folder}"
+    assert southwell("codes", "install", "sharpie") == 2
+    assert "did you mean sharpy" in capsys.readouterr().err
+    pip(monkeypatch, fails="ic-sharpy")
+    assert southwell("codes", "install", "sharpy") == 1
+    assert "No matching distribution found for ic-sharpy" in capsys.readouterr().err
+
+
+def test_scripts_import_nothing_of_ours() -> None:
+    for environment in ENVIRONMENTS.values():
+        path = Path(isolated.__file__).with_name(f"{environment.script}.py")
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+        imported |= {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
+        known = {"base64", "importlib", "json", "os", "pathlib", "sys", "numpy", "sharpy", "pyframe3dd"}
+        assert {name.partition(".")[0] for name in imported} <= known

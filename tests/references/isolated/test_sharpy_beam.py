@@ -1,0 +1,160 @@
+"""SHARPy's geometrically exact beam against core: an independent answer for coupled, curved, sheared, turned sections too."""
+
+import base64
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from southwell.cases.conformance.blades import PROPERTIES
+from southwell.core import solve
+from southwell.core.blade import Blade, mass_at, stiffness_at, uniform_blade, without_rotary_inertia
+from southwell.references.isolated.sharpy import CODE, MOST, _shapes, _unpacked, request
+from southwell.references.protocol.interface import CodeError
+from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+
+Array = NDArray[Any]
+
+needs_sharpy = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
+
+TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
+TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
+TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
+TIP_MASS[[3, 5], [3, 5]] += 10.0
+ARCS = {p.name: p.having for p in PROPERTIES if p.name in ("sweep", "prebend")}
+
+
+def core(blade: Blade, omega: float, count: int = 5) -> Array:
+    return solve.modes(blade, omega, 80, count).frequencies
+
+
+@needs_sharpy
+@pytest.mark.parametrize(
+    ("blade", "omega", "rtol"),
+    [
+        (PARK, 10.0, 3e-5),
+        (without_rotary_inertia(PARK), 10.0, 3e-5),
+        (yoo_shin(0.1), 50.0, 1e-4),
+        (replace(PARK, precone=0.3), 10.0, 3e-5),
+        (ARCS["sweep"], 10.0, 3e-5),
+        (ARCS["prebend"], 10.0, 3e-5),
+    ],
+    ids=["cantilever", "thin", "Coriolis", "coned", "swept", "prebent"],
+)
+def test_uniform_blades(blade: Blade, omega: float, rtol: float) -> None:
+    np.testing.assert_allclose(CODE.solve(blade, omega, 24, 5).frequencies, core(blade, omega), rtol=rtol)
+
+
+@needs_sharpy
+@pytest.mark.parametrize(
+    ("blade", "omega"),
+    [
+        (tapered(), 3.0),
+        (replace(tapered(), pitch=0.4), 3.0),
+        (curved(), 0.0),
+        (curved(), 1.5),
+        (replace(curved(), tip_mass=TIP_MASS), 1.5),
+    ],
+    ids=["tapered, twisted", "pitched", "curved at rest", "curved, coupled, sheared, coned", "with offset tip mass"],
+)
+def test_varying_blades_extrapolate_to_core(blade: Blade, omega: float) -> None:
+    """Of second order, from 25 and 50 elements."""
+    coarse, fine = (CODE.solve(blade, omega, n, 5).frequencies for n in (24, 48))
+    np.testing.assert_allclose(fine + (fine - coarse) / 3, core(blade, omega), rtol=1e-4)
+
+
+@needs_sharpy
+@pytest.mark.parametrize(
+    ("blade", "omega", "levels", "order"), [(PARK, 10.0, (6, 12, 24), 4), (tapered(), 3.0, (20, 40, 80), 2)]
+)
+def test_order(blade: Blade, omega: float, levels: tuple[int, int, int], order: int) -> None:
+    """Fourth for uniform blades, second where sections vary; of the modes that have not converged to rounding."""
+    f = np.array([CODE.solve(blade, omega, n, 5).frequencies for n in levels])[:, 2:]
+    np.testing.assert_allclose(np.log2((f[0] - f[1]) / (f[1] - f[2])), order, atol=0.15)
+
+
+@needs_sharpy
+def test_shapes_are_cores() -> None:
+    """Of the curved, pitched blade: displacements and rotation, phase aside."""
+    ours, theirs = (
+        m.reshape(5, -1) for m in (CODE.solve(curved(), 1.5, 48, 5).shapes, solve.modes(curved(), 1.5, 60, 5).shapes)
+    )
+    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-4)
+
+
+@needs_sharpy
+def test_too_fast_for_a_steady_state() -> None:
+    with pytest.raises(CodeError, match=r"no (stable )?steady state"):
+        CODE.solve(yoo_shin(0.1), 200.0, 12, 4)
+
+
+def test_what_it_is_asked() -> None:
+    """Total mass and compliance are the blade's; sections are turned as at rest."""
+    blade, ends = tapered(), np.linspace(0, 40.0, 5)
+    asked = request(blade, 3.0, np.column_stack([ends[:-1], ends[1:]]))
+    s = (np.arange(20000) + 0.5) * 40.0 / 20000
+    np.testing.assert_allclose(
+        10 * np.array(asked["mass"]).sum(0)[0, 0], mass_at(blade, s)[:, 0, 0].sum() * 40 / 20000, rtol=2e-3
+    )
+    here = np.linalg.inv(request(blade, 3.0, np.array([[10.0, 10.0 + 1e-6]]))["stiffness"][0])  # twisted by 9° there
+    turned = Rotation.from_rotvec([np.radians(9.0), 0, 0]).as_matrix()
+    soft = turned @ np.diag(1 / np.diagonal(stiffness_at(blade, 10.0)[0]))[3:, 3:] @ turned.T
+    np.testing.assert_allclose(here[3:, 3:], soft, rtol=1e-6, atol=1e-6 * soft.max())
+    assert soft[1, 2] > 0.05 * soft[1, 1]
+    assert not np.array(asked["turn"]).any()
+
+
+def test_a_chord_shorter_than_the_arc_is_made_up_for() -> None:
+    """A quarter of a circle by one element: chord 2 √2 / π of the arc; mass and compliance are the arc's."""
+    s = np.linspace(0, np.pi / 2, 9)
+    quarter = replace(
+        PARK,
+        stations=s,
+        curve=np.stack([np.sin(s), 1 - np.cos(s), 0 * s], axis=1),
+        stiffness=np.repeat(PARK.stiffness[:1], 9, axis=0),
+        mass=np.repeat(PARK.mass[:1], 9, axis=0),
+        twist=np.zeros(9),
+    )
+    asked = request(quarter, 0.0, np.array([[0.0, np.pi / 2]]))
+    nodes = np.array(asked["nodes"])
+    chord = np.linalg.norm(nodes[2] - nodes[0])
+    assert chord * np.array(asked["mass"])[0, 0, 0] == pytest.approx(1.2 * np.pi / 2, rel=1e-9)
+
+
+def test_rotation_about_x_from_a_change_of_the_rotation_vector() -> None:
+    """J(ψ) δψ against the finite rotation, far from the identity."""
+    psi, change = np.array([0.9, -0.4, 0.7]), np.array([0.3, 0.5, -0.2])
+    h = 1e-6
+    turned = (Rotation.from_rotvec(psi + h * change) * Rotation.from_rotvec(psi).inv()).as_rotvec() / h
+    q = np.concatenate([np.zeros(3), psi] * 3)
+    vector = np.concatenate([np.zeros(3), change] * 3)[:, None].astype(complex)
+    shape = _shapes(np.linspace(0, 1, 4), q, vector)[0]
+    assert shape[-1, 3].real == pytest.approx(turned[0], rel=1e-5)
+    assert not shape[0].any()
+
+
+def test_numbers_cross_bit_for_bit() -> None:
+    values = np.random.default_rng(1).standard_normal(7)
+    np.testing.assert_array_equal(_unpacked(base64.b64encode(values.tobytes()).decode()), values)
+
+
+@pytest.mark.parametrize(
+    ("blade", "reason"),
+    [
+        (replace(PARK, root=np.array([np.inf] * 5 + [0.0])), "the root is not clamped"),
+        (uniform_blade("rigid", 1, 0, EA=1, GJ=np.inf, EI_y=1, EI_z=1, mass=1), "infinite stiffness against strain 3"),
+    ],
+)
+def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+    assert (CODE.unsupported(blade) or "").startswith(reason)
+    with pytest.raises(CodeError, match=reason):
+        CODE.solve(blade, 0.0, 5, 4)
+
+
+def test_refuses_what_it_cannot_hold() -> None:
+    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
+        CODE.solve(PARK, 10.0, MOST + 1, 4)

@@ -1,0 +1,151 @@
+"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from southwell.cases.input.library import load
+from southwell.core import solve
+from southwell.core.blade import Blade, without_rotary_inertia
+from southwell.core.element.discretize import Chain, discretize
+from southwell.references.joint_chains import drake as drake_chain
+from southwell.references.joint_chains import joint_chain
+from southwell.references.joint_chains import mujoco as mujoco_chain
+from southwell.references.joint_chains import pinocchio as pinocchio_chain
+from southwell.references.joint_chains.joint_chain import Plant
+from southwell.references.protocol.interface import CodeError
+from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+
+Array = NDArray[Any]
+
+WINDPACT = {v.name: v.blade for v in load("park-blade").variants}["park-blade/windpact"]
+TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
+TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
+TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
+TIP_MASS[[3, 5], [3, 5]] += 10.0
+
+
+def needs(module: str, code: Any) -> pytest.MarkDecorator:
+    return pytest.mark.skipif(find_spec(module) is None, reason=f"not installed: {code.hint}")
+
+
+both = pytest.mark.parametrize(
+    "code",
+    [
+        pytest.param(drake_chain.CODE, id="drake", marks=needs("pydrake", drake_chain.CODE)),
+        pytest.param(mujoco_chain.CODE, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
+    ],
+)
+
+
+@both
+@pytest.mark.parametrize(
+    ("blade", "omega"),
+    [
+        (PARK, 10.0),
+        (PARK, 0.0),
+        (without_rotary_inertia(PARK), 10.0),
+        (WINDPACT, 20 * np.pi / 30),
+        (replace(tapered(), pitch=0.4), 3.0),
+        (curved(), 1.5),
+        (replace(curved(), tip_mass=TIP_MASS), 6.0),
+        (yoo_shin(0.1), 10.0),
+        (replace(yoo_shin(0.0), precone=0.6), 20.0),
+    ],
+    ids=[
+        "cantilever",
+        "at rest",
+        "point masses",
+        "windpact",
+        "tapered, twisted, pitched",
+        "curved, coupled, coned, shear",
+        "with offset tip mass",
+        "slender 70",
+        "steeply coned",
+    ],
+)
+def test_agrees_with_core_to_rounding(code: Any, blade: Blade, omega: float) -> None:
+    found = code.solve(blade, omega, 12, 10)
+    mine = solve.modes(blade, omega, 12, 10, mass="half_end", stiffness="parent")
+    np.testing.assert_allclose(found.frequencies, mine.frequencies, rtol=1e-10)
+
+
+@both
+def test_shapes_are_pinocchios(code: Any) -> None:
+    """The same spline through the same nodes, so the same to rounding, but for a phase."""
+    pytest.importorskip("pinocchio")
+    ours, theirs = (c.solve(curved(), 1.5, 10, 5).shapes.reshape(5, -1) for c in (code, pinocchio_chain.CODE))
+    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "rtol"),
+    [
+        pytest.param(drake_chain.plant, 1e-12, id="drake", marks=needs("pydrake", drake_chain.CODE)),
+        pytest.param(mujoco_chain.plant, 1e-9, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
+    ],
+)
+def test_every_stage_is_pinocchios(make: Callable[[Chain], Plant], rtol: float) -> None:
+    """Mass, inertial force, its derivatives, and motion of the bodies, at strains of a tenth, far from rest."""
+    pytest.importorskip("pinocchio")
+    chain = discretize(replace(curved(), tip_mass=TIP_MASS), 5, "half_end", "parent")
+    q = 0.1 * np.random.default_rng(3).standard_normal(30)
+    stages = []
+    for plant in (make(chain), pinocchio_chain.tree(chain)):
+        stages.append((plant.mass(q), *plant.inertial(q, 2.0), plant.jacobian(q)))
+    for ours, theirs in zip(*stages, strict=True):
+        assert ours.shape == theirs.shape
+        np.testing.assert_allclose(ours, theirs, atol=rtol * np.abs(theirs).max(), rtol=0)
+
+
+@both
+def test_the_same_call_gives_the_same_answer_and_prints_nothing(code: Any, capfd: pytest.CaptureFixture[str]) -> None:
+    first = code.solve(tapered(), 2.0, 8, 4)
+    code.solve(PARK, 10.0, 5, 4)
+    again = code.solve(tapered(), 2.0, 8, 4)
+    np.testing.assert_array_equal(first.frequencies, again.frequencies)
+    np.testing.assert_array_equal(first.shapes, again.shapes)
+    assert capfd.readouterr().out == ""
+
+
+@both
+@pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
+def test_too_fast_for_a_steady_state(code: Any, gamma: float, reason: str) -> None:
+    with pytest.raises(CodeError, match=reason):
+        code.solve(yoo_shin(0.1), gamma, 6, 4)
+
+
+@both
+def test_refuses_what_it_cannot_hold(code: Any) -> None:
+    with pytest.raises(CodeError, match="elements: 81"):
+        code.solve(PARK, 10.0, 81, 4)
+
+
+@both
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"root": np.array([np.inf] * 5 + [0.0])}, "the root is not clamped"),
+        ({"tip_mass": np.diag([1.0, 1.0, 2.0, 0.1, 0.1, 0.1])}, "tip_mass is not a rigid body's"),
+    ],
+)
+def test_says_why_it_cannot(code: Any, changed: dict[str, Array], reason: str) -> None:
+    blade = replace(PARK, **changed)
+    assert (code.unsupported(blade) or "").startswith(reason)
+    with pytest.raises(CodeError, match=reason):
+        code.solve(blade, 0.0, 5, 4)
+
+
+def test_derivatives_without_their_symmetry_are_refused() -> None:
+    K, C = np.eye(3), np.array([[0.0, 1, 0], [-1, 0, 2], [0, -2, 0]])
+    joint_chain.check(K, C, 1e-9, "code")
+    with pytest.raises(CodeError, match=r"dtau_dq: 1\.0e-06 from symmetric: code's"):
+        joint_chain.check(K + 1e-6 * np.eye(3, k=1), C, 1e-9, "code")
+    with pytest.raises(CodeError, match=r"dtau_dv: 2\.0e\+00 from skew"):
+        joint_chain.check(K, C + np.eye(3), 1e-9, "code")

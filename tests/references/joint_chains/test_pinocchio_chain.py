@@ -1,0 +1,201 @@
+"""Pinocchio's chain against core (one discretisation, to rounding), closed forms, and the paper's printed digits."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from southwell.cases.input.library import load
+from southwell.core import solve
+from southwell.core.blade import Blade, without_rotary_inertia
+from southwell.core.element.discretize import discretize
+from southwell.core.modes import STATIONS
+from southwell.references.joint_chains import pinocchio as pinocchio_chain
+from southwell.references.joint_chains.pinocchio import CODE, MOST
+from southwell.references.protocol.interface import CodeError
+from southwell.tests.support.beams import PARK, A, E, I, curved, tapered, yoo_shin
+
+pytestmark = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
+
+Array = NDArray[Any]
+POINT_MASSES = without_rotary_inertia(PARK)
+WINDPACT = {v.name: v.blade for v in load("park-blade").variants}["park-blade/windpact"]
+TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
+TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
+TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
+TIP_MASS[[3, 5], [3, 5]] += 10.0
+
+
+def core(blade: Blade, omega: float, elements: int, count: int) -> Array:
+    return solve.modes(blade, omega, elements, count, mass="half_end", stiffness="parent").frequencies
+
+
+@pytest.mark.parametrize(
+    ("blade", "omega", "elements"),
+    [
+        (PARK, 10.0, 40),
+        (PARK, 0.0, 10),
+        (POINT_MASSES, 10.0, 20),
+        (WINDPACT, 20 * np.pi / 30, 20),
+        (tapered(), 3.0, 15),
+        (replace(tapered(), pitch=0.4), 3.0, 10),
+        (curved(), 1.5, 20),
+        (replace(curved(), tip_mass=TIP_MASS), 6.0, 10),
+        (yoo_shin(0.1), 10.0, 20),
+        (replace(yoo_shin(0.0), precone=0.6), 20.0, 10),
+    ],
+    ids=[
+        "cantilever",
+        "at rest",
+        "point masses",
+        "windpact",
+        "tapered and twisted",
+        "pitched",
+        "curved, coupled, coned, shear",
+        "with offset tip mass",
+        "slender 70",
+        "steeply coned",
+    ],
+)
+def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int) -> None:
+    """One discretisation, two codes; the design asks for 1e-8."""
+    found = CODE.solve(blade, omega, elements, 10).frequencies
+    np.testing.assert_allclose(found, core(blade, omega, elements, 10), rtol=1e-10)
+
+
+def test_shapes_agree_with_core() -> None:
+    """Between nodes too: the chain's spline against core's own shape functions."""
+    ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
+    theirs = solve.modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="parent").shapes.reshape(5, -1)
+    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=2e-3)
+
+
+def test_a_cantilever_of_point_masses_at_rest() -> None:
+    """Exact for any number of masses: flexibility s²(3t − s)/6EI at s of a unit force at t > s, elementary beam theory."""
+    n, mass = 12, 3000.0 * A * 6.0 / 12
+    s = 6.0 * np.arange(1, n + 1) / n
+    near, far = np.minimum.outer(s, s), np.maximum.outer(s, s)
+    flexibility = near**2 * (3 * far - near) / (6 * E * I)
+    weight = np.sqrt(np.where(np.arange(1, n + 1) == n, mass / 2, mass))
+    exact = 1 / np.sqrt(np.linalg.eigvalsh(weight[:, None] * flexibility * weight)[::-1])
+    found = CODE.solve(POINT_MASSES, 0.0, n, 6).frequencies
+    np.testing.assert_allclose(found, np.repeat(exact[:3], 2), rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def series() -> tuple[Array, Array]:
+    """Coefficients of (1, h², h⁴) for the point masses at 10 rad/s; frequencies at 10, 20 and 40 elements."""
+    f = {n: CODE.solve(POINT_MASSES, 10.0, n, 6).frequencies for n in (10, 20, 28, 40)}
+    h = 1 / np.array([20.0, 28.0, 40.0])
+    coefficients = np.linalg.solve(np.stack([h**0, h**2, h**4], axis=1), np.array([f[20], f[28], f[40]]))
+    return coefficients, np.array([f[n] for n in CODE.levels])
+
+
+def test_second_order(series: tuple[Array, Array]) -> None:
+    _, f = series
+    assert CODE.order == 2
+    np.testing.assert_allclose(np.log2((f[0] - f[1]) / (f[1] - f[2])), 2, atol=0.05)
+
+
+def test_the_papers_fifty_elements(series: tuple[Array, Array]) -> None:
+    """Park et al. (2010), Table 1, Present: 11.71, 70.37, 189.7; the trend from 20, 28 and 40 elements leads there."""
+    coefficients, _ = series
+    at_50 = (coefficients.T @ [1, 50.0**-2, 50.0**-4])[::2]
+    assert [f"{f:.4g}" for f in at_50] == ["11.71", "70.37", "189.7"]
+    np.testing.assert_allclose(at_50, [11.7058, 70.3722, 189.6735], atol=1e-4)
+
+
+def test_many_elements_lead_to_the_nonlinear_beam(series: tuple[Array, Array]) -> None:
+    """Without section inertia: a geometrically nonlinear beam's converged values (Exudyn's ANCF cable)."""
+    limit = series[0][0]
+    np.testing.assert_allclose(limit[::2], [11.71131, 70.43535, 189.92222], rtol=5e-6)
+    np.testing.assert_allclose(limit[1::2], [15.40088, 71.14306, 190.18649], rtol=5e-6)
+
+
+def test_windpact_at_rest_and_turning() -> None:
+    """First frequency of the public 3 MW blade: 0.932 Hz at rest, +10.3 % at 20 rpm and +21.7 % at 30 rpm.
+
+    Extrapolated from 19 and 38 elements, whose ends meet the stations.
+    """
+    coarse, fine = (
+        np.array([CODE.solve(WINDPACT, rpm * np.pi / 30, n, 1).frequencies[0] for rpm in (0, 20, 30)]) for n in (19, 38)
+    )
+    rest, *turning = fine + (fine - coarse) / 3
+    assert f"{rest / (2 * np.pi):.3f}" == "0.932"
+    assert [f"{100 * (f / rest - 1):.1f}" for f in turning] == ["10.3", "21.7"]
+
+
+def test_point_masses_have_three_modes_each() -> None:
+    """Rotations without inertia are solved for, not given a little: no modes of theirs."""
+    assert len(CODE.solve(POINT_MASSES, 10.0, 4, 99).frequencies) == 12
+
+
+def test_shapes_have_axes() -> None:
+    """Chordwise moves along y, flapwise along z, both most at the tip and not at all at the root."""
+    chordwise, flapwise = CODE.solve(POINT_MASSES, 10.0, 20, 2).shapes
+    for shape, axis in ((chordwise, 1), (flapwise, 2)):
+        assert np.abs(shape[:, axis]).argmax() == len(STATIONS) - 1
+        assert np.abs(np.delete(shape, axis, axis=1)).max() < 1e-2 * np.abs(shape[-1, axis])
+        assert not shape[0].any()
+
+
+def test_a_joint_with_a_wrong_derivative_is_found_out() -> None:
+    """Pinocchio's composite joint of a translation and three rotations: dtau_dq is not symmetric."""
+    pin = pytest.importorskip("pinocchio")
+    chain = discretize(POINT_MASSES, 3, "half_end", "parent")
+    model = pin.Model()
+    link = model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hub")
+    for place in (chain.nodes[1], *chain.beams.rest[1:]):
+        joint = pin.JointModelComposite(pin.JointModelTranslation())
+        for turn in (pin.JointModelRX(), pin.JointModelRY(), pin.JointModelRZ()):
+            joint.addJoint(turn)
+        link = model.addJoint(link, joint, pin.SE3(place), f"composite {link}")
+        model.appendBodyToJoint(link, pin.Inertia(2.4, np.zeros(3), np.zeros((3, 3))), pin.SE3.Identity())
+    with pytest.raises(CodeError, match=r"dtau_dq: .* from symmetric"):
+        pinocchio_chain.inertial(model, model.createData(), np.full(18, 0.01), 10.0)
+    sound = pinocchio_chain.plant(chain)
+    pinocchio_chain.inertial(sound, sound.createData(), np.full(18, 0.01), 10.0)
+
+
+def test_the_same_call_gives_the_same_answer_and_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    first = CODE.solve(tapered(), 2.0, 8, 4)
+    CODE.solve(PARK, 10.0, 5, 4)
+    again = CODE.solve(tapered(), 2.0, 8, 4)
+    np.testing.assert_array_equal(first.frequencies, again.frequencies)
+    np.testing.assert_array_equal(first.shapes, again.shapes)
+    assert capfd.readouterr().out == ""
+
+
+@pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
+def test_too_fast_for_a_steady_state(gamma: float, reason: str) -> None:
+    with pytest.raises(CodeError, match=reason):
+        CODE.solve(yoo_shin(0.1), gamma, 10, 4)
+
+
+def test_a_load_that_no_steady_state_carries_says_how_far_it_went() -> None:
+    floppy = replace(curved(), stiffness=0.01 * curved().stiffness)
+    with pytest.raises(CodeError, match=r"omega: 4 rad/s: no steady state past \d+% of Ω²"):
+        CODE.solve(floppy, 4.0, 10, 4)
+
+
+def test_refuses_what_it_cannot_hold() -> None:
+    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
+        CODE.solve(PARK, 10.0, MOST + 1, 4)
+
+
+@pytest.mark.parametrize("name", ["mass", "tip_mass"])
+def test_says_why_it_cannot(name: str) -> None:
+    odd = np.diag([1.0, 1.0, 2.0, 0.1, 0.1, 0.1])
+    blade = replace(PARK, **{name: odd if name == "tip_mass" else np.repeat(odd[None], 2, axis=0)})
+    assert (CODE.unsupported(blade) or "").startswith(f"{name} is not a rigid body's")
+    with pytest.raises(CodeError, match="not a rigid body's"):
+        CODE.solve(blade, 0.0, 5, 4)
+
+
+def test_takes_every_blade_of_these_tests() -> None:
+    assert [CODE.unsupported(b) for b in (PARK, tapered(), curved(), replace(curved(), tip_mass=TIP_MASS))] == [
+        None
+    ] * 4

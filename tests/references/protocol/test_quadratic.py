@@ -1,0 +1,134 @@
+"""The foreign codes' eigenproblem against closed forms, by each of its three ways."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from southwell.references.protocol.interface import CodeError
+from southwell.references.protocol.quadratic import DENSE, gyroscopic_modes
+
+
+@pytest.fixture(params=["direct", "full, iterated", "sparse"])
+def way(request):
+    """How many points, and the form in which matrices are handed over, so that each way is gone."""
+    points = 30 if request.param == "direct" else DENSE
+    return points, sparse.csc_array if request.param == "sparse" else np.asarray
+
+
+def row(points: int, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A row of unit masses in a turning plane, each tied to its neighbours by unit springs, both ways alike.
+
+    With z = x + iy: z̈ + 2iΩ ż + κ z = 0 for each of the row's own stiffnesses κ, hence ω = √(Ω² + κ) ± Ω.
+    """
+    line = 2 * np.eye(points) - np.eye(points, k=1) - np.eye(points, k=-1)
+    own = 4 * np.sin(np.arange(1, points + 1) * np.pi / (2 * points + 2)) ** 2
+    M, K = np.eye(2 * points), np.kron(line, np.eye(2))
+    C = 2 * omega * np.kron(np.eye(points), [[0.0, -1.0], [1.0, 0.0]])
+    exact = np.sort(np.concatenate([np.sqrt(omega**2 + own) + omega, np.sqrt(omega**2 + own) - omega]))
+    return M, C, K, exact
+
+
+@pytest.mark.parametrize("omega", [0.0, 1e-3, 0.05])
+def test_whirling_row_has_its_closed_form_frequencies(way, omega):
+    points, form = way
+    M, C, K, exact = row(points, omega)
+    frequencies, shapes = gyroscopic_modes(form(M), form(C), form(K), 8)
+    np.testing.assert_allclose(frequencies, exact[:8], rtol=1e-11)
+    for w, q in zip(frequencies, shapes.T, strict=True):
+        force = K @ q
+        assert np.linalg.norm(force - w**2 * (M @ q) + 1j * w * (C @ q)) < 1e-8 * np.linalg.norm(force)
+    if omega:  # exp(iωt) with the slower motion forwards, the faster backwards, in turning axes: y leads x by ∓90°
+        slow, fast = shapes[:, 0], shapes[:, -1 if omega > 1e-2 else 1]
+        np.testing.assert_allclose(slow[1::2] / slow[::2], -1j, atol=1e-6)
+        if omega < 1e-2:
+            np.testing.assert_allclose(fast[1::2] / fast[::2], 1j, atol=1e-6)
+
+
+def test_two_springs_on_a_turntable():
+    """m ẍ − 2mΩẏ + (k₁ − mΩ²) x = 0 and its like in y: a quadratic in ω²."""
+    m, k1, k2, omega = 2.0, 50.0, 90.0, 3.0
+    M, K = m * np.eye(2), np.diag([k1 - m * omega**2, k2 - m * omega**2])
+    C = np.array([[0.0, -2 * m * omega], [2 * m * omega, 0.0]])
+    a, b = K[0, 0] / m, K[1, 1] / m
+    squares = np.roots([1.0, -(a + b + 4 * omega**2), a * b])
+    frequencies, _ = gyroscopic_modes(M, C, K, 5)
+    np.testing.assert_allclose(frequencies, np.sort(np.sqrt(squares)), rtol=1e-14)
+
+
+def test_massless_coordinates_are_condensed_exactly(way):
+    points, form = way
+    M, C, K, _ = row(points, 0.02)
+    massless = np.arange(len(K)) % 3 == 0
+    M[massless], C[massless], C[:, massless] = 0.0, 0.0, 0.0
+    own = ~massless
+    inner = K[np.ix_(own, own)] - K[np.ix_(own, massless)] @ np.linalg.solve(
+        K[np.ix_(massless, massless)], K[np.ix_(massless, own)]
+    )
+    condensed, _ = gyroscopic_modes(M[np.ix_(own, own)], C[np.ix_(own, own)], inner, 6)
+    frequencies, shapes = gyroscopic_modes(form(M), form(C), form(K), 6)
+    np.testing.assert_allclose(frequencies, condensed, rtol=1e-11)
+    assert np.abs((K @ shapes)[massless]).max() < 1e-10
+
+
+def test_only_as_many_modes_as_there_are_masses():
+    frequencies, shapes = gyroscopic_modes(np.diag([1.0, 0.0, 4.0]), np.zeros((3, 3)), np.eye(3), 10)
+    np.testing.assert_allclose(frequencies, [0.5, 1.0], rtol=1e-14)
+    assert shapes.shape == (3, 2)
+
+
+def test_stiff_coordinates_cost_no_accuracy(way):
+    """Half the row tied to the ground by springs 10¹² times stiffer: a shorter row remains (K itself keeps 4 digits of it)."""
+    points, form = way
+    M, C, K, _ = row(points, 0.0)
+    held = np.arange(len(K)) >= points
+    frequencies, _ = gyroscopic_modes(form(M), form(C), form(K + 1e12 * np.diag(held)), 4)
+    own = 4 * np.sin(np.arange(1, 3) * np.pi / (points + 2)) ** 2
+    np.testing.assert_allclose(frequencies, np.repeat(np.sqrt(own), 2), rtol=1e-10)
+
+
+def test_the_same_call_gives_the_same_bits(way):
+    points, form = way
+    M, C, K = (form(matrix) for matrix in row(points, 0.01)[:3])
+    first, again = gyroscopic_modes(M, C, K, 6), gyroscopic_modes(M, C, K, 6)
+    assert (first[0] == again[0]).all()
+    assert (first[1] == again[1]).all()
+
+
+def test_no_stable_steady_state_is_refused_with_the_lowest_eigenvalue(way):
+    points, form = way
+    M, C, K, exact = row(points, 0.0)
+    beyond = K - 1.5 * exact[0] ** 2 * np.eye(len(K))
+    lowest = f"{-0.5 * exact[0] ** 2:.3g}"
+    with pytest.raises(CodeError, match=f"lowest eigenvalue {lowest}: no stable steady state"):
+        gyroscopic_modes(form(M), form(C), form(beyond), 4)
+
+
+def test_a_negative_diagonal_is_no_stable_steady_state():
+    with pytest.raises(CodeError, match="lowest eigenvalue -2: no stable"):
+        gyroscopic_modes(np.eye(3), np.zeros((3, 3)), np.diag([1.0, -2.0, 3.0]), 1)
+
+
+@pytest.mark.parametrize(
+    ("which", "entry", "message"),
+    [(0, (0, 5), "M: .* from symmetric"), (1, (2, 2), "C: .* from skew"), (2, (0, 5), "K: .* from symmetric")],
+)
+def test_matrices_of_no_undamped_steady_state_are_refused(way, which, entry, message):
+    points, form = way
+    matrices = list(row(points, 0.01)[:3])
+    matrices[which][entry] += 1e-3
+    M, C, K = (form(matrix) for matrix in matrices)
+    with pytest.raises(CodeError, match=message):
+        gyroscopic_modes(M, C, K, 4)
+
+
+def test_what_is_not_finite_is_refused(way):
+    points, form = way
+    M, C, K, _ = row(points, 0.0)
+    C[0, 1] = np.nan
+    with pytest.raises(CodeError, match="C: not finite"):
+        gyroscopic_modes(form(M), form(C), form(K), 4)
+
+
+def test_negative_mass_is_refused():
+    with pytest.raises(CodeError, match="negative mass"):
+        gyroscopic_modes(np.diag([1.0, -1.0]), np.zeros((2, 2)), np.eye(2), 1)

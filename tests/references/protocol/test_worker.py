@@ -1,0 +1,125 @@
+"""A foreign code's crash, hang, chatter or nonsense is one run's outcome, and what was solved before it is kept."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import uniform_blade
+from southwell.core.modes import Modes
+from southwell.references.protocol import registry
+from southwell.references.protocol.wire import decode_blade, decode_modes, encode
+from southwell.references.protocol.worker import Failure, answers
+
+BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
+RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = str(Path(__file__).parents[2] / "support")
+    monkeypatch.setenv("PYTHONPATH", folder)
+    monkeypatch.syspath_prepend(folder)
+
+
+def ask(attribute: str, timeout: float = 60.0) -> list[Modes | Failure]:
+    return answers(f"misbehaving:{attribute}", BLADE, RUNS, timeout)
+
+
+def failure(answer: Modes | Failure) -> Failure:
+    assert isinstance(answer, Failure)
+    return answer
+
+
+def test_answers_come_back_bit_for_bit_and_in_order() -> None:
+    got = ask("WELL_BEHAVED")
+    for run, modes in zip(RUNS, got, strict=True):
+        assert isinstance(modes, Modes)
+        assert (modes.omega, modes.elements, len(modes.frequencies)) == run
+        np.testing.assert_array_equal(modes.shapes, np.full((3, 21, 4), 1.0 / 3.0 + 2.0j / 7.0))
+
+
+@pytest.mark.parametrize(
+    ("attribute", "told"),
+    [("SEGFAULT", "SIGSEGV"), ("ABORT", "SIGABRT"), ("LEAVE", "exit status 3: library: licence not found")],
+)
+def test_a_crash_loses_only_what_was_not_finished(attribute: str, told: str) -> None:
+    first, second, third = ask(attribute)
+    assert isinstance(first, Modes)
+    assert failure(second).kind == failure(third).kind == "crashed"
+    assert told in failure(second).reason
+
+
+def test_a_hang_ends_with_its_time_limit_children_included() -> None:
+    began = time.monotonic()
+    first, second, _ = ask("HANG", timeout=5.0)
+    assert time.monotonic() - began < 20.0
+    assert isinstance(first, Modes)
+    assert second == Failure("timed out", "no answer within 5 s")
+
+
+def test_what_a_code_prints_does_not_reach_the_protocol() -> None:
+    assert all(isinstance(answer, Modes) for answer in ask("CHATTER"))
+
+
+@pytest.mark.parametrize(
+    ("attribute", "kind", "told"),
+    [
+        ("GIVE_UP", "refused", "no steady state at this speed"),
+        ("BLUNDER", "nonsense", "ZeroDivisionError: division by zero"),
+        ("NOT_A_NUMBER", "nonsense", "not finite"),
+        ("DESCENDING", "nonsense", "not ascending"),
+    ],
+)
+def test_one_bad_run_leaves_its_neighbours_alone(attribute: str, kind: str, told: str) -> None:
+    first, second, third = ask(attribute)
+    assert isinstance(first, Modes)
+    assert isinstance(third, Modes)
+    assert failure(second).kind == kind
+    assert told in failure(second).reason
+
+
+def test_a_code_that_is_not_installed_says_how_to_get_it() -> None:
+    assert ask("ABSENT") == [Failure("not installed", "pip install manners")] * 3
+
+
+def test_a_blade_crosses_the_border_unchanged_rigid_strains_included() -> None:
+    copy = decode_blade(encode(BLADE))
+    for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass"):
+        np.testing.assert_array_equal(getattr(copy, name), getattr(BLADE, name))
+    assert np.isinf(copy.stiffness[0, 1, 1])
+    assert (copy.name, copy.hub_radius) == ("beam", 0.3)
+
+
+def test_no_modes_cross_the_border_too() -> None:
+    empty = Modes(1.0, np.zeros(0), np.zeros((0, 21, 4), complex), 5)
+    assert decode_modes(encode(empty)).shapes.shape == (0, 21, 4)
+
+
+def test_an_unknown_code_is_named_and_the_nearest_suggested() -> None:
+    with pytest.raises(registry.UnknownCodeError, match="'pinochio' is not known: did you mean pinocchio"):
+        answers("pinochio", BLADE, RUNS, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("no_such_module:CODE", "No module named 'no_such_module'"),
+        ("misbehaving:NOTHING_HERE", "no attribute 'NOTHING_HERE'"),
+        ("misbehaving:NOT_A_CODE", "lacks name, model"),
+    ],
+)
+def test_a_path_that_leads_to_no_code_is_refused(path: str, told: str) -> None:
+    with pytest.raises(registry.UnknownCodeError, match=told):
+        registry.code(path)
+
+
+def test_other_packages_register_codes_by_entry_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    info = tmp_path / "theirs-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[southwell.codes]\ntheir-code = misbehaving:WELL_BEHAVED\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert "their-code" in registry.names()
+    assert registry.code("their-code").title == "Misbehaving"

@@ -1,0 +1,229 @@
+"""pyBModes against core lacking the same effects, closed forms, printed tables, and what it is said to leave out."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from southwell.cases.input.library import load
+from southwell.core import solve
+from southwell.core.blade import Blade, uniform_blade, without_rotary_inertia
+from southwell.core.effects import Model
+from southwell.references.protocol.interface import CodeError
+from southwell.references.pybmodes import beam as pybmodes_beam
+from southwell.references.pybmodes.beam import CODE
+from southwell.tests.support.analytic import ROOTS
+from southwell.tests.support.beams import PARK, A, E, I, curved, tapered, yoo_shin
+
+pytestmark = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
+
+Array = NDArray[Any]
+WINDPACT = {v.name: v.blade for v in load("park-blade").variants}["park-blade/windpact"]
+TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
+
+
+def frequencies(blade: Blade, omega: float, elements: int, count: int = 6) -> Array:
+    return CODE.solve(blade, omega, elements, count).frequencies
+
+
+def orders(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> Array:
+    """Observed order of convergence of each mode over levels that double."""
+    f = [frequencies(blade, omega, n, count) for n in levels]
+    return np.log2((f[0] - f[1]) / (f[1] - f[2]))
+
+
+def core(blade: Blade, omega: float, count: int) -> Array:
+    """With the same effects left out; sure to 1e-7 at least, by 160 elements of fourth order."""
+    return solve.modes(blade, omega, 160, count, model=CODE.model).frequencies
+
+
+def shaft(I_y: float, I_z: float) -> Blade:
+    """Torsion's frequencies at rest are (k − ½) π √(GJ / I_x), far below bending's."""
+    return uniform_blade("shaft", 1.0, 0.1, EA=1e4, GJ=1e-2, EI_y=1e2, EI_z=1e2, mass=1.0, I_y=I_y, I_z=I_z)
+
+
+def test_the_cantilever_at_rest_is_the_closed_form() -> None:
+    """Euler–Bernoulli, cos βL cosh βL = −1: fourth order, so 40 elements give the third pair to 1e-6."""
+    exact = np.square(ROOTS[:3]) * np.sqrt(E * I / (3000.0 * A)) / 36.0
+    np.testing.assert_allclose(frequencies(PARK, 0.0, 40), np.repeat(exact, 2), rtol=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("blade", "omega", "count", "rtol"),
+    [
+        (PARK, 10.0, 6, 1e-6),
+        (yoo_shin(0.1), 50.0, 2, 1e-5),  # core's third is axial
+        (yoo_shin(5.0), 10.0, 4, 1e-5),
+        (replace(PARK, pitch=0.5), 10.0, 6, 1e-6),
+    ],
+    ids=["cantilever", "slender 70, fast", "large hub", "pitched"],
+)
+def test_it_is_core_without_what_it_lacks(blade: Blade, omega: float, count: int, rtol: float) -> None:
+    np.testing.assert_allclose(frequencies(blade, omega, 80, count), core(blade, omega, count), rtol=rtol)
+
+
+@pytest.mark.parametrize(
+    ("blade", "omega"),
+    [
+        (tapered(), 3.0),
+        (replace(tapered(), pitch=0.4), 3.0),
+        (WINDPACT, 30 * np.pi / 30),
+    ],
+    ids=["tapered and twisted", "pitched", "windpact"],
+)
+def test_tapered_blades_extrapolate_to_core_without_what_it_lacks(blade: Blade, omega: float) -> None:
+    """From 160 and 320 elements by the second order."""
+    coarse, fine = (frequencies(blade, omega, n, 4) for n in (160, 320))
+    np.testing.assert_allclose(fine + (fine - coarse) / 3, core(blade, omega, 4), rtol=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("blade", "omega", "levels", "order"),
+    [
+        (PARK, 10.0, (5, 10, 20), 4),
+        (yoo_shin(0.1), 20.0, (20, 40, 80), 4),
+        (tapered(), 3.0, (40, 80, 160), 2),
+        (WINDPACT, np.pi, (80, 160, 320), 2),
+    ],
+    ids=["cantilever", "slender 70", "tapered and twisted", "windpact"],
+)
+def test_order(blade: Blade, omega: float, levels: tuple[int, ...], order: int) -> None:
+    """Second where a blade tapers, since elements have the properties of their middle; fourth where it does not."""
+    assert CODE.order == 2
+    np.testing.assert_allclose(orders(blade, omega, levels, 4), order, atol=0.12)
+
+
+def test_shapes_are_those_of_core() -> None:
+    """Displacements by pairing; and the axes: modes of a pitched, twisted blade have a sense."""
+    blade = replace(tapered(), pitch=0.4)
+    ours = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
+    theirs = solve.modes(blade, 3.0, 160, 4, model=CODE.model).shapes.reshape(4, -1)
+    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-5)
+
+
+@pytest.mark.parametrize("elements", [3, 7, 20])
+def test_shapes_between_nodes_are_the_elements_own(elements: int) -> None:
+    """Whatever the elements, the first shape is (Rayleigh 1877) the clamped-free one; slopes come in metres, too."""
+    root = ROOTS[0]
+    x = root * np.linspace(0, 1, 21)
+    ratio = (np.cosh(root) + np.cos(root)) / (np.sinh(root) + np.sin(root))
+    exact = np.cosh(x) - np.cos(x) - ratio * (np.sinh(x) - np.sin(x))
+    unlike = uniform_blade("plank", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=1e6, mass=1.2, I_y=1e-3, I_z=1e-3)
+    shape = CODE.solve(unlike, 0.0, elements, 1).shapes[0]
+    np.testing.assert_allclose(shape[:, 2] / shape[-1, 2], exact / exact[-1], atol=1e-3)
+    assert np.abs(np.delete(shape, 2, axis=1)).max() < 1e-9 * np.abs(shape[-1, 2])
+
+
+def test_torsion_has_polar_inertia_and_spin_softens() -> None:
+    """Closed form: ω² = ((k − ½) π)² GJ / I_x + Ω² (I_z − I_y) / I_x; rotation about x, to the tip."""
+    blade, omega = shaft(1e-4, 9e-4), 5.0
+    found = CODE.solve(blade, omega, 40, 2)
+    exact = np.sqrt((np.array([0.5, 1.5]) * np.pi) ** 2 * 1e-2 / 1e-3 + omega**2 * 0.8)
+    np.testing.assert_allclose(found.frequencies, exact, rtol=1e-6)
+    x = np.linspace(0, 1, 21)
+    shape = found.shapes[0, :, 3] / found.shapes[0, -1, 3]
+    np.testing.assert_allclose(shape, np.sin(np.pi / 2 * x), atol=1e-6)
+
+
+def test_a_blade_without_polar_inertia_has_bending_modes_alone() -> None:
+    """Of an eigenproblem with a singular mass matrix, which pyBModes solves from below; all that it can is had."""
+    found = CODE.solve(without_rotary_inertia(PARK), 10.0, 4, 99)
+    assert len(found.frequencies) > 10
+    assert not np.abs(found.shapes[:, :, 3]).max() > 1e-9 * np.abs(found.shapes).max()
+
+
+def test_axial_modes_are_left_out() -> None:
+    """Axial motion of this beam at rest is at π/2 · 70 = 110 rad/s, which pyBModes has but shows no shape of."""
+    rotor_modes = frequencies(yoo_shin(0.0), 0.0, 40, 8)
+    assert np.abs(rotor_modes / (35 * np.pi) - 1).min() > 0.05
+    rest = np.square(ROOTS[:4])
+    np.testing.assert_allclose(rotor_modes, np.repeat(rest, 2), rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("blade", "reason"),
+    [
+        (curved(), "couple"),
+        (replace(PARK, curve=np.array([[0, 0, 0], [6.0, 0.5, 0]])), "sweep"),
+        (replace(PARK, precone=0.1), "precone = 0.1"),
+        (replace(PARK, root=np.array([np.inf] * 5 + [0.0])), "not clamped"),
+        (replace(PARK, tip_mass=TIP_MASS), "tip_mass"),
+        (uniform_blade("s", 1, 0, EA=1, GJ=1, EI_y=1, EI_z=1, mass=1, GA_y=1.0), "shear"),
+        (uniform_blade("s", 1, 0, EA=1, GJ=np.inf, EI_y=1, EI_z=1, mass=1), "GJ is infinite"),
+        (replace(PARK, mass=np.repeat(np.diag([1.0, 1.0, 2.0, 0, 0, 0])[None], 2, axis=0)), "differs with direction"),
+    ],
+    ids=["coupled", "swept", "coned", "hinged", "tip mass", "shear", "rigid", "added mass"],
+)
+def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+    assert reason in (CODE.unsupported(blade) or "")
+    with pytest.raises(CodeError, match=reason):
+        CODE.solve(blade, 1.0, 5, 2)
+
+
+def test_why_mass_centres_off_the_axis_are_refused() -> None:
+    """What the reproducer calls expected is core's, too: two methods that share nothing, against pyBModes' 1.5 %.
+
+    Exact without Coriolis terms, and for a beam whose mass is 0.05 m off its axis, at 60 rpm; pyBModes alone has a second flap
+    that does not depend on the stiffness of the other plane.
+    """
+    from southwell.references.defects import pybmodes_mass_centre as they
+
+    blade = uniform_blade(
+        "off",
+        they.RADIUS,
+        0.0,
+        EA=they.EA,
+        GJ=they.GJ,
+        EI_y=they.EI,
+        EI_z=4 * they.EI,
+        mass=they.MASS,
+    )
+    e, m = they.OFFSET, they.MASS
+    mass = np.diag([m, m, m, they.FLAP + they.EDGE + m * e**2, they.FLAP, they.EDGE + m * e**2])
+    mass[0, 5] = mass[5, 0] = -m * e
+    mass[2, 3] = mass[3, 2] = m * e
+    blade = replace(blade, mass=np.repeat(mass[None], 2, axis=0))
+    assert "mass centres off the axis" in (CODE.unsupported(blade) or "")
+    ours = solve.modes(blade, 2 * np.pi, 80, 5, model=Model(coriolis=False)).frequencies
+    np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], ours, rtol=1e-4)
+
+
+def test_takes_every_other_blade_of_these_tests() -> None:
+    assert [CODE.unsupported(b) for b in (PARK, tapered(), yoo_shin(0.1), WINDPACT, shaft(1e-3, 0.0))] == [None] * 5
+
+
+def test_a_rotor_too_fast_is_said_so() -> None:
+    """A section thicker than wide is turned out of the plane of rotation: Ω² (I_y − I_z) beyond (π/2)² GJ / L²."""
+    assert frequencies(shaft(9e-4, 1e-4), 5.0, 10, 1)[0] > 0
+    with pytest.raises(CodeError, match="no stable steady state"):
+        CODE.solve(shaft(9e-4, 1e-4), 6.0, 10, 1)
+
+
+def test_what_the_input_file_has_and_nothing_reads(tmp_path: Path) -> None:
+    """Precone: refused here because pyBModes's answer does not depend on it. Pitch: likewise, hence given as twist."""
+    blade = replace(tapered(), pitch=0.0)
+    path = pybmodes_beam._write(tmp_path, blade, 3.0, np.linspace(0, blade.length, 21), 4)
+    text, answers = path.read_text(), []
+    for line in ("0.0  precone", "0.0  bl_thp", "1.0  rpm_mult"):
+        for value in ("0.0", "0.5") if "rpm" in line else ("0.0", "20.0"):
+            path.write_text(text.replace(line, value + line[3:]))
+            answers.append(pybmodes_beam._pybmodes().RotatingBlade(path).run(4, check_model=False).frequencies)
+    plain, coned, _, pitched, still, half = answers
+    np.testing.assert_array_equal([coned, pitched], [plain, plain])
+    assert (still < half).all()  # what is read, moves
+    assert (half < plain).all()
+
+
+def test_it_leaves_no_file_behind_and_repeats_itself(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    first = CODE.solve(tapered(), 2.0, 20, 4)
+    CODE.solve(PARK, 10.0, 5, 4)
+    again = CODE.solve(tapered(), 2.0, 20, 4)
+    np.testing.assert_array_equal(first.frequencies, again.frequencies)
+    np.testing.assert_array_equal(first.shapes, again.shapes)
+    assert os.listdir(tmp_path) == []

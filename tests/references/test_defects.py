@@ -1,0 +1,56 @@
+"""Each known defect is there, in the version that is installed: one that is mended is to be struck off the list."""
+
+import ast
+from dataclasses import replace
+from importlib.util import find_spec
+
+import pytest
+
+from southwell.references import defects, isolated
+from southwell.references.defects import DEFECTS, Defect
+from southwell.references.protocol import registry
+from southwell.references.solid import calculix
+
+INSTALLED = {
+    "pinocchio": find_spec("pinocchio") is not None,
+    "exudyn": find_spec("exudyn") is not None,
+    "pybmodes": find_spec("pybmodes") is not None,
+    "calculix": calculix.version() is not None,
+    "sharpy": isolated.SHARPY.version() is not None,
+    "frame3dd": isolated.FRAME3DD.version() is not None,
+    "scikit": find_spec("skfem") is not None,
+}
+
+
+@pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
+def test_the_defect_is_there(defect: Defect) -> None:
+    if not INSTALLED[defect.script.partition("_")[0]]:
+        hint = f": southwell codes install {defect.environment}" if defect.environment else ""
+        pytest.skip(f"not installed{hint}")
+    said = defects.shown(defect).splitlines()
+    assert said[-1] == "defect: present", "mended: strike it off the list"
+    assert "expected" in "".join(said[1:-1])
+    assert any(character.isdigit() for character in said[0]), "its first line names the version"
+
+
+@pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
+def test_its_script_stands_alone(defect: Defect) -> None:
+    """Ready to be sent upstream: nothing of ours is imported."""
+    tree = ast.parse(defect.path.read_text(encoding="utf-8"))
+    imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    imported |= {n.module or "." for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
+    assert not {name for name in imported if name.partition(".")[0] in ("southwell", "", "core", "references")}
+    assert (ast.get_docstring(tree) or "").count("Needs:") == 1
+
+
+def test_every_script_is_listed_and_every_code_known() -> None:
+    scripts = {p.stem for p in DEFECTS[0].path.parent.glob("*.py")} - {"__init__"}
+    assert scripts == {d.script for d in DEFECTS}
+    assert {code for d in DEFECTS for code in d.codes} <= set(registry.names())
+
+
+def test_a_reproducer_that_cannot_run_says_why() -> None:
+    with pytest.raises(RuntimeError, match=r"missing: .*No such file"):
+        defects.shown(replace(DEFECTS[0], script="missing"))
+    with pytest.raises(RuntimeError, match=r"no answer within 0\.001 s"):
+        defects.shown(DEFECTS[0], timeout=0.001)

@@ -1,0 +1,171 @@
+"""What CI runs: every step's script is sound shell, its ``southwell`` lines parse, and it does here what it is to do there."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from southwell.cases.judge import results
+from southwell.cases.regression import history
+from southwell.reports.cli import app as cli
+
+ROOT = Path(__file__).parents[3]
+ACTION = ROOT / "action.yml"
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+GITLAB = ROOT / "docs" / "gitlab-ci.yml"
+BASH = shutil.which("bash")
+SCRIPTS = [ROOT / ".ci" / "nightly", ROOT / ".ci" / "run"]
+
+
+def load(path: Path) -> dict[Any, Any]:
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def steps(path: Path) -> Iterator[dict[str, Any]]:
+    found = load(path)
+    for job in [found["runs"]] if "runs" in found else found["jobs"].values():
+        yield from job["steps"]
+
+
+def scripts() -> dict[str, str]:
+    """Every script, by file and step."""
+    every = {p.name: p.read_text(encoding="utf-8") for p in SCRIPTS}
+    for path in (ACTION, *WORKFLOWS):
+        for step in steps(path):
+            if "run" in step:
+                every[f"{path.name}: {step.get('name')}"] = step["run"]
+    job = load(GITLAB)["southwell"]
+    return every | {GITLAB.name: "\n".join([*job["before_script"], *job["script"]])}
+
+
+@pytest.mark.skipif(BASH is None, reason="no bash")
+@pytest.mark.parametrize("script", scripts().values(), ids=scripts())
+def test_is_sound_shell(script: str) -> None:
+    checked = subprocess.run(["bash", "-n"], input=script, capture_output=True, text=True)
+    assert (checked.returncode, checked.stderr) == (0, "")
+
+
+def lines() -> dict[str, str]:
+    """Every line that calls southwell, with the options that its script may add to it."""
+    found = {}
+    for name, script in scripts().items():
+        more = " ".join(re.findall(r"options\+?=\((.*?)\)", script))
+        for k, line in enumerate(
+            re.findall(r"(?<![\w./-])southwell (?!\()([a-z].*?)(?: \|\|.*)?$", script, re.MULTILINE)
+        ):
+            found[f"{name}: {k}: {line}"] = line.replace('"${options[@]}"', more)
+    return found
+
+
+def test_there_are_such_lines() -> None:
+    commands = {line.split()[0] for line in lines().values()}
+    assert {"verify", "gate", "history", "codes", "dashboard"} <= commands
+
+
+@pytest.mark.parametrize("line", lines().values(), ids=lines())
+def test_southwell_understands_it(line: str) -> None:
+    known = re.sub(r'"?\$\{\w+\[@\]\}"?|\$(against|CASES)|"\$@"', "", line)
+    tokens = shlex.split(re.sub(r"\$\w+", "something", known))
+    cli.app.parse_args(tokens, exit_on_error=False, print_error=False)
+
+
+def test_no_script_has_anything_pasted_into_it() -> None:
+    """What others wrote reaches a script by its environment alone: pasted in by ``${{ }}`` it would be run."""
+    assert not [name for name, script in scripts().items() if "${{" in script]
+
+
+def test_the_workflow_uses_the_action_with_inputs_that_it_has() -> None:
+    used = [s["with"] for path in WORKFLOWS for s in steps(path) if s.get("uses") == "./"]
+    assert used
+    assert all(set(w) <= set(load(ACTION)["inputs"]) for w in used)
+
+
+def action(tmp_path: Path, **inputs: str) -> tuple[int, str]:
+    """Run the action's scripts that call southwell, as they stand, in their order; status, and what they printed."""
+    given = {name: one["default"] for name, one in load(ACTION)["inputs"].items()} | inputs
+    shown = ""
+    for step in steps(ACTION):
+        if "southwell" in step.get("run", ""):
+            variables = {
+                k: re.sub(r"\$\{\{ inputs\.(\S+) \}\}", lambda m: given[m[1]], v) for k, v in step["env"].items()
+            }
+            here = {**os.environ, "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"), **variables}
+            here["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), here["PATH"]])
+            command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
+            done = subprocess.run(command, cwd=tmp_path, env=here, capture_output=True, text=True)
+            shown += done.stdout + done.stderr
+            if done.returncode:
+                return done.returncode, shown
+    return 0, shown
+
+
+CASE = (ROOT / "cases" / "data" / "rotating-cable.toml").read_text(encoding="utf-8")
+FEW = {"cases": "mine.toml", "codes": "southwell-equation,scikit-fem", "out": "out"}
+
+
+@pytest.mark.skipif(BASH is None, reason="no bash")
+def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
+    case = tmp_path / "mine.toml"
+    case.write_text(CASE, encoding="utf-8")
+    status, shown = action(tmp_path, **FEW)
+    assert (status, "against nothing" in shown) == (0, True), shown
+    assert "### Southwell" in (tmp_path / "summary.md").read_text(encoding="utf-8")
+    assert (tmp_path / "out" / "junit.xml").exists()
+
+    run = results.read(tmp_path / "out" / "results.jsonl")
+    history.append(tmp_path / "history.jsonl", history.entry(run, "first"))
+    assert action(tmp_path, **FEW, strict="true")[0] == 0  # nothing moves by itself
+
+    case.write_text(re.sub(r"\[compare\]", "[compare]\ntarget = 1e-12", CASE), encoding="utf-8")
+    status, shown = action(tmp_path, **FEW)
+    assert status == 1
+    assert "::error file=mine.toml,title=rotating-cable::" in shown
+    assert "against first" in shown
+
+
+def git(folder: Path, *arguments: str) -> str:
+    done = subprocess.run(["git", *arguments], cwd=folder, check=True, capture_output=True, text=True)
+    return done.stdout
+
+
+@pytest.mark.skipif(BASH is None or shutil.which("git") is None, reason="no bash, or no git")
+def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
+    """The two steps that read and write it, as they stand, against a repository beside."""
+    named = {s.get("name"): s["run"] for s in steps(ROOT / ".github" / "workflows" / "matrix.yml") if "run" in s}
+    origin = tmp_path / "origin"
+    git(tmp_path, "init", "--quiet", "--bare", "--initial-branch=main", str(origin))
+    first = tmp_path / "first"
+    git(tmp_path, "clone", "--quiet", str(origin), str(first))
+    (first / "file").write_text("1")
+    git(first, "add", "file")
+    git(first, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "--quiet", "--message", "file")
+    git(first, "push", "--quiet", "origin", "HEAD:main")
+    here = {**os.environ, "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+
+    def step(folder: Path, name: str, **variables: str) -> str:
+        command = ["bash", "-eo", "pipefail", "-c", named[name]]
+        done = subprocess.run(command, cwd=folder, env=here | variables, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    for k, commit in enumerate(("aaa", "bbb"), 1):
+        job = tmp_path / f"job{k}"
+        git(tmp_path, "clone", "--quiet", "--depth=1", f"file://{origin}", str(job))
+        told = step(job, "Earlier runs")
+        assert ("no history yet" if k == 1 else "1 earlier runs") in told
+        (job / "reports" / "out").mkdir(parents=True)
+        shutil.copy(ROOT / "reports" / "readme.jsonl", job / "reports" / "out" / "results.jsonl")
+        step(job, "Add the run to the history", GITHUB_SHA=commit)
+    assert git(origin, "ls-tree", "--name-only", "history").split() == ["history.jsonl"]
+    kept = tmp_path / "kept.jsonl"
+    kept.write_text(git(origin, "show", "history:history.jsonl"), encoding="utf-8")
+    assert [e.commit for e in history.read(kept).entries] == ["aaa", "bbb"]
+    assert git(origin, "ls-tree", "--name-only", "main").split() == ["file"]

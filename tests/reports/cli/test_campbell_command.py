@@ -1,0 +1,242 @@
+"""``southwell campbell``: what a user types, sees, finds in the folder; every wrong input is one line and status 2."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.campbell.prestress import LOAD, STANDARD_GRAVITY
+from southwell.cases.input import library
+from southwell.core.solve import modes
+from southwell.reports.cli.campbell import Told
+from southwell.reports.shared.units import RPM
+
+from .test_cli import BEAM, southwell
+
+
+@pytest.fixture
+def beam(tmp_path: Path) -> Path:
+    path = tmp_path / "stub.toml"
+    path.write_text(BEAM)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("campbell", "BLADE"),
+        ("campbell no-such-case", "'no-such-case' is not known"),
+        ("campbell missing.toml", "missing.toml: no such file"),
+        ("campbell park-blade/surrogat", "did you mean park-blade/surrogate?"),
+        ("campbell park-cantilever --rpm 0:30:5 --omega 1", "given twice: give one of them"),
+        ("campbell park-cantilever --rpm fast", "--rpm: 'fast' is neither a speed nor first:last:step, as in 0:30:5"),
+        ("campbell park-cantilever --rpm 30:0:5", "--rpm: '30:0:5': needs 0 ≤ first ≤ last"),
+        ("campbell park-cantilever --rpm 10", "a diagram needs two at least"),
+        ("campbell park-cantilever --per-rev one", "--per-rev: 'one' is neither first:last nor whole numbers"),
+        ("campbell park-cantilever --per-rev 0:3", "--per-rev: '0:3': needs 1 ≤ first ≤ last"),
+        ("campbell park-cantilever --per-rev 3:1", "--per-rev: '3:1': needs 1 ≤ first ≤ last"),
+        ("campbell park-cantilever --operating 7", "--operating: '7' is not lowest:highest, as in 6.9:12.1"),
+        ("campbell park-cantilever --operating 12:7", "--operating: '12:7': needs 0 ≤ lowest ≤ highest"),
+        ("campbell park-cantilever --operating nan:7", "--operating: 'nan:7': needs 0 ≤ lowest ≤ highest"),
+        (
+            "campbell park-cantilever --rpm 0:30:10 --operating 7:40",
+            "--operating: '7:40': beyond the speeds, 0 to 30 rpm",
+        ),
+        ("campbell park-cantilever --rpm 0:30:10 --tilt 5", "without --azimuth"),
+        ("campbell park-cantilever --rpm 0:30:10 --elements 20001", "--elements. Must be <= 20000"),
+        ("campbell park-cantilever --margin wide", "--margin: 'wide' is neither a percentage nor a fraction"),
+        ("campbell park-cantilever --margin 10", "--margin: '10': needs 0 ≤ margin < 1"),
+        ("campbell park-cantilever --margin=-5%", "--margin: '-5%': needs 0 ≤ margin < 1"),
+        ("campbell park-cantilever --modes 0", "--modes"),
+        ("campbell park-cantilever --elements 1.5", "--elements"),
+        ("campbell park-cantilever --workers 0", "--workers"),
+        ("campbell park-cantilever --azimuth up", "--azimuth"),
+        ("campbell park-cantilever --azimuth nan", "--azimuth nan: not a finite number of degrees"),
+        ("campbell missing.dat --rpm 0:10:5", "missing.dat"),
+        ("campbell park-cantilever --subset one", "--subset: 'one' is not set:subset, as in 5:1"),
+        ("campbell park-cantilever --pitch inf", "--pitch inf: not a finite number of degrees"),
+        ("campbell yoo-shin-chordwise/delta-0 --omega 0:200:100 --elements 8", "200 rad/s"),
+    ],
+)
+def test_wrong_input_is_told_in_one_line(
+    arguments: str, told: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, out, err = southwell(arguments, capsys)
+    assert (status, out) == (2, "")
+    assert err.startswith("southwell: ")
+    assert err.count("\n") == 1
+    assert told in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_cannot_be_written_is_told(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "taken").write_text("a file")
+    status, _, err = southwell(f"campbell {beam} --elements 6 -o {tmp_path / 'taken'}", capsys)
+    assert status == 2
+    assert "cannot be written" in err
+    assert err.count("\n") == 1
+
+
+def test_it_prints_tables_and_writes_figures_page_and_csv(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    line = f"campbell {beam} --rpm 0:200:50 --modes 3 --elements 8 --operating 50:150 --per-rev 1,2,9 --margin 0.05"
+    status, shown, err = southwell(f"{line} -o {out}", capsys)
+    assert (status, err) == (0, "")
+    blade = library.load(str(beam)).variants[0].blade
+    hertz = modes(blade, 200 * np.pi / 30, 8, 1).frequencies[0] / (2 * np.pi)
+    row = next(text for text in shown.splitlines() if "flap 1" in text and " % flap" in text)
+    assert f"{hertz:.4f}" in row
+    names = {p.name for p in out.iterdir()}
+    assert names == {
+        *(f"{stem}.{kind}" for stem in ("campbell", "shapes") for kind in ("svg", "png", "csv")),
+        *("campbell.md", "resonances.csv", "margins.csv", "encounters.csv"),
+    }
+    assert all(name in shown for name in names)
+    page = (out / "campbell.md").read_text()
+    for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell"):
+        assert needed in page
+    assert (out / "campbell.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same beam as a case's, mounted elsewhere: the hub radius of the command line counts."""
+    file, out = tmp_path / "blade.toml", tmp_path / "out"
+    file.write_text("name = 'own'\n" + BEAM[BEAM.index("[blade]") : BEAM.index("[speeds]")])
+    status, _, err = southwell(f"campbell {file} -o {out}", capsys)
+    assert (status, err) == (2, f"southwell: --rpm: missing: {file} says no speeds: give them, as in 0:15:0.5\n")
+    status, shown, _ = southwell(f"campbell {file} --omega 0:20:10 --hub-radius 3 --elements 8 -o {out}", capsys)
+    assert status == 0
+    assert "Southwell TOML: blade.toml" in shown
+    assert "- Southwell TOML: blade.toml" in (out / "campbell.md").read_text()
+    rows = [row.split(",") for row in (out / "campbell.csv").read_text().splitlines()]
+    at = rows[0].index("frequency_rad_s")
+    found = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
+    (out / "case.toml").write_text(BEAM.replace("hub_radius = 0.1", "hub_radius = 3.0"))
+    blade = library.load(str(out / "case.toml")).variants[0].blade
+    np.testing.assert_allclose(found, modes(blade, 20.0, 8, 6).frequencies, rtol=1e-9)
+
+
+@pytest.mark.skipif(not os.environ.get("SOUTHWELL_BLADES"), reason="set SOUTHWELL_BLADES to public blade files")
+@pytest.mark.parametrize(
+    ("file", "mount", "first"),
+    [
+        ("nrel5mw/NRELOffshrBsline5MW_Blade.dat", "--length 61.5 --hub-radius 1.5", "AdjBlMs = 1.04536"),
+        ("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat", "--hub-radius 1.5", "BeamDyn"),
+        ("nrel5mw/NREL_5MW_st.txt", "--hub-radius 1.5 --subset 5:1", "HAWC2"),
+        ("iea15/IEA_15MW_RWT_Blade_st_FPM.st", "--hub-radius 3.97", "HAWC2"),
+        ("iea3.4/IEA-3.4-130-RWT_ElastoDyn_blade.dat", "--length 63 --hub-radius 2", "ElastoDyn"),
+    ],
+)
+def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
+    file: str, mount: str, first: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = Path(os.environ["SOUTHWELL_BLADES"]) / file
+    line = f"campbell {path} {mount} --rpm 0:12:4 --modes 3 --elements 24 --operating 4:12 -o {tmp_path}"
+    status, shown, err = southwell(line, capsys)
+    assert (status, err) == (0, "")
+    assert first in shown
+    rows = [row.split(",") for row in (tmp_path / "campbell.csv").read_text().splitlines()]
+    name, place = rows[0].index("name"), rows[0].index("speed_number")
+    assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flap 1", "edge 1", "flap 2"]
+
+
+def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, shown, _ = southwell(f"campbell park-blade --modes 1 --elements 10 -o {tmp_path / 'out'}", capsys)
+    assert status == 0
+    labels = {v.name.partition("/")[2] for v in library.load("park-blade").variants}
+    assert {p.name for p in (tmp_path / "out").iterdir()} == labels
+    assert "Hz at 30 rpm" in shown
+
+
+def test_gravity_at_an_azimuth_stiffens_a_blade_that_hangs(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = []
+    for option in ("", "--azimuth 180", "--azimuth 0"):
+        southwell(f"campbell {beam} --modes 1 --elements 8 {option} -o {tmp_path / 'out'}", capsys)
+        rows = (tmp_path / "out" / "campbell.csv").read_text().splitlines()
+        head, row = rows[0].split(","), rows[1].split(",")
+        first.append(float(row[head.index("frequency_rad_s")]))
+    assert first[2] < first[0] < first[1]
+
+
+def test_a_load_of_the_beams_weight_is_gravity(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its weight per length towards the tip as a table, or gravity with the blade hanging: the same first frequency."""
+    (blade,) = (v.blade for v in library.load(str(beam)).variants)
+    weight = blade.mass[0, 0, 0] * STANDARD_GRAVITY
+    table = tmp_path / "load.csv"
+    table.write_text(f"# weight\n{','.join(LOAD)}\n0,{weight},0,0\n1,{weight},0,0\n")
+    first = []
+    for option in ("--azimuth 180", f"--load {table}"):
+        status, *_ = southwell(f"campbell {beam} --modes 1 --elements 8 {option} -o {tmp_path / 'out'}", capsys)
+        assert status == 0
+        rows = (tmp_path / "out" / "campbell.csv").read_text().splitlines()
+        first.append(float(rows[1].split(",")[rows[0].split(",").index("frequency_rad_s")]))
+    assert first[0] == pytest.approx(first[1], rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,1,0,0\n0.5,1,0,0\n", ["load.csv", "fraction", "0.5", "tip"]),
+        ("0,1,0,0\n1,x,0,0\n", ["load.csv", "line 3", "fx"]),
+    ],
+)
+def test_a_bad_load_is_one_line(
+    rows: str, words: list[str], beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "load.csv"
+    table.write_text(f"{','.join(LOAD)}\n{rows}")
+    status, _, told = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
+    assert status == 2
+    assert told.count("\n") == 1
+    assert all(word in told for word in words)
+
+
+def test_several_processes_give_the_same_numbers(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tables = []
+    for workers in (1, 2):
+        out = tmp_path / str(workers)
+        status, *_ = southwell(f"campbell {beam} --modes 2 --elements 8 --workers {workers} -o {out}", capsys)
+        assert status == 0
+        text = (out / "campbell.csv").read_text().splitlines()
+        column = text[0].split(",").index("frequency_rad_s")
+        tables.append([float(row.split(",")[column]) for row in text[1:]])
+    np.testing.assert_allclose(tables[0], tables[1], rtol=1e-9)
+
+
+def test_progress_counts_what_was_asked_for_and_names_what_is_between() -> None:
+    told = Told("blade", [0.0, 1.0], RPM)
+    told(0.0)
+    assert told.bar.tasks[0].completed == 1
+    told(0.5)
+    assert told.bar.tasks[0].completed == 1
+    assert "looking closer at 4.77465 rpm" in told.bar.tasks[0].description
+
+
+def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = southwell("campbell --help", capsys)
+    assert status == 0
+    for option in (
+        "--rpm",
+        "--out",
+        "-o",
+        "--modes",
+        "--per-rev",
+        "--operating",
+        "--margin",
+        "--elements",
+        "--workers",
+    ):
+        assert option in out
+    assert "campbell" in southwell("--help", capsys)[1]

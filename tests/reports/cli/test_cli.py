@@ -1,0 +1,473 @@
+"""The command line: what a user types, sees and gets; every wrong input is one line and status 2."""
+
+import json
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import library
+from southwell.cases.judge import results
+from southwell.cases.verify import matrix
+from southwell.core.solve import modes
+from southwell.references.protocol.registry import names
+from southwell.reports.cli import app as cli
+
+BEAM = """
+name = "stub"
+title = "A short beam"
+description = "For the command line's tests."
+source = "nowhere"
+[blade]
+kind = "beam"
+length = 2.0
+hub_radius = 0.1
+E = 7e10
+G = 2.7e10
+density = 2700.0
+A = 4e-4
+I_y = 2e-8
+I_z = 5e-8
+J = 7e-8
+[speeds]
+rad_s = [0.0, 10.0]
+[compare]
+modes = 2
+"""
+
+
+@pytest.fixture
+def beam(tmp_path: Path) -> Path:
+    path = tmp_path / "stub.toml"
+    path.write_text(BEAM)
+    return path
+
+
+@pytest.fixture
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = str(Path(__file__).parents[2] / "support")
+    monkeypatch.setenv("PYTHONPATH", folder)
+    monkeypatch.syspath_prepend(folder)
+
+
+def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Status, standard output and standard error."""
+    with pytest.raises(SystemExit) as ended:
+        cli.main(shlex.split(arguments))
+    out, err = capsys.readouterr()
+    assert isinstance(ended.value.code, int)
+    return ended.value.code, out, err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("verify park-cantilevr", "'park-cantilevr' is not known: did you mean park-cantilever?"),
+        ("verify park-blade/surrogat", "no such blade: did you mean park-blade/surrogate?"),
+        ("verify park-cantilever --codes exudyn-anfc", "'exudyn-anfc' is not known: did you mean exudyn-ancf?"),
+        ("verify park-cantilever --codes ''", "code: '' is not known"),
+        (
+            "verify park-cantilever --codes nowhere:CODE",
+            "cannot be loaded from nowhere:CODE: No module named 'nowhere'",
+        ),
+        ("verify park-cantilever --workers 0", "--workers"),
+        ("verify park-cantilever --workers two", "--workers"),
+        ("verify missing.toml", "missing.toml: no such file"),
+        ("verify --nonsense", "--nonsense"),
+        ("modes", "CASE"),
+        ("modes no-such-case", "'no-such-case' is not known"),
+        ("modes park-cantilever --omega 10 --rpm 95", "given twice: give one of them"),
+        ("modes park-cantilever --omega ten", "--omega: 'ten' is neither a speed nor first:last:step, as in 0:30:5"),
+        ("modes park-cantilever --omega 0:10", "'0:10' is neither a speed nor"),
+        ("modes park-cantilever --rpm 30:0:5", "--rpm: '30:0:5': needs 0 ≤ first ≤ last"),
+        ("modes park-cantilever --rpm 0:30:0", "a step above 0"),
+        ("modes park-cantilever --rpm 0:inf:1", "'0:inf:1': needs"),
+        ("modes park-cantilever --omega=-1", "'-1': needs 0 ≤ first"),
+        ("modes park-cantilever --omega nan", "'nan': needs"),
+        ("modes park-cantilever --elements 0", "--elements"),
+        ("modes park-cantilever --elements 1.5", "--elements"),
+        ("modes park-cantilever --modes 0", "--modes"),
+        ("modes park-cantilever wright-flapwise", "wright-flapwise"),
+        ("modes yoo-shin-chordwise/delta-0 --omega 200", "200 rad/s"),
+        (
+            "report no/such/folder",
+            "No such file or directory): give a folder that `southwell verify --out` has written",
+        ),
+        ("vrify", 'Unknown command "vrify"'),
+    ],
+)
+def test_wrong_input_is_told_in_one_line(arguments: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = southwell(arguments, capsys)
+    assert status == 2
+    assert out == ""
+    assert err.startswith("southwell: ")
+    assert err.count("\n") == 1
+    assert told in err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("length = 2.0", "length = -2.0", "blade.length: -2.0"),
+        ("length = 2.0", "length = nan", "blade.length: nan: not a finite number"),
+        ("length", "lenght", "blade.lenght: unknown key: did you mean length?"),
+        ("rad_s = [0.0, 10.0]", "rad_s = []", "speeds.rad_s: empty"),
+        ("[compare]", "[compare", "not TOML"),
+        ("modes = 2", "modes = 0", "compare.modes: 0"),
+    ],
+)
+@pytest.mark.parametrize("command", ["verify", "modes"])
+def test_a_wrong_case_file_is_told_in_one_line(
+    command: str, old: str, new: str, told: str, beam: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    beam.write_text(BEAM.replace(old, new))
+    status, out, err = southwell(f"{command} {beam}", capsys)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert str(beam) in err
+    assert told in err
+
+
+def test_a_speed_without_a_steady_state_ends_a_verification_with_one_line(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    beam.write_text(BEAM.replace("10.0]", "1e5]"))
+    status, _, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
+    assert status == 2
+    assert [line for line in err.splitlines() if line.startswith("southwell: ")] == err.splitlines()[-1:]
+    assert "100000 rad/s" in err
+
+
+@pytest.mark.parametrize("inside", ["taken", "taken/deeper"])
+def test_a_folder_that_cannot_be_written_is_told(
+    inside: str, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "taken").write_text("a file")
+    status, _, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / inside}", capsys)
+    assert status == 2
+    assert "cannot be written" in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ('{"kind": "cell", "nonsense": 1}\n', "line 1: not a result"),
+        ("not json\n", "line 1: not a result"),
+        ("", "no results in it"),
+        ('{"kind": "ce', "no results in it"),
+    ],
+)
+def test_results_that_cannot_be_read_are_told(
+    content: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "results.jsonl").write_text(content)
+    status, _, err = southwell(f"report {tmp_path}", capsys)
+    assert status == 2
+    assert told in err
+    assert err.count("\n") == 1
+
+
+def test_modes_prints_cores_frequencies_over_a_range_with_both_ends(
+    beam: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = southwell(f"modes {beam} --rpm 0:200:100 --elements 12 --modes 3 --json", capsys)
+    assert (status, err) == (0, "")
+    rows = json.loads(out)
+    speeds = np.array([0.0, 100.0, 200.0]) * np.pi / 30
+    blade = library.load(str(beam)).variants[0].blade
+    expected = np.concatenate([modes(blade, omega, 12, 3).frequencies for omega in speeds])
+    np.testing.assert_allclose([r["frequency_rad_s"] for r in rows], expected, rtol=1e-12)
+    np.testing.assert_allclose([r["frequency_hz"] for r in rows], expected / (2 * np.pi), rtol=1e-12)
+    np.testing.assert_allclose([r["omega_rad_s"] for r in rows], np.repeat(speeds, 3), rtol=1e-12)
+    assert [r["name"] for r in rows[:3]] == ["flapwise 1", "chordwise 1", "flapwise 2"]
+
+
+def test_modes_prints_a_table_of_families_in_the_unit_asked_for(beam: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = southwell(f"modes {beam} --rpm 95.4929658 --modes 2", capsys)
+    hertz = modes(library.load(str(beam)).variants[0].blade, 10.0, 50, 1).frequencies[0] / (2 * np.pi)
+    assert "frequency, Hz" in out
+    assert "95.493 rpm" in out
+    (row,) = (line for line in out.splitlines() if "flapwise 1" in line)
+    assert float(row.split()[-1]) == pytest.approx(hertz, rel=1e-6)
+
+
+def test_a_case_is_solved_at_its_own_speeds_by_default_each_of_its_blades(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = southwell("modes park-blade --modes 1 --elements 20", capsys)
+    assert status == 0
+    assert all(v.name in out for v in library.load("park-blade").variants)
+    assert "30 rpm" in out
+
+
+def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    status, shown, _ = southwell(f"verify {beam} --codes exact-beam,yoo-shin --out {out} --workers 1", capsys)
+    assert status == 0
+    run = results.read(out / "results.jsonl")
+    assert {(c.code, c.omega, c.mode) for c in run.cells} == {
+        (code, omega, mode) for code in ("exact-beam", "yoo-shin") for omega in (0.0, 10.0) for mode in (1, 2)
+    }
+    assert all(c.verdict == "pass" for c in run.cells)
+    assert shown.splitlines()[0] == "Nothing contradicts core. 8 cells: 8 ✔ pass."
+    assert f"southwell verify {beam} --codes exact-beam,yoo-shin" in (out / "report.md").read_text()
+
+    written = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
+    assert {p.name for p in written} >= {"results.jsonl", "report.md", "stub-campbell.svg", "stub-differences.svg"}
+    for path in written:
+        if path.suffix != ".jsonl":
+            path.unlink()
+    status, again, _ = southwell(f"report {out}", capsys)
+    assert (status, again) == (0, shown)
+    assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == written
+
+
+@pytest.mark.usefixtures("importable")
+def test_a_code_that_is_wrong_ends_with_status_1(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, shown, _ = southwell(f"verify {beam} --codes misbehaving:WELL_BEHAVED --out {tmp_path / 'out'}", capsys)
+    assert status == 1
+    assert "4 ✘ fail" in shown.splitlines()[0]
+
+
+@pytest.mark.usefixtures("importable")
+def test_a_code_that_is_absent_is_not_an_error(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, _ = southwell(f"verify {beam} --codes misbehaving:ABSENT --out {tmp_path / 'out'}", capsys)
+    assert status == 0
+    assert "not installed: pip install manners" in (tmp_path / "out" / "report.md").read_text()
+
+
+def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
+    """A verification that has finished some cells and now waits for codes that hang; and its results file."""
+    out = mark / "out"
+    beam.write_text(BEAM + "[variants.a]\n[variants.b]\n[variants.c]\n[variants.d]\n")  # more to do than hands
+    command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
+    command += ["--codes", "exact-beam,misbehaving:HANG"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2] / "support"), "SOUTHWELL_TEST": str(mark)}
+    child = subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        start_new_session=True,
+        preexec_fn=heeding,
+    )
+    results_file = out / "results.jsonl"
+    waited = time.monotonic() + 120
+    while not (results_file.exists() and '"code":"exact-beam"' in results_file.read_text()):
+        assert child.poll() is None
+        assert time.monotonic() < waited
+        time.sleep(0.1)
+    assert len(running(mark)) > 2
+    return child, results_file
+
+
+def heeding() -> None:
+    """Interrupts are heeded, as at a terminal, even where these tests run in the background, which ignores them."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def running(mark: Path) -> list[str]:
+    """Processes with ``mark`` in their environment: those that the run has started."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            text = entry.read_bytes()
+        except OSError:
+            continue
+        if f"SOUTHWELL_TEST={mark}\0".encode() in text:
+            found.append(entry.parent.name)
+    return found
+
+
+def gone(mark: Path) -> bool:
+    """Whether no such process is left, a few seconds for the system to clear up."""
+    until = time.monotonic() + 5
+    while running(mark) and time.monotonic() < until:
+        time.sleep(0.05)
+    return not running(mark)
+
+
+def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process(beam: Path, tmp_path: Path) -> None:
+    child, results_file = started(beam, tmp_path)
+    began = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert time.monotonic() - began < 30  # the hanging code's own limit is 300 s
+    assert child.returncode == 130
+    assert "Traceback" not in err
+    kept = results.read(results_file)
+    assert f"southwell: interrupted: the report has the {len(kept.cells)} cells that were finished" in err
+    assert len(kept.cells) >= 4
+    assert {(c.code, c.verdict) for c in kept.cells} == {("exact-beam", "pass")}
+    assert kept.versions
+    assert f"** {len(kept.cells)} cells: " in (results_file.parent / "report.md").read_text()
+    assert gone(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("whom", "how"), [(os.kill, signal.SIGTERM), (os.killpg, signal.SIGTERM), (os.kill, signal.SIGKILL)]
+)
+def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
+    how: signal.Signals,
+    whom: Callable[[int, int], None],
+    beam: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    child, results_file = started(beam, tmp_path)
+    whom(child.pid, how)
+    child.communicate(timeout=30)  # the pool holds its pipes open: it must be gone, too
+    assert child.returncode == -how
+    assert gone(tmp_path)
+    status, shown, _ = southwell(f"report {results_file.parent}", capsys)
+    assert status == 0
+    assert "✔ pass" in shown.splitlines()[0]
+
+
+def test_interrupted_before_anything_is_finished_there_is_no_report(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(matrix, "run", interrupt)
+    status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
+    assert (status, out, err) == (130, "", "southwell: interrupted: nothing was finished yet\n")
+    assert not (tmp_path / "out" / "report.md").exists()
+
+
+def test_cases_and_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    _, shown, _ = southwell("cases", capsys)
+    assert all(name in shown for name in library.names())
+    _, shown, _ = southwell("codes", capsys)
+    assert all(name in shown for name in names())
+
+
+def test_every_command_says_on_the_first_page_what_it_is_for(capsys: pytest.CaptureFixture[str]) -> None:
+    command = [sys.executable, "-m", "southwell", "--help"]  # a process of its own: nothing is loaded yet
+    shown = subprocess.run(
+        command, capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "160"}
+    ).stdout
+    lines = {words[0]: words[1:] for line in shown.splitlines() if (words := line.strip("│ ").split())}
+    names = [name for name in cli.app if not name.startswith("-")]
+    assert len(names) > 15
+    assert all(len(lines[name]) > 3 for name in names)
+
+
+@pytest.mark.parametrize("command", ["", "verify", "modes", "report", "cases", "codes"])
+def test_help_is_there(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = southwell(f"{command} --help", capsys)
+    assert status == 0
+    assert f"Usage: southwell {command}".strip() in out
+    options = {
+        "verify": ("--codes", "--out", "--workers"),
+        "modes": ("--omega", "--rpm", "--elements", "--modes", "--json"),
+    }
+    assert all(option in out for option in options.get(command, ()))
+
+
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert southwell("--version", capsys)[1].strip() == version("southwell")
+
+
+def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
+    command = f"{shlex.quote(sys.executable)} -m southwell modes park-cantilever --json | head -n 1"
+    done = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "[\n", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("modes park-cantilever --modes 1.5", "--modes: '1.5' is not a whole number"),
+        ("modes park-cantilever --elements 100000000", "--elements. Must be <= 20000"),
+        ("modes park-cantilever --rpm 0:30:1e-9", "steps: a step too short"),
+        ("modes park-cantilever --rpm 0:1e9:1e8", "faster than any rotor turns"),
+        ("cases all", "all: not understood here"),
+        ("verify park-cantilever --codes :CODE", "ValueError: Empty module name"),
+        ("bench --out {file}", "cannot be written (File exists)"),
+        ("report {file}", "cannot be read (Not a directory)"),
+        ("campbell park-cantilever --rpm 0:30:10 -o {file}/x", "is a file"),
+        ("modes {folder}/a.toml", "no such file"),
+        ("mechanism {folder}.toml", "cannot be read (Is a directory)"),
+        ("condense {folder}.toml", "cannot be read (Is a directory)"),
+        ("show {blade} --subset 1:1", "subset: ElastoDyn has none, HAWC2 has"),
+        ("show {blade} --precone 95", "--precone 95: beyond ±89 degrees"),
+        ("show {blade} --pitch 1e6", "--pitch 1e+06: beyond ±180 degrees"),
+        ("show {blade} --length 1e300", "--length 1e+300: not a length"),
+        ("show {blade} --main {blade}", "TipRad: not there"),
+    ],
+)
+def test_what_went_wrong_before_is_told_in_one_line(
+    arguments: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Inputs that once ended in a traceback, in silence, never, or in the words of Python."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder.toml").mkdir()
+    blade = Path(__file__).parents[2] / "data" / "blades" / "elastodyn_blade.dat"
+    places = {"file": tmp_path / "file", "folder": tmp_path / "folder", "blade": blade}
+    status, out, err = southwell(arguments.format(**places), capsys)
+    assert (status, out) == (2, "")
+    assert err.startswith("southwell: ")
+    assert err.count("\n") == 1
+    assert told in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("CODE = undefined\n", "NameError: name 'undefined' is not defined"),
+        ("def f(:\n", "SyntaxError"),
+        ("raise RuntimeError('no licence\\nserver')\n", "RuntimeError: no licence server"),
+        ("", "no attribute 'CODE'"),
+    ],
+)
+def test_an_adapter_that_cannot_be_imported_is_told_in_one_line(
+    source: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = f"adapter{abs(hash(source))}"
+    (tmp_path / f"{name}.py").write_text(source)
+    monkeypatch.chdir(tmp_path)
+    status, _, err = southwell(f"conform {name}:CODE", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert told in err
+    assert "in this folder?" in err
+
+
+@pytest.mark.parametrize("modulus", ["1e-300", "1e-20"])
+@pytest.mark.parametrize("command", ["modes", "campbell"])
+def test_stiffness_out_of_all_proportion_is_told_in_one_line(
+    command: str, modulus: str, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    beam.write_text(BEAM.replace("E = 7e10", f"E = {modulus}"))
+    out = f"-o {tmp_path / 'out'}" if command == "campbell" else ""
+    status, _, err = southwell(f"{command} {beam} {out}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert re.search(r"check (their )?units", err)
+
+
+@pytest.mark.parametrize(
+    ("speed", "told"), [("0", "give speeds above 0"), ("1", "hold the hinge"), ("0:2:1", "give speeds above 0")]
+)
+def test_a_hinge_that_nothing_holds_is_told(
+    speed: str, told: str, beam: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Lead and lag on a hinge at the rotor's axis: no restoring force at any speed."""
+    hinged = BEAM.replace("hub_radius = 0.1", "hub_radius = 0.0\nroot = { lag = 0.0 }")
+    beam.write_text(hinged)
+    status, _, err = southwell(f"modes {beam} --omega {speed}", capsys)
+    assert (status, err.count("\n")) == (2, 1)
+    assert told in err

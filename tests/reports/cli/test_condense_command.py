@@ -1,0 +1,336 @@
+"""``southwell condense``: a user's own matrices give what the package's give; wrong input is one line; the example's tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as ss
+
+from southwell.cases.condense import condensed, condensing, example, solid_blades
+from southwell.cases.condense.solid_blades import ROOT, SPAN, SPEED, STEEL, at
+from southwell.cases.input.errors import CaseError
+from southwell.cases.judge.results import Run
+from southwell.core.condense.compressed import chain_from_segments, chain_modes
+from southwell.references.solid import calculix, hexahedra
+from southwell.references.solid.mesh import Bricks, blade, clamped
+from southwell.reports.cli import app as cli
+from southwell.reports.condense import page as condense_page
+from southwell.reports.verification import report as matrix_report
+
+pytestmark = pytest.mark.skipif(hexahedra.version() is None, reason=f"not installed: {hexahedra.HINT}")
+
+Array = np.ndarray
+
+LAYERS, ACROSS, SEGMENTS = 20, (2, 1), 5
+
+
+def bricks() -> Bricks:
+    return solid_blades.twisted(LAYERS, ACROSS)
+
+
+def exported(folder: Path, bricks: Bricks, stem: str = "blade", unit: float = 1.0) -> None:
+    """Matrices in Matrix Market node by node, and the nodes; ``unit`` is that of length, m (and t for kg at 1e-3)."""
+    s = hexahedra.solid(bricks, STEEL)
+    n = len(s.nodes)
+    by_node = np.arange(3 * n).reshape(3, n).T.ravel()
+    M = ss.csr_array(ss.kron(ss.eye_array(3), hexahedra.mass(s), format="csr"))
+    for name, matrix in (("k", hexahedra.tangent(s)), ("m", M)):
+        own = unit * ss.csr_array(matrix)[by_node][:, by_node]
+        scipy.io.mmwrite(folder / f"{stem}-{name}.mtx", ss.coo_array(own), precision=17)
+    rows = [f"{k},{x!r},{y!r},{z!r}" for k, (x, y, z) in enumerate((s.nodes / unit).tolist(), 7)]
+    (folder / f"{stem}-nodes.csv").write_text("id,x,y,z\n" + "\n".join(rows) + "\n")
+
+
+def toml(folder: Path, text: str) -> Path:
+    path = folder / "blade.toml"
+    path.write_text(text)
+    return path
+
+
+STATIONS = [round(ROOT + SPAN * k / SEGMENTS, 6) for k in range(SEGMENTS + 1)]
+WHOLE = f"""
+name = "twisted"
+stiffness = "blade-k.mtx"
+mass = "blade-m.mtx"
+nodes = "blade-nodes.csv"
+freedoms = [1, 2, 3]
+sections = {STATIONS}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("exported")
+    exported(out, bricks())
+    return out
+
+
+def in_house() -> list:
+    model = hexahedra.finite_elements(bricks(), STEEL)
+    return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
+
+
+def same(found: list, expected: list, within: float = 1e-8, fields: str = "rest stiffness inertia ride") -> None:
+    for a, b in zip(found, expected, strict=True):
+        for field in fields.split():
+            x, y = getattr(a, field), getattr(b, field)
+            np.testing.assert_allclose(x, y, rtol=within, atol=within * np.abs(y).max(), err_msg=field)
+
+
+def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
+    """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
+    found = condensing.condense(toml(folder, WHOLE)).blade
+    same(found.segments, in_house(), 1e-7, "rest stiffness")
+    same(found.segments, in_house(), 1e-3, "inertia")
+    expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
+    np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
+
+
+def test_a_sections_mass_is_shared_by_what_lies_on_either_side(tmp_path: Path) -> None:
+    """A prism cut between layers of 0.1 and 0.3 m: each segment has its own length's mass, and its centre in its middle."""
+    ends = [0.0, 0.1, 0.4]
+    exported(tmp_path, bricks=blade(np.array(ends), 0.2, 0.1, across=(1, 1)))
+    found = condensing.condense(toml(tmp_path, WHOLE.replace(str(STATIONS), str(ends)))).blade
+    masses, centres, _ = zip(*(condensed.body(s) for s in found.segments), strict=True)
+    np.testing.assert_allclose(masses, STEEL.density * 0.02 * np.diff(ends), rtol=1e-10)
+    np.testing.assert_allclose([c[0] for c in centres], np.diff(ends) / 2, rtol=1e-10)
+
+
+def turned_folder(folder: Path) -> None:
+    """The same in mm and t, with the span along z and the rotor's axis along x, and freedoms in a table of their own."""
+    exported(folder, bricks(), unit=1e-3)
+    rows = [line.split(",") for line in (folder / "blade-nodes.csv").read_text().splitlines()[1:]]
+    (folder / "blade-nodes.csv").write_text("id,x,y,z\n" + "".join(f"{k},{z},{x},{y}\n" for k, x, y, z in rows))
+    (folder / "freedoms.csv").write_text("node,freedom\n" + "".join(f"{k},{f}\n" for k, *_ in rows for f in (2, 3, 1)))
+
+
+def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None:
+    """x, y, z of the blade are y, z, x here; the hub's radius is given instead of being where the model lies."""
+    turned_folder(tmp_path)
+    text = WHOLE.replace("[1, 2, 3]", '"freedoms.csv"').replace(str(STATIONS), str([1e3 * x for x in STATIONS]))
+    text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
+    found = condensing.condense(toml(tmp_path, text)).blade
+    expected = condensing.condense(toml(folder, WHOLE)).blade
+    same(found.segments, expected.segments, 1e-7)
+    np.testing.assert_allclose(found.root, expected.root, atol=1e-12)
+
+
+def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
+    text = f'name = "apart"\nfreedoms = [1, 2, 3]\nsections = {STATIONS}\nroot = "average"\n'
+    for k in range(SEGMENTS):
+        exported(tmp_path, bricks().part(k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS), f"part{k}")
+        text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
+    found = condensing.condense(toml(tmp_path, text)).blade
+    same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
+
+
+def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
+    """12×12 of Przemieniecki's beam by nodes of six freedoms, as a code gives a reduced segment; the body given beside it."""
+    length, EI, EA, GJ = 0.5, 2e4, 3e7, 1e4
+    K = np.zeros((12, 12))
+    for y, spin, sign in ((1, 5, 1.0), (2, 4, -1.0)):
+        i = np.array([y, spin, y + 6, spin + 6])
+        b = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) * EI / length**3
+        unit = np.array([1, sign * length, 1, sign * length])
+        K[np.ix_(i, i)] = b * np.outer(unit, unit)
+    for i, k in ((0, EA), (3, GJ)):
+        K[np.ix_([i, i + 6], [i, i + 6])] = k / length * np.array([[1, -1], [-1, 1]])
+    scipy.io.mmwrite(tmp_path / "beam.mtx", ss.coo_array(K), precision=17)
+    (tmp_path / "beam.csv").write_text(f"id,x,y,z\n1,0.2,0,0\n2,{0.2 + length},0,0\n")
+    text = f"""
+    name = "superelement"
+    sections = [0.2, {0.2 + length}]
+    tie = "rigid"
+    [[segments]]
+    stiffness = "beam.mtx"
+    nodes = "beam.csv"
+    freedoms = [1, 2, 3, 4, 5, 6]
+    body = {{mass = 2.0, centre = [0.45, 0.0, 0.01], moments = [0.02, 0.05, 0.05]}}
+    """
+    found = condensing.condense(toml(tmp_path, text)).blade
+    (segment,) = found.segments
+    f = np.linalg.inv(segment.stiffness)
+    np.testing.assert_allclose(np.diagonal(f)[[0, 3, 4, 5]], length / np.array([EA, GJ, EI, EI]), rtol=1e-9)
+    mass, centre, moments = condensed.body(segment)
+    assert mass == pytest.approx(2.0)
+    np.testing.assert_allclose(centre, [0.25, 0, 0.01], atol=1e-14)
+    np.testing.assert_allclose(moments, np.diag([0.02, 0.05, 0.05]), atol=1e-14)
+
+
+def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
+    found = condensing.condense(toml(folder, WHOLE)).blade
+    condensed.write(tmp_path / "segments.json", found)
+    kept = condensed.read(tmp_path / "segments.json")
+    same(kept.segments, found.segments, 0.0)
+    np.testing.assert_array_equal(kept.root, found.root)
+    (tmp_path / "segments.json").write_text((tmp_path / "segments.json").read_text().replace('"rest"', '"reset"', 1))
+    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .reset.*condense again"):
+        condensed.read(tmp_path / "segments.json")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("stiffness =", "stifness =", "stifness: unknown key: did you mean stiffness"),
+        ('"blade-k.mtx"', '"blade.mtx"', "blade.mtx: no such file"),
+        ('stiffness = "blade-k.mtx"', "", "stiffness: missing: name the file of a stiffness"),
+        ('mass = "blade-m.mtx"', "", "mass: missing: name the file of a mass matrix"),
+        ('nodes = "blade-nodes.csv"', "", "nodes: missing: name a CSV of id, x, y, z"),
+        ("freedoms = [1, 2, 3]", "", "freedoms: missing: blade-k.mtx does not name its freedoms"),
+        ("[1, 2, 3]", "[1, 2]", r"615 nodes with 2 each are 1230, blade-k.mtx has 1845 rows"),
+        ("[1, 2, 3]", "[2, 1, 3]", "resists the rotation about . of the whole as a rigid body .*order, units"),
+        ("[1, 2, 3]", "[1, 2, 7]", r"freedoms\[2\]: 7: expected int <= 6"),
+        ("[0.3, 0.5,", "[0.3, 0.507,", r"section '0.507 m': no nodes .* nearest are"),
+        ("[0.3, 0.5,", "[0.5,", r"sections\[0\]: \d+ freedoms .* lie up to 0.2 m beyond it"),
+        ("1.1, 1.3]", "1.1]", r"sections\[4\]: 360 freedoms .* lie up to 0.2 m beyond it"),
+        ("[0.3, 0.5, 0.7", "[0.3, 0.7, 0.5", r"sections\[2\]: 0.5 m is not beyond 0.7 m"),
+        ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie stops the warping"),
+        ("sections =", 'rotor = "x"\nsections =', "rotor: along the span"),
+        ("sections =", "span = [0, 0, 0]\nsections =", r"span: \[0.0, 0.0, 0.0\]: no direction"),
+        ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': not one of its values: known: average, rigid"),
+    ],
+)
+def test_wrong_files_are_one_line(folder: Path, old: str, new: str, message: str) -> None:
+    path = folder / "wrong.toml"
+    assert old in WHOLE
+    path.write_text(WHOLE.replace(old, new))
+    with pytest.raises(CaseError, match=message) as caught:
+        condensing.condense(path)
+    assert str(caught.value).startswith(str(folder))
+    assert "\n" not in str(caught.value)
+
+
+# Another code's files
+
+
+@pytest.mark.skipif(calculix.version() is None, reason=f"not installed: {calculix.HINT}")
+def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
+    """Its .sti, .mas and .dof as they are, condensed in place, against its own modes of the whole, without Coriolis forces.
+
+    Corners of its 8-node faces have negative lumped mass, which the default refuses.
+    """
+    mesh = solid_blades.twisted(LAYERS, (2, 2))
+    places, nodes = calculix.numbered(mesh)
+    steps = ["*STEP", "*FREQUENCY,SOLVER=MATRIXSTORAGE", "1", "*END STEP"]
+    with calculix.run([*calculix.deck(places, nodes, STEEL), *steps]) as folder:
+        for kind in ("sti", "mas", "dof"):
+            (tmp_path / f"blade.{kind}").write_bytes((folder / f"blade.{kind}").read_bytes())
+    rows = [f"{k},{x!r},{y!r},{z!r}" for k, (x, y, z) in enumerate(nodes.tolist(), 1)]
+    (tmp_path / "nodes.csv").write_text("id,x,y,z\n" + "\n".join(rows))
+    text = 'name = "ccx"\nstiffness = "blade.sti"\nmass = "blade.mas"\nnodes = "nodes.csv"\n'
+    text += f"sections = {[round(ROOT + SPAN * k / 10, 6) for k in range(11)]}\n"
+    with pytest.raises(CaseError, match="weights are the lumped masses, which reach down to -"):
+        condensing.condense(toml(tmp_path, text))
+    whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped(ROOT)).frequencies
+    for weights in ("even", "mass matrix"):
+        found = condensing.condense(toml(tmp_path, f'{text}weights = "{weights}"\n')).blade
+        np.testing.assert_allclose(condensed.modes(found, 0.0, 5).frequencies[:4], whole[:4], rtol=5e-3)
+
+
+# The command
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["condense", *arguments])
+    out, err = capsys.readouterr()
+    return int(ended.value.code or 0), out, err
+
+
+def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Tables in the page; the same modes again, in other units, from the segments kept."""
+    path = toml(folder, WHOLE)
+    status, out, _ = run(capsys, str(path), "--omega", "0:100:100", "--modes", "3", "-o", str(tmp_path))
+    assert status == 0
+    page = (tmp_path / "condensation.md").read_text()
+    assert page.strip() in out
+    whole = condensed.modes(condensing.condense(path).blade, 100.0, 3).frequencies
+    rows = [[c.strip() for c in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("|")]
+    assert [float(row[3]) for row in rows if row[0] == "100"] == pytest.approx(whole, rel=1e-6)
+    assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)
+    status, out, _ = run(capsys, str(tmp_path / "segments.json"), "--rpm", "954.9296585", "-o", str(tmp_path / "again"))
+    assert status == 0
+    again = [float(line.split("|")[4]) for line in out.splitlines() if line.startswith("| 954.93")]
+    assert again[:3] == pytest.approx(whole / (2 * np.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "file: missing: give a TOML file"),
+        (("nowhere.toml",), "nowhere.toml: no such file"),
+        (("nowhere.json",), "nowhere.json: no such file"),
+        (("--example", "--rpm", "3"), "--example: with --rpm 3: it has its own"),
+        (("--example", "x.toml"), "--example: with x.toml: it has its own"),
+        (("x.toml", "--rpm", "fast"), "--rpm: 'fast' is neither a speed"),
+    ],
+)
+def test_wrong_arguments(arguments: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"southwell: {message}")
+    assert err.count("\n") == 1
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The example with few elements, and without CalculiX."""
+    whole = example.example
+    coarse = {"layers": 20, "across": (2, 2), "segments": 10}
+    monkeypatch.setattr(example, "example", lambda say: whole(say, **coarse))
+    monkeypatch.setattr(example, "LENGTHS", (1,))
+    monkeypatch.setattr(solid_blades, "LAYER", 0.02)
+    monkeypatch.setattr(example.calculix, "version", lambda: None)
+
+
+def test_the_example(small: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every file; what is not run says how to install it; a coarse model misses its target and says so by the status."""
+    status, out, _ = run(capsys, "example", "-o", str(tmp_path))
+    found = example.read(tmp_path / "condensation.json")
+    assert status == (0 if example.within(found) else 1)
+    page = (tmp_path / "condensation.md").read_text()
+    assert page.strip() in out
+    assert f"○ not run: ccx is not on the PATH: {calculix.HINT}" in page
+    assert (tmp_path / "figures" / "condensation.png").read_bytes().startswith(b"\x89PNG")
+    assert "10 rigid bodies" in page
+    assert (tmp_path / "figures" / "condensation.svg").is_file()
+    assert len(condensed.read(tmp_path / "segments.json").segments) == 10
+    rest = found.speeds[0]
+    np.testing.assert_allclose(rest.condensed[:2], rest.whole[:2], rtol=5e-3)
+    assert found.torsion["rigid"][0] > 1.5 * found.torsion["average"][0]
+
+
+def made(whole: tuple[float, ...], condensed_: tuple[float, ...]) -> example.Example:
+    names = ("flap 1", "torsion 1")
+    speeds = tuple(
+        example.Speed(w, names, whole, condensed_, {"rigid": whole, "average": whole}, (), condensed_)
+        for w in (0.0, 10.0)
+    )
+    bar = {"rigid": (10.1, 10.1), "average": (10.0, 10.0)}
+    torsion = {"rigid": (1.6,), "average": (0.8,), "in place": (1.0,)}
+    return example.Example(99, 8, 2, speeds, (10.0,), bar, torsion, (1,), {"CalculiX": "not run: absent"})
+
+
+def test_the_page_says_what_the_numbers_say() -> None:
+    good, bad = made((10.0, 20.0), (10.04, 20.0)), made((10.0, 20.0), (10.06, 20.0))
+    assert example.within(good)
+    assert not example.within(bad)
+    page = condense_page.example(good, "figure.svg", "command")
+    assert (
+        "- ✔ The 2 elements keep the five lowest frequencies of a tapered, twisted solid blade within\n  **0.4 %**"
+        in page
+    )
+    assert "torsion with rigid ties is 2.0 times as stiff" in page
+    assert "| ✔ +0.400 %" in page
+    wrong = condense_page.example(bad, "figure.svg", "command")
+    assert "| ✘ +0.600 %" in wrong
+    assert "- ✘ The 2 elements" in wrong
+
+
+def test_the_report_takes_the_page_up(tmp_path: Path) -> None:
+    assert condense_page.beside(tmp_path) == ""
+    (tmp_path / "condensation.md").write_text("# Title\n\n## Part\n\ntext # no heading\n")
+    text = condense_page.beside(tmp_path)
+    assert text == "## Title\n\n### Part\n\ntext # no heading\n"
+    assert text in matrix_report.render(Run(()), {}, "", text)

@@ -1,0 +1,91 @@
+"""``southwell convert``: what is written is read as the same blade; what a format cannot hold is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import library, readers
+from southwell.cases.input.readers import Mount
+
+from ...cases.input.readers.test_readers_elastodyn import same
+from .test_cli import southwell
+
+DATA = Path(__file__).parents[2] / "data" / "blades"
+
+
+@pytest.mark.parametrize("file", ["elastodyn_main.dat", "beamdyn_main.dat", "bmodes.bmi", "hawc2.htc"])
+def test_any_blade_in_toml(tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str) -> None:
+    out = tmp_path / "blade.toml"
+    status, shown, err = southwell(f"convert {DATA / file} {out}", capsys)
+    assert (status, err) == (0, "")
+    assert str(out) in shown
+    same(readers.read(out), readers.read(DATA / file))
+
+
+def test_for_beamdyn_two_files_and_what_the_main_file_must_say(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "it.dat"
+    line = f"convert {DATA / 'beamdyn_main.dat'} {out} --to beamdyn --hub-radius 2 --precone -2.5 --pitch 3"
+    status, shown, _ = southwell(line, capsys)
+    assert status == 0
+    assert f"{out}, {tmp_path / 'it_blade.dat'}" in shown
+    assert "must say HubRad = 2, PreCone(1) = -2.5, BlPitch(1) = -3" in shown  # OpenFAST's pitch is against ours
+    mount = Mount(hub_radius=2.0, precone=np.radians(-2.5), pitch=np.radians(3.0))
+    same(readers.read(out, mount), readers.read(DATA / "beamdyn_main.dat", mount), 1e-12)
+
+
+def test_for_elastodyn_with_its_length(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "it.dat"
+    line = f"convert {DATA / 'elastodyn_blade.dat'} {out} --to elastodyn --length 50 --hub-radius 1.5 --precone 0 --pitch 0"
+    source = tmp_path / "alone.dat"  # without the main file that lies beside it
+    source.write_bytes((DATA / "elastodyn_blade.dat").read_bytes())
+    status, shown, _ = southwell(line.replace(str(DATA / "elastodyn_blade.dat"), str(source)), capsys)
+    assert status == 0
+    assert "must say TipRad = 51.5, HubRad = 1.5, PreCone(1) = 0, BlPitch(1) = 0" in shown
+    mount = Mount(length=50.0, hub_radius=1.5)
+    same(readers.read(out, mount), readers.read(source, mount), 1e-12)
+
+
+def test_one_blade_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, *_ = southwell(f"convert park-blade/windpact {tmp_path / 'w.toml'}", capsys)
+    assert status == 0
+    (blade,) = [v.blade for v in library.load("park-blade").variants if v.name == "park-blade/windpact"]
+    same(readers.read(tmp_path / "w.toml"), blade)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("convert park-blade {out}.toml", "park-blade: 3 blades (park-blade/windpact"),
+        ("convert park-cantilever {out}.dat", "out.dat: ends in .dat: say the format by --to"),
+        ("convert park-cantilever {out}", "out: ends in nothing: say the format by --to"),
+        ("convert park-cantilever {out}.dat --to fast", "--to"),
+        ("convert park-cantilever {out}.dat --to beamdyn", "BeamDyn cannot hold rigid strains"),
+        ("convert park-cantilever {out}.dat --to elastodyn", "ElastoDyn cannot hold"),
+        ("convert {data}/elastodyn_main.dat {out}.dat --to elastodyn", "ElastoDyn cannot hold a tip mass"),
+        ("convert park-cantilever {data}/hawc2.htc --to toml", "hawc2.htc: is there already: give another name"),
+        ("convert park-cantilever {out}/no/such.toml", "such.toml: cannot be written (No such file or directory)"),
+        ("convert nothing.dat {out}.toml", "nothing.dat: no such file"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str
+) -> None:
+    status, shown, err = southwell(line.format(out=tmp_path / "out", data=DATA), capsys)
+    assert (status, shown) == (2, "")
+    assert told in err
+    assert err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_half_chord_line_beside_the_root_is_no_key_points_curve(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    moved = (DATA / "hawc2.htc").read_text().replace("sec 1   0.00   0.00    0.0", "sec 1   0.05   0.00    0.0")
+    (tmp_path / "h.htc").write_text(moved)
+    (tmp_path / "hawc2_st.dat").write_bytes((DATA / "hawc2_st.dat").read_bytes())
+    status, _, err = southwell(f"convert {tmp_path / 'h.htc'} {tmp_path / 'o.dat'} --to beamdyn", capsys)
+    assert status == 2
+    assert "BeamDyn cannot hold a curve that begins beside the root" in err

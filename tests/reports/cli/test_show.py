@@ -1,0 +1,151 @@
+"""``southwell show``: published and worked-out numbers in what it prints, files it writes, bad input."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.reports.campbell import span
+from southwell.reports.cli import app as cli
+from southwell.tests.cases.input.readers.test_readers_elastodyn import real
+
+DATA = Path(__file__).parents[2] / "data" / "blades"
+BEAM = """name = "beam"
+[blade]
+kind = "beam"
+length = 6.0
+hub_radius = 0.3
+E = 7e10
+G = 2.7e10
+density = 3000.0
+A = 4e-4
+I_y = 2e-7
+I_z = 2e-7
+J = 4e-7
+rotary_inertia = false
+root = { flap = 0.0, lag = 1e5 }
+tip_mass = { mass = 2.0 }
+"""
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    with pytest.raises(SystemExit) as left:
+        cli.main(["show", *arguments])
+    out, err = capsys.readouterr()
+    return int(left.value.code or 0), out, err
+
+
+@pytest.fixture(autouse=True)
+def wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+
+
+def test_a_uniform_beam_with_a_tip_mass(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """1.2 kg/m over 6 m from 0.3 m, and 2 kg at 6.3 m."""
+    path = tmp_path / "beam.toml"
+    path.write_text(BEAM)
+    status, out, _ = run(capsys, str(path))
+    first = 1.2 * 6 * 3.3 + 2 * 6.3
+    second = 1.2 * (6.3**3 - 0.3**3) / 3 + 2 * 6.3**2
+    assert status == 0
+    assert "9.2 kg, of which 2 kg at the tip" in out
+    assert f"{first:.7g} kg m about the rotor's axis, {first - 9.2 * 0.3:.7g} kg m about the root" in out
+    assert f"{second:.7g} kg m² about the rotor's axis" in out
+    assert f"x {first / 9.2:.6g}, y 0, z 0 m" in out
+    assert "flap free, lag spring 100000; the rest held" in out
+    path.write_text(
+        BEAM.replace("mass = 2.0", "mass = 2.0, offset = [0.1, -0.2, 0.0], inertia = [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]")
+    )
+    assert (
+        "centre x 0.1, y -0.2, z 0 m from the tip; moments of inertia about it 1, 2, 3 kg m²"
+        in run(capsys, str(path))[1]
+    )
+
+
+def test_nrel_5mw_says_how_it_was_read(capsys: pytest.CaptureFixture[str]) -> None:
+    blade = str(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"))
+    status, out, _ = run(capsys, blade, "--length", "61.5", "--hub-radius", "1.5", "--precone", "-2.5")
+    assert status == 0
+    for said in (
+        "17608.8 kg",
+        "AdjBlMs = 1.04536",
+        "y to the trailing edge",
+        "-2.5° (positive downwind)",
+        "13 of 49 stations",
+    ):
+        assert said in out
+    assert "rigid" in out
+
+
+def test_figure_and_table_of_all_stations(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    for folder in ("a", "b"):
+        status, out, _ = run(capsys, str(DATA / "bmodes.bmi"), "-o", str(tmp_path / folder))
+        assert status == 0
+        assert "span.svg, span.png, stations.csv" in out
+    for name in ("span.svg", "span.png", "stations.csv"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+    rows = list(csv.DictReader((tmp_path / "a" / "stations.csv").open(encoding="utf-8")))
+    assert [float(r["s [m]"]) for r in rows] == [0.0, 10.0, 20.0]
+    np.testing.assert_allclose([float(r["mass y [m]"]) for r in rows], [-0.3, -0.2, -0.1])
+    np.testing.assert_allclose([float(r["EI edge [N m²]"]) for r in rows], [1.2e9, 4.5e8, 1.5e7])
+    assert [r["shear z [m]"] for r in rows] == ["0.0"] * 3
+    assert [float(r["axis x [m]"]) for r in rows] == [0.0, 10.0, 20.0]
+    # str_tw 5°, tw_iner 8°, both with the leading edge upwind: towards −z from the section's own axes
+    np.testing.assert_allclose([float(r["mass axes [deg]"]) for r in rows], [0.0, -3.0, 0.0], atol=1e-9)
+
+
+def test_blades_of_a_case_each_have_a_folder(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(span, "write", lambda blade, folder: [])  # figures are another test's
+    status, out, _ = run(capsys, "park-blade", "-o", str(tmp_path))
+    assert status == 0
+    assert {p.name for p in tmp_path.iterdir()} >= {"windpact", "surrogate"}
+    assert "of 21 stations" in out
+    assert " 21 stations" in run(capsys, "park-blade/windpact", "--all")[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["none.dat"], "none.dat: no such file"),
+        ([str(DATA / "hawc2_st.dat")], "say which by --subset"),
+        ([str(DATA / "hawc2_st.dat"), "--subset", "one"], "--subset: 'one' is not set:subset"),
+        ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,2"], "--multipliers: '1,2' is not mass,flap,edge"),
+        ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,0,1"], "--multipliers: '1,0,1': they multiply: give"),
+        ([str(DATA / "beamdyn_main.dat"), "--multipliers", "1,1,1"], "beamdyn_main.dat: multipliers: BeamDyn has none"),
+        ([str(DATA / "elastodyn_blade.dat"), "--length", "-1"], "--length -1: not a length"),
+        ([str(DATA / "elastodyn_blade.dat"), "--precone", "nan"], "--precone nan: not a finite number"),
+        (["park-blade", "--length", "50"], "a case says itself"),
+        (["park-bald"], "did you mean park-blade?"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert err.startswith("southwell: ")
+    assert said in err
+
+
+def test_a_folder_that_cannot_be_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    status, _, err = run(capsys, str(DATA / "bmodes.bmi"), "-o", str(tmp_path / "file"))
+    assert status == 2
+    assert "cannot be written" in err
+
+
+def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str]) -> None:
+    blade = str(DATA / "bmodes.bmi")
+    with pytest.raises(SystemExit) as left:
+        cli.main(["modes", blade, "--rpm", "10", "--modes", "2", "--elements", "10"])
+    assert not left.value.code
+    assert "bmodes: 3 stations, 10 elements" in " ".join(capsys.readouterr().out.split())
+    for command in ("modes", "campbell"):
+        with pytest.raises(SystemExit) as left:
+            cli.main([command, blade])
+        assert left.value.code == 2
+        assert "says no speeds: give them" in capsys.readouterr().err

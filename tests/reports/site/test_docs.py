@@ -1,0 +1,190 @@
+"""The site: every page is in it, it builds without a warning, nothing is fetched to read it, and what it says to type works."""
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+import yaml
+
+from southwell.cases.input import library
+from southwell.cases.judge import results
+from southwell.cases.verify.settings import settings
+from southwell.references.protocol import registry
+from southwell.reports.cli import app as cli
+from southwell.reports.cli.arguments import RESULTS
+from southwell.reports.site import pages as site
+from southwell.reports.verification import report as matrix_report
+
+from ...support import samples
+
+ROOT = Path(__file__).parents[3]
+DOCS = ROOT / "docs"
+PAGES = sorted(page.name for page in DOCS.glob("*.md"))
+
+ELSEWHERE = {"add-your-code.md": "test_add_your_code.py", "pytest-plugin.md": "test_pytest_plugin.py"}
+"""Pages whose examples are followed by tests of their own: the second's are parts of tests/example_project."""
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", (DOCS / page).read_text(encoding="utf-8"), re.M | re.S)
+
+
+def configuration() -> dict:
+    return yaml.safe_load((ROOT / "mkdocs.yml").read_text(encoding="utf-8"))
+
+
+def leaves(part: object) -> list[str]:
+    if isinstance(part, str):
+        return [part]
+    return [name for entry in (part.values() if isinstance(part, dict) else part) for name in leaves(entry)]  # type: ignore[union-attr]
+
+
+# ----------------------------------------------------------------------------------------------------------- the pages
+
+
+def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
+    made = site.cases() | site.api()
+    named = leaves(configuration()["nav"])
+    assert set(PAGES) <= set(named), "add it to the nav of mkdocs.yml"
+    there = {*PAGES, *made, "codes/index.md", "cli.md", "closed-forms.md"}
+    assert set(named) <= there
+    assert len(named) == len(set(named))
+
+
+def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
+    made = site.cases()
+    absent = set(library.absent())
+    known = set(library.names()) - absent
+    assert {f"cases/{name}.md" for name in {*known, *library.mechanisms()}} == set(made) - {"cases/index.md"}
+    for name in known:
+        first, *rest = settings(library.load(name))
+        text = re.sub(r"\\(.)", r"\1", str(made[f"cases/{name}.md"]))
+        assert first.description.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;") in text
+        assert all(f"## {told.case}" in text for told in (first, *rest))
+    assert all(name in str(made["cases/index.md"]) for name in absent)
+
+
+def test_the_command_line_has_every_command_and_option() -> None:
+    text = site.command_line()
+    for name in cli.app:
+        if not name.startswith("-"):
+            assert f"## southwell {name}\n" in text
+    assert "--junit PATH" in text
+    assert "Exit status" in text
+
+
+def test_the_api_has_every_module() -> None:
+    made = site.api()
+    for floor in site.FLOORS:
+        modules = {path.stem for path in (ROOT / floor).glob("*.py")} - {"__init__"}
+        assert {f"southwell.{floor}.{m}" for m in modules} == set(
+            re.findall(r"^::: (\S+)", str(made[f"api/{floor}.md"]), re.M)
+        )
+
+
+# ------------------------------------------------------------------------------------------------------- what is typed
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page not in ELSEWHERE])
+def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
+    """Its files are saved under the names it says, its commands typed in their order, its Python run in one go.
+
+    The folder is a checkout, with results where `make verify` leaves them. Only southwell's own commands are typed.
+    """
+    author = ["-c", "user.name=x", "-c", "user.email=x@example.org"]
+    for git in (["init", "--quiet"], [*author, "commit", "--quiet", "--allow-empty", "--message", "x"]):
+        subprocess.run(["git", *git], cwd=tmp_path, check=True)
+    run = samples.run()
+    (tmp_path / "reports" / "out").mkdir(parents=True)
+    results.append(tmp_path / "reports" / "out" / RESULTS, run.cells, run.levels, run)
+    for text in blocks(page, "toml"):
+        (tmp_path / f"{tomllib.loads(text)['name']}.toml").write_text(text, encoding="utf-8")
+    for line in (line for block in blocks(page, "console") for line in block.splitlines()):
+        program, *arguments = line.split()
+        if program == "southwell":
+            done = typed([sys.executable, "-m", program, *arguments], tmp_path)
+            assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+    if python := "\n".join(blocks(page, "python")):
+        done = typed([sys.executable, "-c", python], tmp_path)
+        assert done.returncode == 0, done.stderr
+
+
+def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=300)
+
+
+# ------------------------------------------------------------------------------------------------------------ the site
+
+
+class Page(HTMLParser):
+    """What a page loads, and its formulas."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.loaded: list[str] = []
+        self.formulas = 0
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        if tag == "link" and given.get("rel") not in ("canonical", "next", "prev"):
+            self.loaded.append(given.get("href") or "")
+        if tag in ("script", "img", "iframe"):
+            self.loaded.append(given.get("src") or "")
+        self.formulas += tag == "math"
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    for needed in ("mkdocs", "material", "mkdocstrings", "latex2mathml"):
+        if importlib.util.find_spec(needed) is None:
+            pytest.skip(f"{needed} is not installed: pip install 'southwell[docs]'")
+    out = tmp_path_factory.mktemp("site")
+    done = typed([sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(out)], ROOT)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_it_builds_without_a_warning_with_every_page(built: Path) -> None:
+    assert {Path(page).stem for page in PAGES} <= {path.stem for path in built.glob("*.html")}
+    names = [registry.code(name).name for name in registry.names()]
+    assert all((built / "codes" / f"{name}.html").exists() for name in names)
+
+
+def test_nothing_is_fetched_to_read_it(built: Path) -> None:
+    for path in built.rglob("*.html"):
+        away = [url for url in Page(path.read_text(encoding="utf-8")).loaded if re.match(r"(https?:)?//", url)]
+        assert not away, path
+    for path in built.rglob("*.css"):
+        assert not re.search(r"(@import|url\()\s*[\"']?(https?:)?//", path.read_text(encoding="utf-8")), path
+
+
+def test_formulas_are_there_without_a_script(built: Path) -> None:
+    text = (DOCS / "theory.md").read_text(encoding="utf-8")
+    inline = re.sub(r"\$\$.*?\$\$", "", text, flags=re.S)
+    html = (built / "theory.html").read_text(encoding="utf-8")
+    assert Page(html).formulas == (text.count("$$") + inline.count("$")) // 2 > 50
+    assert "arithmatex" not in html
+    assert not re.findall(r"\\[a-z]{3,}", re.sub(r"<script.*?</script>", "", html, flags=re.S))
+
+
+def test_the_api_is_filled_from_docstrings(built: Path) -> None:
+    html = (built / "api" / "core.html").read_text(encoding="utf-8")
+    assert "A rotating blade on its hub; properties vary linearly between stations." in html
+
+
+def test_a_runs_report_is_on_the_site_with_its_figures(tmp_path: Path) -> None:
+    assert site.report(tmp_path) == {}
+    written = matrix_report.write(samples.run(), tmp_path).read_text(encoding="utf-8")
+    made = site.report(tmp_path)
+    links = re.findall(r"!\[.*?\]\((.*?)\)", written)
+    assert set(made) == {site.REPORT, *links}
+    assert len(links) == 4
+    assert made[site.REPORT].count('<details markdown="1">') == written.count("<details>") > 0

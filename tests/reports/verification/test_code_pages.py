@@ -1,0 +1,133 @@
+"""A page for each code: every number is the run's, every refusal its adapter's, every defect shown by running it."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from southwell.cases.judge import results
+from southwell.cases.judge.results import Cell, Run, Verdict
+from southwell.references.defects import DEFECTS
+from southwell.references.protocol import registry
+from southwell.reports.cli import app as cli
+from southwell.reports.cli import arguments
+from southwell.reports.verification import code_pages
+
+
+def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode: int = 1, reason: str = "") -> Cell:
+    f = None if difference is None else 100.0 * (1 + difference)
+    return Cell(
+        case=case,
+        omega=10.0,
+        mode=0 if difference is None else mode,
+        family="" if difference is None else "flapwise",
+        code=code,
+        version="9.9",
+        role="code",
+        frequency=f,
+        reference=None if f is None else 100.0,
+        difference=difference,
+        uncertainty=None if f is None else 1e-5,
+        target=1e-3,
+        verdict=verdict,
+        reason=reason,
+        full=None if f is None else 100.0,
+    )
+
+
+RUN = Run(
+    cells=(
+        cell("scikit-fem", "first", 2e-4, "pass"),
+        cell("scikit-fem", "first", -5e-4, "pass", mode=2),
+        cell("scikit-fem", "second", 0.25, "fail", reason="25 % is more than 0.1 %"),
+        cell("scikit-fem", "third", None, "not applicable", reason="prebend or sweep"),
+        cell("exudyn-tree", "first", 7e-4, "pass"),
+    ),
+    versions={"scikit-fem": "9.9", "drake": "not installed"},
+    command="southwell verify first",
+)
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No reproducer is run: that is another test's."""
+    monkeypatch.setattr(code_pages, "shown", lambda defect: f"{defect.script} ran")
+
+
+def rows(text: str) -> list[list[str]]:
+    return [[f.strip() for f in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
+
+
+def test_the_largest_difference_of_each_blade_is_the_runs() -> None:
+    head, _, *body = rows(code_pages.differences(RUN, code_pages.own(RUN, "scikit-fem")))
+    assert head == ["blade", "cells", "worst difference", "where", "why"]
+    assert body == [
+        ["first", "2 ✔", "✔ −0.0500 % ± 0.0010 %", "flapwise 2, 10 rad/s", ""],
+        ["second", "1 ✘", "✘ +25 % ± 0.0010 %", "flapwise 1, 10 rad/s", "25 % is more than 0.1 %"],
+        ["third", "1 –", "", "", "prebend or sweep"],
+    ]
+
+
+def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
+    cells = (cell("scikit-fem", "first", 0.3, "known difference"), cell("scikit-fem", "first", 0.002, "fail"))
+    _, _, (_, counted, shown, *_) = rows(code_pages.differences(Run(cells), cells))
+    assert counted == "1 ✘, 1 ≈"
+    assert shown.startswith("✘ +0.200 %")
+
+
+def test_a_page_says_version_refusals_and_defects() -> None:
+    text = code_pages.page(RUN, registry.code("scikit-fem"))
+    assert text.startswith("# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with core: **nothing**.")
+    taken = {row[0]: row[1] for row in rows(text.partition("## What it takes")[2])}
+    assert taken["twist"] == "taken"
+    assert taken["shear flexibility"].startswith("refused: finite shear stiffness")
+    assert "An `ElementLineHermite` used on a second mesh" in text
+    assert "scikit_fem_hermite ran" in text
+
+
+def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
+    taken = {row[0]: row[1] for row in rows(code_pages.properties(registry.code("exudyn-ancf")))}
+    assert taken["rotary inertia"] == "left out, as declared"
+
+
+def test_a_code_without_cells_or_defects_says_so() -> None:
+    text = code_pages.page(RUN, registry.code("exact-beam"))
+    assert "This run has no cells of it." in text
+    assert "None known." in text
+
+
+def test_a_reproducer_that_cannot_run_is_said_to() -> None:
+    def fails(defect: object) -> str:
+        raise RuntimeError("no such module")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(code_pages, "shown", fails)
+        text = code_pages.page(RUN, registry.code("scikit-fem"))
+    assert "which could not run here:" in text
+    assert "no such module" in text
+
+
+def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    results.append(tmp_path / arguments.RESULTS, RUN.cells, run=RUN)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["codes", "--pages", str(tmp_path)])
+    assert ended.value.code == 0
+    index = tmp_path / "codes" / "index.md"
+    assert capsys.readouterr().out.strip() == str(index)
+    text = index.read_text(encoding="utf-8")
+    linked = re.findall(r"\]\(([^)]+)\)", text)
+    assert linked == [f"{name}.md" for name in registry.names()]
+    assert all((tmp_path / "codes" / name).read_text(encoding="utf-8").startswith("# ") for name in linked)
+    (line,) = (row for row in rows(text) if "(scikit-fem.md)" in row[0])
+    assert line[3:] == [
+        "1 ✘, 2 ✔, 1 –",
+        "✘ +25 % ± 0.0010 % (second)",
+        str(sum("scikit-fem" in d.codes for d in DEFECTS)),
+    ]
+
+
+def test_a_folder_without_results_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["codes", "--pages", str(tmp_path)])
+    assert ended.value.code == 2
+    assert "No such file" in capsys.readouterr().err

@@ -1,0 +1,259 @@
+"""The report: verdict first, every cell that is not a plain pass with its reason, nothing lost, nothing smuggled in."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from markdown_it import MarkdownIt
+
+from southwell.cases.input.library import load
+from southwell.cases.judge.results import Run, Setting, append, read
+from southwell.cases.verify.lumping import lumping
+from southwell.reports.shared import summary
+from southwell.reports.shared.markdown import plain
+from southwell.reports.verification import evidence
+from southwell.reports.verification import report as matrix_report
+
+from ...support import samples
+
+HOSTILE = "<script>alert(1)</script> | ![x](y) `a` *b* [c](d)\n# head ~~e~~"
+
+
+def rendered(text: str) -> str:
+    return MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(text)
+
+
+class Tables(HTMLParser):
+    """Rows of all tables, as lists of text."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self.inside = False
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: object) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self.inside = True
+        elif tag == "br" and self.inside:
+            self.tables[-1][-1][-1] += " "
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = self.inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.tables[-1][-1][-1] += data
+
+
+@pytest.fixture
+def report(tmp_path: Path) -> str:
+    return matrix_report.write(samples.run(), tmp_path).read_text(encoding="utf-8")
+
+
+def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
+    first, second, third = report.split("\n\n")[1:4]
+    verdict, _, counts = first.partition("** ")
+    assert verdict == "**No: 1 answer contradicts core."
+    numbers = [int(n) for n in re.findall(r"\d+", counts)]
+    assert numbers[0] == sum(numbers[1:]) == len(samples.run().cells)
+    assert "1 ✘ fail" in counts
+    assert second == "Worst failure: +0.500 % ± 0.0100 % (blade/stiff, alpha, chordwise 1, 10 rad/s)."
+    assert third.startswith("Largest inconclusive difference: +0.0500 %")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "says"),
+    [
+        ([], "Nothing was compared."),
+        (["not run", "not applicable"], "Nothing was compared."),
+        (["pass", "known difference", "not run"], "Nothing contradicts core."),
+        (["pass", "inconclusive"], "Nothing contradicts core, but 1 of the answers cannot tell."),
+        (["pass", "inconclusive", "fail", "fail"], "No: 2 answers contradict core."),
+    ],
+)
+def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says: str) -> None:
+    cells = tuple(samples.cell(verdict=v, mode=k) for k, v in enumerate(verdicts, 1))
+    assert evidence.answer(Run(cells)).startswith(f"**{says}**")
+
+
+def test_a_failure_without_a_number_is_told_first_too() -> None:
+    crash = samples.cell(code="crashed", verdict="fail", frequency=None, difference=None, uncertainty=None)
+    assert evidence.urgent(Run((samples.cell(), crash, crash))) == ["Failed without a frequency: crashed (beam)."]
+
+
+def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> None:
+    cells = (
+        samples.cell(shares="nothing", difference=1e-4, omega=20.0),
+        samples.cell(shares="nothing", difference=-3e-4, mode=2),
+        samples.cell(
+            shares="nothing", mode=3, verdict="known difference", full=11.0, reason="no coriolis: +1 %; without"
+        ),
+        samples.cell(role="table", difference=2e-3, target=5e-3, code="author2000"),
+        samples.cell(role="table", difference=9e-4, target=1e-3, code="author2000", mode=2),
+        samples.cell(role="same discretisation", shares="discretisation", difference=2e-12, target=1e-8, code="twin"),
+        samples.empty("fail", "crashed", shares="nothing", code="odd"),
+        samples.empty("not run", "not installed", shares="nothing", code="absent"),
+    )
+    independent, printed, own = evidence.rows(Run(cells))
+    assert independent["answers"] == "1 ✘, 1 ≈, 2 ✔"
+    assert independent["worst, for its target"].startswith("✘ beam, odd, 10 rad/s: no answer: crashed")
+    assert independent["largest known difference"].endswith("10 rad/s; cause: no coriolis: +1 %")
+    assert (
+        printed["worst, for its target"]
+        == "✔ +0.0900 % ± 0.0002 %: beam, author2000, chordwise 2, 10 rad/s; target 0.10 %"
+    )
+    assert own["worst, for its target"].startswith("✔ +2e-12")
+    assert own["worst, for its target"].endswith("target 1e-08")
+    passing = evidence.rows(Run(cells[:2]))[0]["worst, for its target"]
+    assert passing.startswith("✔ −0.0300 %")
+
+
+def test_the_heat_table_has_a_sign_and_a_word_for_every_case_and_code(report: str) -> None:
+    head, *rows = Tables(rendered(report)).tables[1]
+    assert head == ["case", "alpha", "beta", "gamma"]
+    assert [row[0] for row in rows] == ["beam", "blade/stiff"]
+    assert rows[0][1].startswith("✔ pass")
+    assert rows[0][3] == "≈ known 0.250 %"
+    assert rows[1][1:] == ["✘ fail 0.500 %", "? inconclusive 0.0500 %", "– n/a"]
+    assert "≈ known difference (known), – not applicable (n/a)" in report
+
+
+def test_a_code_without_any_answer_has_no_column_but_its_name_and_reason(report: str) -> None:
+    assert "No answer anywhere, so no column: delta (not installed" in report
+    only = Run(tuple(c for c in samples.run().cells if c.code == "delta"))
+    assert "○ not run" in matrix_report.heat(only)
+
+
+def test_every_table_is_whole(report: str) -> None:
+    tables = Tables(rendered(report)).tables
+    assert (
+        len(tables) == 2 + len(samples.SPEEDS) + 1 + 1 + 1 + 1
+    )  # evidence, heat, beam's speeds, reasons, stiff, reasons, versions
+    assert all(len({len(row) for row in table}) == 1 for table in tables)
+
+
+def test_every_cell_that_is_not_a_plain_pass_has_its_reason(report: str) -> None:
+    for cell in samples.run().cells:
+        if cell.verdict != "pass":
+            head = f"| {summary.SYMBOL[cell.verdict]} {cell.verdict} |"
+            rows = [line for line in report.splitlines() if line.endswith(f"| {plain(cell.reason)} |")]
+            row = next(row for row in rows if row.startswith(head))
+            assert cell.code in row
+
+
+def test_differences_at_a_speed_are_those_of_the_cells(report: str) -> None:
+    table = next(t for t in Tables(rendered(report)).tables if t[0][0] == "mode")
+    by_name = {row[0]: row for row in table[1:]}
+    assert list(by_name) == ["chordwise 1", "flapwise 1", "chordwise 2", "flapwise 2"]
+    run = samples.run()
+    names = summary.labels(run.cells)
+    for cell in run.cells:
+        if cell.case == "beam" and cell.omega == 30.0 and cell.mode:
+            shown = by_name[names[cell]][table[0].index(cell.code)]
+            assert shown == f"{summary.SYMBOL[cell.verdict]} {summary.plus_minus(cell)}"
+            assert float(by_name[names[cell]][1]) == pytest.approx(cell.full, rel=1e-6)
+
+
+def test_figures_named_in_the_report_are_there(report: str, tmp_path: Path) -> None:
+    links = re.findall(r"!\[.*?\]\((.*?)\)", report)
+    assert len(links) == 4
+    assert all((tmp_path / link).stat().st_size > 1000 for link in links)
+
+
+def test_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
+    path = tmp_path / "results.jsonl"
+    run = samples.run()
+    append(path, run.cells, run.levels, run)
+    for folder, source in (("a", run), ("b", read(path))):
+        (tmp_path / folder).mkdir()
+        matrix_report.write(source, tmp_path / folder)
+    first = {p.relative_to(tmp_path / "a"): p.read_bytes() for p in (tmp_path / "a").rglob("*.*")}
+    second = {p.relative_to(tmp_path / "b"): p.read_bytes() for p in (tmp_path / "b").rglob("*.*")}
+    assert first == second
+    assert len(first) == 5
+
+
+def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
+    run = samples.run()
+    cells = tuple(replace(c, reason=HOSTILE, code=f"alpha {HOSTILE}") if c.code == "alpha" else c for c in run.cells)
+    settings = (Setting("beam", HOSTILE, HOSTILE, HOSTILE, "rad_s", {"length": HOSTILE}),)
+    text = matrix_report.write(replace(run, cells=cells, settings=settings), tmp_path).read_text()
+    html = rendered(text)
+    assert "<script" not in html
+    assert '<img src="y"' not in html
+    assert all(len({len(row) for row in table}) == 1 for table in Tables(html).tables)
+    assert "alert(1)" in html
+
+
+def test_a_code_with_fewer_effects_shows_what_it_lacks_in_all_not_like_with_like() -> None:
+    cell = samples.cell(
+        frequency=11.82,
+        reference=11.8199,
+        full=11.7,
+        difference=8.5e-6,
+        verdict="known difference",
+        reason="no coriolis",
+    )
+    assert summary.plus_minus(cell) == f"+{100 * (11.82 / 11.7 - 1):.2f} % ± 0.0002 %"
+
+
+def test_a_discretisation_shows_its_own_error_not_the_effects_it_lacks() -> None:
+    cell = samples.cell(
+        role="discretisation",
+        frequency=189.67,
+        reference=189.92,
+        full=189.82,
+        difference=189.67 / 189.92 - 1,
+        verdict="known difference",
+        reason="discretisation error",
+    )
+    assert summary.plus_minus(cell).startswith("−0.132 %")
+
+
+def test_modes_of_a_code_with_fewer_effects_stand_in_the_row_of_their_name() -> None:
+    full = [
+        samples.cell(mode=k, family=f, full=w, reference=w, code="all")
+        for k, f, w in ((1, "chordwise", 5.0), (2, "axial", 9.0))
+    ]
+    less = [
+        samples.cell(mode=1, family="axial", full=9.0, reference=4.0, code="less", verdict="known difference"),
+        samples.cell(mode=2, family="chordwise", full=5.0, reference=6.0, code="less", verdict="known difference"),
+    ]
+    table = matrix_report.comparison([*full, *less], matrix_report.BY_KEY["rad_s"])
+    assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == ["chordwise 1", "axial 1"]
+    assert [row.split("|")[2].strip() for row in table.splitlines()[2:]] == ["5", "9"]
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "status"),
+    [
+        ([], 1),
+        (["pass", "known difference", "not applicable", "not run"], 0),
+        (["pass", "fail"], 1),
+        (["pass", "inconclusive"], 1),
+    ],
+)
+def test_the_exit_status_is_0_only_if_all_is_within_target_or_explained(verdicts: list[str], status: int) -> None:
+    assert summary.status(Run(tuple(samples.cell(verdict=v, mode=k) for k, v in enumerate(verdicts, 1)))) == status
+
+
+def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> None:
+    run = Run((samples.cell(), samples.empty("fail", "crashed", omega=20.0)))
+    assert summary.gravest(run.cells) == "fail"
+    assert "✘ fail" in matrix_report.heat(run)
+    assert "crashed" in matrix_report.write(run, tmp_path).read_text()
+
+
+def test_the_lumped_mass_is_answered_if_the_run_has_it(tmp_path: Path) -> None:
+    levels = lumping(load("park-cantilever").variants[0].blade)
+    text = matrix_report.write(replace(samples.run(), levels=levels), tmp_path).read_text()
+    assert "Lumping the mass makes up 33 %, 70 %, 80 % of the error" in text
+    assert (tmp_path / "figures" / "lumped-mass.svg").exists()

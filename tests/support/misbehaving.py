@@ -1,0 +1,107 @@
+"""Codes that go wrong in every way a foreign code can, for the worker to survive; found by import path."""
+
+import ctypes
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from southwell.core.blade import Blade
+from southwell.core.effects import FULL, Model
+from southwell.core.modes import Modes
+from southwell.references.protocol.interface import CodeError, Shares
+
+
+def answer(omega: float, elements: int, count: int) -> Modes:
+    """Something recognisable, so that a test sees which run was answered."""
+    shapes = np.full((count, 21, 4), 1.0 / 3.0 + 2.0j / 7.0)
+    return Modes(omega, omega + np.arange(1.0, count + 1), shapes, elements)
+
+
+def segfault() -> None:
+    ctypes.string_at(0)
+
+
+def hang() -> None:
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])  # holds our pipes open, too
+    time.sleep(60)
+    child.wait()
+
+
+def chatter() -> None:
+    print('{"modes": {}}', flush=True)
+    os.write(1, b"from C\n")
+    subprocess.run([sys.executable, "-c", "print('from a child')"], check=True)
+
+
+def give_up() -> None:
+    raise CodeError("no steady state\nat this speed")
+
+
+def blunder() -> None:
+    raise ZeroDivisionError("division by zero")
+
+
+def leave() -> None:
+    sys.stderr.write("library: licence not found\n")
+    os._exit(3)
+
+
+@dataclass(frozen=True)
+class Misbehaving:
+    """Solves properly below 1 rad/s, and does ``deed`` first above."""
+
+    deed: Callable[[], None]
+    answer: Callable[[float, int, int], Modes] = answer
+    installed: bool = True
+    name: str = "misbehaving"
+    title: str = "Misbehaving"
+    shares: Shares = "nothing"
+    model: Model = FULL
+    levels: tuple[int, ...] = (1, 2, 4)
+    order: int = 2
+    hint: str = "pip install manners"
+
+    def version(self) -> str | None:
+        return "1.0" if self.installed else None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        if omega >= 1.0:
+            self.deed()
+            return self.answer(omega, elements, count)
+        return answer(omega, elements, count)
+
+
+def nothing() -> None:
+    """Behave."""
+
+
+def not_a_number(omega: float, elements: int, count: int) -> Modes:
+    modes = answer(omega, elements, count)
+    return Modes(omega, modes.frequencies * np.nan, modes.shapes, elements)
+
+
+def descending(omega: float, elements: int, count: int) -> Modes:
+    modes = answer(omega, elements, count)
+    return Modes(omega, modes.frequencies[::-1].copy(), modes.shapes, elements)
+
+
+SEGFAULT = Misbehaving(segfault)
+ABORT = Misbehaving(os.abort)
+LEAVE = Misbehaving(leave)
+HANG = Misbehaving(hang)
+CHATTER = Misbehaving(chatter)
+GIVE_UP = Misbehaving(give_up)
+BLUNDER = Misbehaving(blunder)
+NOT_A_NUMBER = Misbehaving(nothing, answer=not_a_number)
+DESCENDING = Misbehaving(nothing, answer=descending)
+ABSENT = Misbehaving(nothing, installed=False)
+WELL_BEHAVED = Misbehaving(nothing)
+NOT_A_CODE = 42
