@@ -1,13 +1,23 @@
 """Core's own answer for a blade over speeds: frequencies with names."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
 
+from ...core import solve, velocity_transformation
 from ...core.blade import Blade
-from ...core.solve import modes
 from ..input.errors import NO_STATE, unsteady
 from ..judge.pairing import aligned, families, weights
+from ..verify.core_solver import Solver
+
+Method = Literal["chain", "velocity-transformation"]
+
+METHODS: Mapping[Method, Solver] = MappingProxyType(
+    {"chain": solve.modes, "velocity-transformation": velocity_transformation.modes}
+)
+"""Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +30,7 @@ class Named:
     frequency: float
 
 
-def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int) -> list[Named]:
+def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int, method: Method = "chain") -> list[Named]:
     """The ``count`` lowest modes (fewer if there are fewer) at each of ``speeds``, rad/s.
 
     Raises:
@@ -30,7 +40,7 @@ def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int) -> l
     rows = []
     for omega in speeds:
         try:
-            found = aligned(modes(blade, omega, elements, count), weight)
+            found = aligned(METHODS[method](blade, omega, elements, count), weight)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error) from error
         seen: Counter[str] = Counter()

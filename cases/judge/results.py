@@ -40,7 +40,8 @@ class Cell:
         verdict: see ``cases.verdict``.
         reason: why, where the verdict is not a plain pass; names and quantifies the cause of a known difference.
         full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks some).
-        shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``; empty for core itself.
+        shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``everything`` (core
+            by its other method); empty for core itself.
         elements: the finest refinement used.
         order: observed order of convergence, where there is one.
         mac: mass-weighted MAC of the pairing.

@@ -9,6 +9,7 @@ from functools import partial
 from importlib.metadata import version
 from typing import Any
 
+from ...core import velocity_transformation
 from ...core.blade import Blade
 from ...core.effects import FULL, Model
 from ...core.modes import Modes
@@ -26,6 +27,12 @@ from .refinement import Refining, Wanted, solve
 
 SAME = 1e-8
 """Target for two codes given the very same discretisation."""
+
+OTHER_METHOD = "core, velocity transformation"
+"""The column of core's other method, which the chain solver's numbers are checked with."""
+
+ELEMENTS = (20, 50)
+"""Of that column, whose cost is their cube: the second, where the first are too few for a stable state of either method."""
 
 References = Sequence[tuple[float, Reference]]
 """Rotor speeds, rad/s, and core's references there."""
@@ -73,6 +80,8 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
         out.append(
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
+    head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
+    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade)))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
@@ -141,6 +150,20 @@ def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, time
     theirs = answers(name, blade, runs, timeout)
     mine = core_solver.answers(blade, runs, "half_end", "parent", model)
     return _join(same(head, omega, r, a, b) for (omega, r), a, b in zip(core, theirs, mine, strict=True))
+
+
+def _other_method(head: Head, blade: Blade, core: References) -> Rows:
+    """At the highest speed only: what differs at lower speeds differs there."""
+    if not core:
+        return [], []
+    omega, reference = max(core, key=lambda pair: pair[0])
+    for elements in ELEMENTS:
+        run = (omega, elements, reference.core.count)
+        (mine,) = core_solver.answers(blade, [run])
+        (theirs,) = core_solver.answers(blade, [run], by=velocity_transformation.modes)
+        if not (isinstance(mine, Failure) and isinstance(theirs, Failure)):
+            break
+    return same(head, omega, reference, theirs, mine)
 
 
 def _wanted(core: References) -> Callable[[float, Sequence[Modes]], Wanted]:

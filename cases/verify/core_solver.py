@@ -1,7 +1,7 @@
 """Core as one more solver: its answers in the form of a foreign code's, refined until they can serve as reference."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +34,10 @@ DEEPER = 3
 """How many times further up to look, once, where too few modes of those solved qualify."""
 
 
+Solver = Callable[..., Modes]
+"""A method of core's: ``solve.modes`` or ``velocity_transformation.modes``."""
+
+
 @dataclass(frozen=True)
 class Converged:
     """Core's modes at one speed: which of them a case compares, their estimates and families, in the same order."""
@@ -54,12 +58,13 @@ def answers(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     model: Model = FULL,
+    by: Solver = modes,
 ) -> list[Answer]:
-    """Core's answers to ``runs``; a speed without a stable steady state is a failure that says so."""
+    """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         try:
-            out.append(modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+            out.append(by(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
         except NO_STATE as error:
             out.append(Failure("refused", str(error)))
     return out

@@ -1,39 +1,58 @@
-"""A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections."""
+"""A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
+
+A joint at the root is an elastic connection too, without length: it lies along the root's axes, the coordinates that it
+holds are prescribed to stay at zero (Φᴹ), and its springs are the chain's first element.
+"""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..element.beams import Beams, Points
 from ..element.discretize import Chain
 from ..element.measures import part
-from ..multibody.joints import Joint
-from ..multibody.mechanism import GROUND, Beam, Body, Mechanism, Motion
-
-Array = NDArray[np.float64]
+from ..multibody.joints import SCREWS, Joint
+from ..multibody.mechanism import GROUND, Beam, Body, Load, Mechanism, Motion
+from . import root_joint
 
 
 def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
-    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection (Park 2010, sec. 3).
+    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection.
 
-    Raises:
-        ValueError: a chain with loads or a joint at its root, which have no place here yet.
+    Args:
+        chain: the blade, clamped or on a joint; its loads turn with the hub.
+        omega: rotor speed, rad/s.
+        gravity: (3,) m/s², in the hub's axes at the instant looked at, when they are the ground's.
     """
-    if chain.force.any() or chain.beams.points.force.any() or chain.held.size:
-        raise ValueError(
-            "chain: loads, or a joint at the root: only clamped chains under their own weight are rebuilt here"
-        )
     n = len(chain.nodes) - 1
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
+    frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
+    held: list[str] = []
+    if chain.held.size:
+        frames[0, :3, :3] = chain.root_axes
+        fixed = root_joint.holds(chain)
+        held = [f"element 1.{name}" for (name, _), stays in zip(SCREWS["elastic"], fixed, strict=True) if stays]
     joints = (
         Joint("hub", "revolute", GROUND, "hub"),
         Joint("root", "fixed", "hub", "body 0", at_parent=chain.nodes[0]),
         *(
-            Joint(f"element {k + 1}", "elastic", f"body {k}", f"body {k + 1}", at_parent=chain.beams.rest[k])
+            Joint(
+                f"element {k + 1}",
+                "elastic",
+                f"body {k}",
+                f"body {k + 1}",
+                at_parent=chain.beams.rest[k] @ frames[k],
+                at_child=frames[k],
+            )
             for k in range(n)
         ),
     )
-    beams = tuple(Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k)) for k in range(n))
-    return Mechanism(bodies, joints, (Motion("hub.rz", 0.0, omega),), beams=beams, gravity=gravity)
+    return Mechanism(
+        bodies=bodies,
+        joints=joints,
+        motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in held)),
+        beams=tuple(Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), axes_of="hub") for k in range(n)),
+        loads=tuple(Load(f"body {k}", f, "hub") for k, f in enumerate(chain.force) if f.any()),
+        gravity=gravity,
+    )
 
 
 def one(beams: Beams, k: int) -> Beams:

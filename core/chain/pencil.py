@@ -17,7 +17,7 @@ from ..element import beams as bm
 from ..element import inertia
 from ..element.discretize import Chain
 from ..space import rigid
-from . import blocks
+from . import blocks, root_joint
 from .blocks import Factor, Tridiagonal
 from .strained import Strained
 
@@ -28,8 +28,9 @@ Array = NDArray[np.float64]
 class Linear:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
-    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``. What is held is
-    replaced by a unit stiffness on its own, without mass or load: it stays where it is, and makes no mode.
+    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``,
+    at this shape. What is held is replaced by a unit stiffness on its own, without mass or load: it stays where it is, and
+    makes no mode.
     """
 
     residual: Array
@@ -95,17 +96,21 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
     residual = np.empty((n - 1, d))
     _balance(p.residual, lever, g, residual)
-    if chain.held.size:
-        residual[0, -6:] -= chain.held @ residual[0, -6:]
+    held = chain.held
+    if held.size:
+        held, turning = root_joint.held(chain, shape.nodes, residual[0, -6:])
+        residual[0, -6:] -= held @ residual[0, -6:]
+        if model.geometric:
+            K[1] += turning
     moving = 1.0 if model.coriolis else 0.0
     return Linear(
         residual.ravel(),
-        _hold(blocks.from_elements(p.M, lever, chain.lumps), chain.held, 0.0),
-        _hold(blocks.from_elements(moving * p.C, lever, moving * C), chain.held, 0.0),
+        _hold(blocks.from_elements(p.M, lever, chain.lumps), held, 0.0),
+        _hold(blocks.from_elements(moving * p.C, lever, moving * C), held, 0.0),
         blocks.from_elements(p.rest, lever, K),
         p.spring,
         lever,
-        chain.held,
+        held,
     )
 
 

@@ -13,7 +13,7 @@ from ..element import beams as bm
 from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
-from . import blocks
+from . import blocks, root_joint
 from .pencil import Linear, Shape, linearize, rest
 
 Array = NDArray[np.float64]
@@ -70,6 +70,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
     for _ in range(_STEPS):
+        if chain.held.size:
+            shape = Shape(root_joint.put(chain, shape.nodes), shape.beta)
         p = linearize(chain, shape, omega, gravity)
         try:
             step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)

@@ -33,6 +33,7 @@ class Chain:
         force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
         held: (6, 6) projector of node 1's twist, in its own axes, on what the root's joint holds, where there is one: the first
             element then is that joint, without length. Else empty.
+        root_axes: (3, 3) the root's axes, which that joint is along, in the first section's.
     """
 
     nodes: Array
@@ -42,6 +43,7 @@ class Chain:
     scale: float
     force: Array
     held: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    root_axes: Array = field(default_factory=lambda: np.eye(3))
 
     @property
     def elements(self) -> int:
@@ -143,6 +145,7 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
         beams=beams,
         samples=replace(chain.samples, element=chain.samples.element + 1),
         held=turn @ np.diag(holds.astype(float)) @ turn.T,
+        root_axes=turn[:3, :3],
     )
 
 

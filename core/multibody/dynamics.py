@@ -16,7 +16,7 @@ from ..element.beams import pencil as beam_pencil
 from ..element.measures import response
 from ..space import spatial as sp
 from .kinematics import Kinematics
-from .mechanism import MechanismError, Spring
+from .mechanism import Load, MechanismError, Spring
 from .tree import Batch, Tree
 
 Array = NDArray[np.float64]
@@ -88,10 +88,12 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
     """
-    out = _Sum(len(k.B))
+    out = _Sum(len(k.B))  # g = M Ẏ + Φᶜ_Zᵀ λ − Q, which Φᴶ and Φᴹ must balance (eq. 1)
     _bodies(tree, k, out)
     for spring in tree.mechanism.springs:
         _spring(tree, k, spring, out)
+    for load in tree.mechanism.loads:
+        _load(tree, k, load, out)
     for batch in tree.batches:
         _beams(tree, k, batch, out)
     if multipliers is not None:
@@ -163,6 +165,21 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
     out.add(ends[None], _between(tension * line, kk, c))
 
 
+def _load(tree: Tree, k: Kinematics, load: Load, out: _Sum) -> None:
+    """g = −w; w stays in its axes while the body turns by ξ_ω: seen from the body, δw = −ξ_ω × w, at its origin."""
+    body, axes = tree.body(load.body), tree.body(load.axes_of)
+    if body < 0:
+        return
+    x = np.concatenate([k.poses, np.eye(4)[None]])
+    to_body = sp.adjoint(sp.inverse(x[body]))
+    force = x[body, :3, :3].T @ x[axes, :3, :3] @ load.force
+    K = np.zeros((6, 6))
+    K[:3, 3:] = -sp.skew(force)
+    out.g[body] -= to_body[:3].T @ force
+    here, none = np.array([body]), np.zeros((1, 6, 6))
+    out.blocks.append((here, here, (none, none, (to_body.T @ K @ to_body)[None])))
+
+
 def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     a, b = batch.ends.T
     (xa, ya, aa), (xb, yb, _) = _state(k, a, batch.at_a), _state(k, b, batch.at_b)
@@ -174,7 +191,8 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     x = sp.inverse(xa) @ xb
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
-    p = beam_pencil(batch.beams, x, beta, frame, fall)
+    turned = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
+    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ turned)
     M, C, K = p.M, p.C, p.rest
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]
@@ -212,13 +230,14 @@ def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
 
 
 def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
-    """M* = Bᵀ M B (eq. 10)."""
+    """M* = Bᵀ M B."""
     B = k.B.reshape(-1, k.B.shape[-1])
-    return B.T @ c.M @ B
+    return B.T @ c.M @ B  # (eq. 10)
 
 
 def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> Array:
-    """τ = M* v̇ − Q* (n,): the generalised forces that would be needed (eq. 8, 11)."""
+    """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would be needed."""
+    # Bᵀ (M (B v̇ + Ḃ v) + Φᶜ_Zᵀ λ − Q), from which Bᵀ Φᴶ_Zᵀ = 0 drops the reactions of the tree's joints (eq. 5)
     out = np.einsum("bin,bi->n", k.B, c.g)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)

@@ -63,7 +63,8 @@ def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
     J2 = _cross(A, J) + _cross(Y, J1)
     carries = tree.carries.astype(float)
     B, B1, B2 = (carries[:, None, :] * j for j in (J, J1, J2))
-    Y, A = B @ v, B @ a + B1 @ v
+    Y = B @ v  # (eq. 3)
+    A = B @ a + B1 @ v  # Ẏ = B v̇ + Ḃ v (eq. 4)
     pick = np.zeros((len(tree.inner), 6, len(q)))
     for k in range(6):
         pick[np.arange(len(tree.inner)), k, tree.inner + k] = 1.0

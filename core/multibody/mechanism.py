@@ -73,8 +73,26 @@ class Spring:
 
 
 @dataclass(frozen=True)
+class Load:
+    """A steady force on a body at its frame's origin.
+
+    Attributes:
+        body: its name.
+        force: (3,) N, in the axes of ``axes_of``.
+        axes_of: ``ground``, or a body whose motion is prescribed; the force turns with it, not with the loaded body.
+    """
+
+    body: str
+    force: Array
+    axes_of: str = GROUND
+
+
+@dataclass(frozen=True)
 class Beam:
-    """A batch of one beam or bushing between the frames of two bodies; see ``beams.Beams``. ``damping`` as stiffness."""
+    """A batch of one beam or bushing between the frames of two bodies; see ``beams.Beams``. ``damping`` as stiffness.
+
+    Loads on the beam's points are in the axes of ``axes_of``: ``ground``, or a body whose motion is prescribed.
+    """
 
     body_a: str
     body_b: str
@@ -82,6 +100,7 @@ class Beam:
     damping: Array = field(default_factory=lambda: np.zeros((6, 6)))
     at_a: Array = field(default_factory=lambda: np.eye(4))
     at_b: Array = field(default_factory=lambda: np.eye(4))
+    axes_of: str = GROUND
 
 
 @dataclass(frozen=True)
@@ -94,6 +113,7 @@ class Mechanism:
     coordinate_springs: tuple[CoordinateSpring, ...] = ()
     springs: tuple[Spring, ...] = ()
     beams: tuple[Beam, ...] = ()
+    loads: tuple[Load, ...] = ()
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
@@ -145,7 +165,8 @@ def check(m: Mechanism) -> None:
     known = {GROUND, *names}
     used = [(f"joint {j.name!r}", n) for j in m.joints for n in (j.parent, j.child)]
     used += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
-    used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b)]
+    used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b, b.axes_of)]
+    used += [("load", n) for f in m.loads for n in (f.body, f.axes_of)]
     for what, name in used:
         if name not in known:
             raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
@@ -155,6 +176,9 @@ def check(m: Mechanism) -> None:
     for x in m.motions:
         if x.law is not None:
             raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: take at_time(mechanism, time)")
+    for f in m.loads:
+        if np.shape(f.force) != (3,) or not np.isfinite(f.force).all():
+            raise MechanismError(f"load on {f.body!r}: force {f.force}: give three finite components in N")
     for j in m.joints:
         if j.kind not in SCREWS:
             raise MechanismError(f"joint {j.name!r}: kind {j.kind!r} is unknown; there are {', '.join(SCREWS)}")

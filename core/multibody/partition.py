@@ -34,6 +34,7 @@ def misfit(tree: Tree, poses: Array) -> Array:
 
 def jacobian(tree: Tree, B: Array) -> Array:
     """Φ_q (6w, n) from B, or its rates from Ḃ and B̈ (b, 6, n)."""
+    # Φᶜ_q = Φᶜ_Z B (eq. 6), since a weld's Φᶜ_Z is 1 for the body and −1 for the copy
     rows = [(0.0 if body < 0 else B[body]) - B[copy] for body, copy in tree.welds]
     return np.concatenate(rows) if rows else np.zeros((0, B.shape[-1]))
 
@@ -95,6 +96,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     if rank:
         solve = np.linalg.pinv(J[:, dependent], rcond=_RANK)
         J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
+        # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14), and δq = R δq_I (eq. 15)
         R[dependent] = -solve @ J[:, chosen]
         R1[dependent] = -solve @ (J1 @ R)
         R2[dependent] = -solve @ (J2 @ R + 2.0 * J1 @ R1)

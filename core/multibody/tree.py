@@ -25,6 +25,7 @@ class Batch:
         inside: (e,) row of the internal coordinates behind the bodies', −1 if there are none.
         beams: the elements.
         at_a, at_b: (e, 4, 4) poses of their end frames in the bodies.
+        axes: (e,) body in whose axes the loads on the points are, −1 for the ground.
         damping: (e, 6, 6) on the strain's rate.
     """
 
@@ -35,6 +36,7 @@ class Batch:
     beams: Beams
     at_a: Array
     at_b: Array
+    axes: NDArray[np.intp]
     damping: Array
 
 
@@ -122,6 +124,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
             link, pose = len(before) - 1, np.eye(4)
         return link, pose @ sp.inverse(far)
 
+    # Φ = [Φᴶ; Φᶜ; Φᴹ] = 0 (eq. 2): ``waiting`` joints of the tree Φᴶ, ``cuts`` Φᶜ; Φᴹ are the mechanism's motions
     waiting = [j for j in mechanism.joints if not j.cut]
     cuts = [j for j in mechanism.joints if j.cut]
     while True:
@@ -163,6 +166,14 @@ def compile_tree(mechanism: Mechanism) -> Tree:
             above[j] = above[before[j]]
         above[j, j] = True
     link = np.array([k for k, _ in links], dtype=np.intp)
+    _check_axes(
+        mechanism,
+        {
+            name: [coordinates[j] for j in np.flatnonzero(above[k])]
+            for name, k in zip(bodies, link, strict=True)
+            if k >= 0
+        },
+    )
     return Tree(
         mechanism=mechanism,
         coordinates=tuple(coordinates),
@@ -180,6 +191,19 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         above=above,
         carries=np.vstack([above, np.zeros((1, n), bool)])[link],
     )
+
+
+def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
+    """Loads turn with axes whose motion is given: those of a body that vibrates would make the load a follower force."""
+    given = {m.coordinate for m in mechanism.motions if m.held}
+    axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
+    for name in sorted(axes):
+        free = [c for c in moved_by.get(name, []) if c not in given]
+        if free:
+            raise MechanismError(
+                f"load in the axes of {name!r}: coordinate {free[0]!r} moves that body freely: prescribe it, or give the "
+                "load in the axes of the ground or of a body whose motion is prescribed"
+            )
 
 
 def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
@@ -201,6 +225,7 @@ def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> 
                 beams=_together([b.beams for b in some]),
                 at_a=np.array([b.at_a for b in some]),
                 at_b=np.array([b.at_b for b in some]),
+                axes=np.array([bodies.get(b.axes_of, -1) for b in some], dtype=np.intp),
                 damping=np.array([b.damping for b in some]),
             )
         )

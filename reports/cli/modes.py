@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from ...cases.campbell.sweep import Named, sweep
+from ...cases.campbell.sweep import Method, Named, sweep
 from ...cases.input import library
 from ...cases.input.schema import speed_range
+from ...core.velocity_transformation import MOST_ELEMENTS
 from ..shared.console import output
 from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
@@ -25,6 +26,7 @@ def modes(
     rpm: str | None = None,
     elements: Elements = 50,
     modes: Whole = 10,
+    method: Method = "chain",
     json: Flag = False,
     mounting: Mounting | None = None,
 ) -> int:
@@ -43,19 +45,26 @@ def modes(
         Beam elements along the blade.
     modes
         How many, from the lowest.
+    method
+        `chain`: block-tridiagonal matrices, no velocity transformation. `velocity-transformation`: the method of Park et al.
+        (2010), with dense matrices; at most 200 elements.
     json
         Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz.
     """
+    if method != "chain" and elements > MOST_ELEMENTS:
+        raise UsageError(
+            f"--elements {elements}: --method {method} has dense matrices: at most {MOST_ELEMENTS}; or use --method chain"
+        )
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []
     for subject in subjects.subjects(case, (mounting or Mounting()).mount()):
         if speeds is None and not subject.speeds:
             raise UsageError(f"--rpm: missing: {case} says no speeds: give them, as in 0:15:5")
         blade = subject.blade
-        found = sweep(blade, subject.speeds if speeds is None else speeds, elements, modes)
+        found = sweep(blade, subject.speeds if speeds is None else speeds, elements, modes, method)
         rows += [_tidy(blade.name, row) for row in found]
         if not json:
-            title = f"{blade.name}: {len(blade.stations)} stations, {elements} elements"
+            title = f"{blade.name}: {len(blade.stations)} stations, {elements} elements, method: {method}"
             output().print(terminal.frequencies(found, title, units or subject.units))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
