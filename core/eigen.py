@@ -13,12 +13,18 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from .multibody.rank import TOLERANCE
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
 class UnstableError(ValueError):
     """The steady state has no positive definite stiffness: it is not a stable one to vibrate about."""
+
+
+class EigenError(RuntimeError):
+    """The eigenvalue solver failed: nothing is known about stability or frequencies."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,9 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
 
     Raises:
         UnstableError: if K is not positive definite.
+        EigenError: if LAPACK does not converge, or an entry is not finite.
     """
+    _check_finite(M, C, K)
     k, m = np.diagonal(K), np.diagonal(M)
     usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
     if (k <= 1e-14 * usual * m).any():  # a coordinate that nothing holds, but for rounding
@@ -53,7 +61,10 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     h = np.zeros((n + r, n + r), complex)  # i A⁻¹S in the basis (k⁻ᵀ x, Fᵀ y) with M = F Fᵀ
     h[:n, :n], h[:n, n:], h[n:, :n] = 1j * g, 1j * f, -1j * f.T
     wanted = r if count is None else min(count, r)
-    mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
+    try:
+        mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
+    except np.linalg.LinAlgError as error:
+        raise _failed(error) from error
     order = np.argsort(-mu)
     x = scipy.linalg.solve_triangular(root.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
     energy = np.sqrt(np.maximum(np.real((x.conj() * (K @ x)).sum(0)), 1e-300))
@@ -79,27 +90,66 @@ class Damped:
         return np.where(size > 0, -self.values.real / np.where(size > 0, size, 1.0), 0.0)
 
 
-def damped(M: Array, C: Array, K: Array, count: int | None = None) -> Damped:
-    """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none."""
+def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[Array, Array] | None = None) -> Damped:
+    """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none.
+
+    A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of either sign. With Wᵀ K = 0 the
+    equations along W are ``Wᵀ (C + λ M) x = 0`` for every other mode: put in, they take these zeros out, and each rigid
+    motion is one mode with λ = 0.
+
+    Args:
+        M: (n, n).
+        C: (n, n).
+        K: (n, n).
+        count: how many modes, from the lowest; all by default.
+        rigid: bases (n, d) of the motions that K does not resist, and of the directions W in which it gives no force.
+
+    Raises:
+        EigenError: if LAPACK does not converge, or an entry is not finite.
+    """
+    _check_finite(M, C, K)
     n = len(M)
+    Z, W = rigid or (np.zeros((n, 0)), np.zeros((n, 0)))
     k, m = np.abs(np.diagonal(K)), np.diagonal(M)
     both = (k > 0) & (m > 0)
     time = 1.0 / np.sqrt(np.median(k[both] / m[both])) if both.any() else 1.0
     weight = k * time**2 + m
     unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # coordinates of unlike units made alike, and time too
     M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
+    d = W.shape[1]
+    w = W.T / unit
+    given = np.arange(n)
+    if d:
+        given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
     zero, one = np.zeros((n, n)), np.eye(n)
-    a = np.block([[zero, one], [-K, -C]])
-    b = np.block([[one, zero], [zero, M]])
-    pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
+    # d equations along W instead of d of the n: the others stay as they are, stiff ones apart from soft ones
+    a = np.block([[zero, one], [-w @ C, -w @ M], [-K[given], -C[given]]])
+    b = np.block([[one, zero], [np.zeros((d, 2 * n))], [zero[given], M[given]]])
+    try:
+        pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
+    except np.linalg.LinAlgError as error:
+        raise _failed(error) from error
     alpha, beta = pair
     finite = np.abs(beta) > 1e-12 * np.abs(alpha)
-    values, x = alpha[finite] / beta[finite] / time, unit[:, None] * z[:n, finite]
+    values, x = alpha[finite] / beta[finite], unit[:, None] * z[:n, finite]
+    order = np.argsort(np.abs(values), kind="stable")
+    twice = int((np.abs(values[order[:d]]) < TOLERANCE).sum())  # zeros that were double
+    values, x = values[order[twice:]] / time, x[:, order[twice:]]
     largest = np.abs(values).max(initial=0.0)
     one_of_each = values.imag >= -1e-12 * largest
-    values, x = values[one_of_each], x[:, one_of_each]
-    order = np.argsort(np.abs(values), kind="stable")[:count]
-    return Damped(values[order], x[:, order])
+    values = np.concatenate([np.zeros(d, np.complex128), values[one_of_each]])[:count]
+    return Damped(values, np.hstack([Z.astype(np.complex128), x[:, one_of_each]])[:, :count])
+
+
+def _check_finite(*matrices: Array) -> None:
+    if not all(np.isfinite(a).all() for a in matrices):
+        raise EigenError(
+            "eigenvalues: the matrices are not finite: a mass, stiffness or speed is out of all proportion"
+        )
+
+
+def _failed(error: Exception) -> EigenError:
+    return EigenError(f"eigenvalues: LAPACK did not converge ({error}): check for values out of all proportion")
 
 
 def unstable() -> UnstableError:

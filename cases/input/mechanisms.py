@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
+from ...core.eigen import EigenError
 from ...core.multibody.mechanism import at_time
 from ...core.multibody.tree import compile_tree
 from ...core.space import spatial as sp
@@ -49,7 +50,7 @@ class Described:
             return mb.solve(
                 self.mechanism, self.guess, count=count, independent=self.text.independent or None, time=time
             )
-        except mb.MechanismError as error:
+        except (mb.MechanismError, EigenError) as error:
             raise CaseError(f"{self.path}: {error}") from error
 
 

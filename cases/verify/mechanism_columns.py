@@ -16,6 +16,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...core import multibody as mb
 from ...core.effects import FULL, Model
+from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
 from ...references.protocol.mechanism_interface import MechanismModes, takes_mechanisms
 from ...references.protocol.mechanism_worker import Answer, answers
@@ -60,7 +61,7 @@ def _reference(variant: Turning, omega: float) -> Reference:
     text, path = variant.described.text, variant.described.path
     try:
         found = mb.solve(variant.at(omega), variant.described.guess, independent=text.independent or None)
-    except mb.MechanismError as error:
+    except (mb.MechanismError, EigenError) as error:
         raise CaseError(f"{path}: speeds: {omega:g} rad/s: {error}") from error
     if len(found.values) < variant.count:
         raise CaseError(f"{path}: compare.modes: {variant.count}: it has {len(found.values)}: lower it")

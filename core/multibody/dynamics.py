@@ -26,11 +26,13 @@ Array = NDArray[np.float64]
 class Cartesian:
     """Total wrench g (b + m, 6) and its linearisation M, C, K, sparse; rows as those of B, beams' internal forces last.
 
+    ``size`` (b + m, 6) adds up the parts of g by their absolute values: what its rounding is in proportion to.
     ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground: kept out of K, for
     ``B_b − B_a`` is exact where the difference of their products would cancel.
     """
 
     g: Array
+    size: Array
     M: csr_array
     C: csr_array
     K: csr_array
@@ -43,6 +45,7 @@ class _Sum:
 
     def __init__(self, rows: int) -> None:
         self.g = np.zeros((rows, 6))
+        self.size = np.zeros((rows, 6))
         self.blocks: list[tuple[NDArray[np.intp], NDArray[np.intp], tuple[Array, Array, Array]]] = []
         self.springs: list[tuple[NDArray[np.intp], Array]] = []
 
@@ -53,6 +56,7 @@ class _Sum:
             acts = ends[:, i] >= 0
             row = slice(6 * i, 6 * i + 6)
             np.add.at(self.g, ends[acts, i], pencil.residual[acts, row])
+            np.add.at(self.size, ends[acts, i], np.abs(pencil.residual[acts, row]))
             for j in range(ends.shape[1]):
                 both = acts & (ends[:, j] >= 0)
                 column = slice(6 * j, 6 * j + 6)
@@ -71,7 +75,7 @@ class _Sum:
             for k in range(3)
         )
         ends, stiffness = zip(*self.springs, strict=True) if self.springs else (_NO_ENDS, _NO_SPRINGS)
-        return Cartesian(self.g, M, C, K, np.concatenate(ends), np.concatenate(stiffness))
+        return Cartesian(self.g, self.size, M, C, K, np.concatenate(ends), np.concatenate(stiffness))
 
 
 _NO_ENDS, _NO_SPRINGS = (np.zeros((0, 2), dtype=np.intp),), (np.zeros((0, 6, 6)),)
@@ -115,6 +119,11 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     turn = sp.ad(k.Y)
     momentum = (M @ k.Y[..., None])[..., 0]
     out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
+    parts = (
+        np.abs(M) @ (np.abs(k.A) + np.abs(fall))[..., None]
+        + np.abs(np.swapaxes(turn, -1, -2)) @ np.abs(momentum)[..., None]
+    )
+    out.size[: len(M)] += parts[..., 0]
     mt = M @ turn
     C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
     each = np.arange(len(M))

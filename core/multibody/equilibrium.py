@@ -1,23 +1,32 @@
-"""Assembly of loops and the steady state of a mechanism, by Newton with the analytic tangent."""
+"""The steady state of a mechanism: loops closed, then balanced by Newton's method, globalised by continuation from rest."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, cast
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from . import dynamics, partition
 from .dynamics import Cartesian
 from .kinematics import Kinematics, kinematics, poses
 from .mechanism import MechanismError
+from .rank import TOLERANCE, Ranked, ranked
 from .tree import Tree
 
 Array = NDArray[Any]
+Index = NDArray[np.intp]
 
-_STEPS = 100
-_SMALL, _SHORTEST = 1e-2, 1e-3
+BALANCED = 1e-11
+"""A residual below this fraction of the forces it is the sum of is rounding; each coordinate has its own."""
+
+NOISE = 1e-13
+"""A stiffness below this fraction of the forces and stiffnesses it is the sum of is rounding."""
+
+_STEPS = 60
+_FAR = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
+_FIRST, _LEAST = 0.25, 1e-3  # of the path
+_SHORTEST = 1e-3  # of a step
 
 
 @dataclass(frozen=True)
@@ -32,28 +41,84 @@ class State:
     cartesian: Cartesian
 
 
+class ContradictionError(MechanismError):
+    """Rates that a loop cannot have together."""
+
+
+def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
+    """The steady state: prescribed coordinates in their motion, all others still or at the rates the loops give them.
+
+    Newton's method from the guess serves while its corrections contract (P. Deuflhard, *Newton Methods for Nonlinear
+    Problems*, 2004, sec. 2.1.1). Otherwise the state is followed from rest, where dead forces hold the mechanism at the guess:
+    rates and loads grow while the dead forces fade. Where nothing holds a mechanism at rest, as a pendulum whose weight
+    comes with the loads, only the dead forces fade. Newton's method with shortened steps is the last resort.
+
+    Raises:
+        MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
+    """
+    q = assemble(tree, guess)
+    reached = {"from rest with rates and loads growing": 0.0, "from the guess with dead forces fading": 0.0}
+    contradiction, found = None, None
+    try:
+        found = _newton(tree, q)
+    except ContradictionError as error:  # where the guess has been assembled, perhaps not where the mechanism settles
+        contradiction = error
+    for way, grow in zip(reached, (True, False), strict=True):
+        if found is None:
+            reached[way], found = _follow(tree, q, grow)
+    if found is None and contradiction:
+        raise contradiction
+    if found is None:
+        found = _newton(tree, q, damped=True)
+    if found is None:
+        told = ", ".join(f"{100 * part:.3g} % {way}" for way, part in reached.items())
+        raise MechanismError(
+            f"no steady state was found near the guess: Newton's method does not converge from it, continuation got {told}: "
+            "give a better guess, or check for a missing spring or joint"
+        )
+    _check_rates(tree, found.state)
+    _check_balance(tree, found)
+    return found.state
+
+
+def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:
+    """Bases (i, d) of the motions of the independent coordinates that K̂ does not resist, and of where it gives no force."""
+    tangent = _tangent(tree, _residual(tree, state.q, independent=independent))
+    root = np.sqrt(tangent.scale)[:, None]
+    return tangent.K.null / root, tangent.K.left_null * root
+
+
+def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...]) -> tuple[State, Array, Array]:
+    """The state at coordinates q, its loops closed by those that ``follow``; the forces (i,) it is unbalanced by, their size.
+
+    Raises:
+        MechanismError: if the loops do not close.
+    """
+    q, gap, length = _closed(tree, q, follow)
+    if np.abs(gap).max(initial=0.0) > 1e-9 * length:
+        raise MechanismError("loops: they do not close")
+    here = _residual(tree, q, independent=independent)
+    return here.state, here.reduced, _tangent(tree, here).rounding
+
+
+# ---------------------------------------------------------------------------------------------------------------- loops
+
+
 def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
     """Coordinates (n,) that close all loops, near a guess (coordinates not named start at 0 or at their motion's position).
 
     Raises:
         MechanismError: if the loops do not close.
     """
-    q, fixed = _start(tree, guess)
-    free = np.setdiff1d(np.arange(len(q)), fixed)
-    for _ in range(_STEPS):
-        x, J = poses(tree, q)
-        gap = partition.misfit(tree, x)
-        if np.abs(gap).max(initial=0.0) < 1e-13 * _size(x):
-            return q
-        B = tree.carries[:, None, :] * J
-        jac = partition.jacobian(tree, B)[:, free]
-        step = -np.linalg.lstsq(jac, gap, rcond=1e-9)[0]
-        q[free] += step * min(1.0, 1.0 / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        if np.abs(step).max(initial=0.0) < 1e-14:
-            break
-    gap = partition.misfit(tree, poses(tree, q)[0])
-    worst = int(np.argmax(np.abs(gap)))
-    if np.abs(gap).max() > 1e-9 * _size(poses(tree, q)[0]):
+    q = np.zeros(len(tree.coordinates))
+    for name, value in (guess or {}).items():
+        q[tree.coordinate(name)] = value
+    for m in tree.mechanism.motions:
+        if m.position is not None:
+            q[tree.coordinate(m.coordinate)] = m.position
+    q, gap, length = _closed(tree, q, _free(tree))
+    worst = int(np.argmax(np.abs(gap))) if len(gap) else 0
+    if len(gap) and abs(gap[worst]) > 1e-9 * length:
         raise MechanismError(
             f"joint {tree.weld_names[worst // 6]!r}: it does not close its loop (gap {abs(gap[worst]):.3g}); the dimensions "
             "do not fit, or the guess is too far off: give a better one"
@@ -61,91 +126,281 @@ def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
     return q
 
 
-def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
-    """The steady state: prescribed coordinates in their motion, all others still or at the rates the loops give them.
-
-    Raises:
-        MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
+def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
+    """Levenberg-Marquardt steps on the loops' gaps, damped by their squares: wide of singular configurations, quadratic in
+    the end; with gap and length.
     """
-    q = assemble(tree, guess)
-    fixed = partition.held(tree)
-    free = np.setdiff1d(np.arange(len(q)), fixed)
-    lam = np.zeros((len(tree.welds), 6))
-    before = np.inf
+    q = q.copy()
+    last = np.inf
     for _ in range(_STEPS):
-        state = _state(tree, q, lam)
-        tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free]
-        K = dynamics.tangent(tree, state.kinematics, state.cartesian)[2][np.ix_(free, free)]
-        J = partition.jacobian(tree, state.kinematics.B)[:, free]
-        step, more = _constrained_step(K, J, tau, partition.misfit(tree, state.kinematics.poses))
-        change = float(np.abs(step).max(initial=0.0))
-        if not np.isfinite(change):
+        x, J = poses(tree, q)
+        gap, length = partition.misfit(tree, x), _length(x)
+        size = float(np.abs(gap).max(initial=0.0))
+        if size < 1e-15 * length or (size < 1e-11 * length and size > 0.5 * last):
             break
-        q, lam = _moved(tree, q, lam, free, step, more, (K, J))
-        if change < 1e-11 or (change < 1e-8 and change > 0.3 * before):
-            return _checked(tree, _state(tree, q, lam), free)
-        before = change
-    raise MechanismError(
-        "no steady state was found near the guess: give a better one, or check for a missing spring or joint"
-    )
+        last = size
+        step = -ranked(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]).solve(gap, float(gap @ gap))
+        q[free] += step * min(1.0, _FAR / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+    return q, gap, length
 
 
-def _moved(
-    tree: Tree,
-    q: Array,
-    lam: Array,
-    free: NDArray[np.intp],
-    step: Array,
-    more: Array,
-    linear: tuple[Array, Array],
-) -> tuple[Array, Array]:
-    """Newton's step, shortened where it is large until the next one, by the same matrices, would be shorter.
+def _free(tree: Tree) -> Index:
+    return np.setdiff1d(np.arange(len(tree.coordinates)), partition.held(tree))
 
-    This natural monotonicity test needs no scale for forces and moments (P. Deuflhard, *Newton Methods for Nonlinear
-    Problems*, 2004, sec. 3.3).
+
+def _length(x: Array) -> float:
+    return max(1.0, float(np.abs(x[:, :3, 3]).max(initial=0.0)))
+
+
+# -------------------------------------------------------------------------------------------------------------- balance
+
+
+@dataclass(frozen=True)
+class _Residual:
+    """The forces left at a configuration whose loops are closed.
+
+    Attributes:
+        state: of motion there.
+        part: the free coordinates over the independent ones.
+        forces: (f,) generalised forces on the free coordinates, the loops' reactions in them.
+        reduced: (i,) along the independent coordinates, where reactions do no work.
     """
-    size = float(np.abs(step).max(initial=0.0))
-    part = min(1.0, 0.5 / max(size, 0.5))
-    length = float(np.linalg.norm(step))
-    while True:
-        there, forces = q.copy(), lam + part * more.reshape(-1, 6)
-        there[free] += part * step
-        if size < _SMALL or part < _SHORTEST:
-            return there, forces
-        state = _state(tree, there, forces)
-        tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, there, state.v)[free]
-        following = _constrained_step(*linear, tau, partition.misfit(tree, state.kinematics.poses))[0]
-        if np.linalg.norm(following) <= (1.0 - 0.25 * part) * length:
-            return there, forces
-        part *= 0.5
+
+    state: State
+    part: partition.Partition
+    forces: Array
+    reduced: Array
 
 
-def _constrained_step(K: Array, J: Array, tau: Array, gap: Array) -> tuple[Array, Array]:
-    """Newton's δq and δλ: close the gap, then balance along what the loops leave free; redundant multipliers stay least."""
-    if not len(gap):
-        return -_least(K, tau), gap
-    close = -np.linalg.lstsq(J, gap, rcond=1e-9)[0]
-    along = scipy.linalg.null_space(J, rcond=1e-9)
-    rest = along.T @ (tau + K @ close)
-    step = close - along @ _least(along.T @ K @ along, rest)
-    return step, -np.linalg.lstsq(J.T, tau + K @ step, rcond=1e-9)[0]
+@dataclass(frozen=True)
+class _Tangent:
+    """The residual's derivative there, in each coordinate's own units.
+
+    Attributes:
+        K: scaled (i, i) derivative, decomposed.
+        scale: (i,) stiffness of each independent coordinate: its own, or its forces' over its unit.
+        rounding: (i,) size of the forces whose sum the residual is.
+        units: (f,) 1 rad, or the mechanism's length.
+    """
+
+    K: Ranked
+    scale: Array
+    rounding: Array
+    units: Array
+
+    def step(self, here: _Residual) -> Array:
+        """Newton's step (f,) of the free coordinates; least along what nothing resists."""
+        root = np.sqrt(self.scale)
+        return -here.part.R @ (self.K.solve(here.reduced / root) / root)
+
+    def balanced(self, here: _Residual) -> bool:
+        """Whether each independent coordinate is balanced but for rounding."""
+        return bool((np.abs(here.reduced) <= BALANCED * self.rounding).all())
 
 
-def _least(K: Array, force: Array) -> Array:
-    """The smallest x with K x = force, where K may be singular: a freedom that nothing resists."""
-    found = scipy.linalg.lstsq(K, force, cond=1e-13, lapack_driver="gelsy", check_finite=False)
-    return cast(tuple[Array, ...], found)[0]
+@dataclass(frozen=True)
+class _Found:
+    """Where Newton's method ended."""
+
+    state: State
+    residual: _Residual
+    tangent: _Tangent
+
+
+def _residual(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None) -> _Residual:
+    state = _state(tree, q)
+    free = _free(tree)
+    forces = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free] - dead
+    if tree.welds:
+        J = partition.jacobian(tree, state.kinematics.B)[:, free]
+        reactions = -ranked(J.T).solve(forces).reshape(-1, 6)
+        state = replace(state, multipliers=reactions, cartesian=dynamics.cartesian(tree, state.kinematics, reactions))
+    part = partition.partition(tree, state.kinematics, independent)
+    return _Residual(state, part, forces, part.R.T @ forces)
+
+
+def _tangent(tree: Tree, here: _Residual) -> _Tangent:
+    """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): where loops move, what they make of rates and accelerations moves with q."""
+    state, part, k = here.state, here.part, here.state.kinematics
+    M, C, K = (a[np.ix_(part.free, part.free)] for a in dynamics.tangent(tree, k, state.cartesian))
+    R = part.R
+    moved = K @ R
+    if moving(tree, state).any():
+        J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
+        rest = ~np.isin(part.free, _given(tree))
+        back = ranked(J[:, rest])
+        R1, R2 = np.zeros_like(R), np.zeros_like(R)
+        R1[rest] = -back.solve(J1 @ R)
+        R2[rest] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
+        moved += C @ R1 + M @ R2
+    turns = tree.screw[part.free, 3:].any(1)
+    units = np.where(turns, 1.0, _length(k.poses))
+    size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
+    rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
+    least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
+    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, moved)), NOISE / TOLERANCE * least)
+    root = np.sqrt(np.where(scale > 0, scale, 1.0))
+    return _Tangent(ranked((R.T @ moved) / root[:, None] / root), root**2, rounding, units)
+
+
+def _sizes(tree: Tree, state: State) -> Array:
+    """(n,) forces on each coordinate, added up by size."""
+    out = np.einsum("bin,bi->n", np.abs(state.kinematics.B), state.cartesian.size)
+    for s in tree.mechanism.coordinate_springs:
+        j = tree.coordinate(s.coordinate)
+        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.rest)) + abs(s.damping * state.v[j])
+    return out
+
+
+def _carried(state: State) -> Array:
+    """(n,) what the stiffnesses a coordinate carries would give on it at a strain of one: their rounding is in all it feels."""
+    k, c = state.kinematics, state.cartesian
+    units = np.tile(np.repeat([_length(k.poses), 1.0], 3), len(k.B))
+    wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
+    np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ units[:6])[:, None, :])
+    return np.einsum("bin,bi->n", np.abs(k.B), wrench[:-1])
+
+
+def _newton(
+    tree: Tree, q: Array, dead: Array | float = 0.0, far: float = np.inf, damped: bool = False
+) -> _Found | None:
+    """Newton's method while each correction is at most half the one before; None beyond that, or ``far`` from the start.
+
+    ``damped``: steps that do not contract are shortened until they do, however little (Deuflhard 2004, sec. 3.3).
+    """
+    free = _free(tree)
+    start, here = q, _residual(tree, q, dead)
+    for _ in range(_STEPS):
+        tangent = _tangent(tree, here)
+        step = tangent.step(here)
+        length = _norm(step, tangent)
+        done = tangent.balanced(here)
+        if length < 1e-15 or (done and length < 1e-13):
+            return _Found(here.state, here, tangent)
+        names = tuple(tree.coordinates[j] for j in here.part.independent)
+        part = min(1.0, 0.5 / max(length, 0.5)) if damped else 1.0
+        while True:
+            following, contraction = _tried(tree, q, part * step, dead, names, tangent, length)
+            if done and contraction > 0.5:  # rounding is all that is left
+                return _Found(here.state, here, tangent)
+            if contraction <= (1.0 - 0.25 * part if damped else 0.5) or length < 1e-9:
+                break
+            part *= 0.5
+            if not damped or part < _SHORTEST:
+                return None
+        if following is None or _norm((following.state.q - start)[free], tangent) > far:
+            return None
+        q, here = following.state.q, following
+    return None
+
+
+def _tried(
+    tree: Tree, q: Array, step: Array, dead: Array | float, names: tuple[str, ...], tangent: _Tangent, length: float
+) -> tuple[_Residual | None, float]:
+    """The residual after a step, and the length of the correction it asks for over that of Newton's step before."""
+    free = _free(tree)
+    there = q.copy()
+    there[free] += step
+    there, gap, size = _closed(tree, there, free)
+    if not np.isfinite(length) or np.abs(gap).max(initial=0.0) > 1e-11 * size:
+        return None, np.inf
+    following = _residual(tree, there, dead, names)
+    return following, _norm(tangent.step(following), tangent) / length
+
+
+def _norm(step: Array, tangent: _Tangent) -> float:
+    return float(np.abs(step / tangent.units).max(initial=0.0))
+
+
+# --------------------------------------------------------------------------------------------------------- continuation
+
+
+def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
+    """Follow the balance from the guess, where dead forces hold it, to where they are gone; with how far that got.
+
+    ``grow``: rates and loads grow from nothing meanwhile.
+    """
+    free = _free(tree)
+
+    def at(part: float) -> Tree:
+        return _loaded(tree, part) if grow else tree
+
+    try:
+        start = _residual(at(0.0), q)
+    except ContradictionError:
+        return 0.0, None
+    J = partition.jacobian(tree, start.state.kinematics.B)[:, free]
+    dead = start.forces - J.T @ ranked(J.T).solve(start.forces)
+    part, stride, slope = 0.0, _FIRST, np.zeros_like(q)
+    found = None
+    while part < 1.0:
+        to = min(1.0, part + stride)
+        ahead, gap, size = _closed(tree, q + (to - part) * slope, free)
+        closed = np.abs(gap).max(initial=0.0) <= 1e-11 * size
+        try:
+            found = _newton(at(to), ahead, (1.0 - to) * dead, _FAR) if closed else None
+        except MechanismError:  # the loops are singular there
+            found = None
+        if found is None or not found.tangent.balanced(found.residual):
+            stride *= 0.5
+            if stride < _LEAST:
+                return part, None
+            continue
+        slope, part, q = (found.state.q - q) / (to - part), to, found.state.q
+        stride *= 1.5
+    return 1.0, found
+
+
+def _loaded(tree: Tree, part: float) -> Tree:
+    """The tree with this part of its loads: accelerations and gravity as they are, rates by the root, for forces' sake."""
+    m = tree.mechanism
+    motions = tuple(replace(x, rate=x.rate * np.sqrt(part), acceleration=x.acceleration * part) for x in m.motions)
+    gravity = (m.gravity[0] * part, m.gravity[1] * part, m.gravity[2] * part)
+    return replace(tree, mechanism=replace(m, motions=motions, gravity=gravity))
+
+
+# --------------------------------------------------------------------------------------------------------------- motion
+
+
+def _given(tree: Tree) -> list[int]:
+    return [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
+
+
+def _state(tree: Tree, q: Array) -> State:
+    """Velocities and accelerations that the motions and, through the loops, all other coordinates have (eq. 18, 20)."""
+    n = len(q)
+    v, a = np.zeros(n), np.zeros(n)
+    given = _given(tree)
+    for m, j in zip(tree.mechanism.motions, given, strict=True):
+        v[j], a[j] = m.rate, m.acceleration
+    k = kinematics(tree, q, v, a)
+    if tree.welds:
+        rest = np.setdiff1d(np.arange(n), given)
+        J = partition.jacobian(tree, k.B)
+        back = ranked(J[:, rest])
+        v[rest] = back.solve(-J @ v)
+        k = kinematics(tree, q, v, a)
+        a[rest] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
+        if np.abs(J @ v).max() > 1e-7 * max(float(np.abs(v).max()), 1e-300) * _length(k.poses):
+            raise ContradictionError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
+        k = kinematics(tree, q, v, a)
+    return State(q, v, a, np.zeros((len(tree.welds), 6)), k, dynamics.cartesian(tree, k))
+
+
+def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
+    """(n,) whether a coordinate moves because its loop does."""
+    out = np.abs(state.v) > 1e-9 * np.abs(state.v).max(initial=0.0)
+    out[_given(tree)] = False
+    return out
 
 
 def _check_rates(tree: Tree, state: State) -> None:
     """Refuse loops that move while the motions leave open how: rates would be anybody's choice."""
-    given = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
-    rest = np.setdiff1d(np.arange(len(state.q)), given)
-    moving = np.abs(state.v[rest]) > 1e-9 * np.abs(state.v).max(initial=0.0)
-    if not moving.any():
+    if not moving(tree, state).any():
         return
-    open_ = scipy.linalg.null_space(partition.jacobian(tree, state.kinematics.B)[:, rest], rcond=1e-9)
-    free = moving & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
+    rest = np.setdiff1d(np.arange(len(state.q)), _given(tree))
+    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, rest]).null
+    free = moving(tree, state)[rest] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
     if free.any():
         name = tree.coordinates[rest[int(free.argmax())]]
         raise MechanismError(
@@ -154,54 +409,13 @@ def _check_rates(tree: Tree, state: State) -> None:
         )
 
 
-def _checked(tree: Tree, state: State, free: NDArray[np.intp]) -> State:
-    _check_rates(tree, state)
-    tau = dynamics.unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[free]
-    size = np.abs(state.kinematics.B.transpose(2, 0, 1)[free] * state.cartesian.g).sum((1, 2))
-    K = dynamics.tangent(tree, state.kinematics, state.cartesian)[2][np.ix_(free, free)]
-    allowed = 1e-7 * np.maximum(size, np.abs(K).max(initial=0.0) * 1e-2 + 1e-12)
-    if (np.abs(tau) > allowed).any():
-        worst = int(np.argmax(np.abs(tau) - allowed))
+def _check_balance(tree: Tree, found: _Found) -> None:
+    """Refuse a coordinate with a force on it that nothing resists."""
+    here, tangent = found.residual, found.tangent
+    if not tangent.balanced(here):
+        worst = int(np.argmax(np.abs(here.reduced) / np.maximum(tangent.rounding, 1e-300)))
         raise MechanismError(
-            f"coordinate {tree.coordinates[free[worst]]!r}: no steady state: {tau[worst]:.3g} N or N m remain unbalanced and "
-            "nothing resists them; hold its motion, or add a spring"
+            f"coordinate {tree.coordinates[here.part.independent[worst]]!r}: no steady state: "
+            f"{here.reduced[worst]:.3g} N or N m "
+            "remain unbalanced and nothing resists them; hold its motion, or add a spring"
         )
-    return state
-
-
-def _start(tree: Tree, guess: Mapping[str, float] | None) -> tuple[Array, NDArray[np.intp]]:
-    q = np.zeros(len(tree.coordinates))
-    for name, value in (guess or {}).items():
-        q[tree.coordinate(name)] = value
-    for m in tree.mechanism.motions:
-        if m.position is not None:
-            q[tree.coordinate(m.coordinate)] = m.position
-    return q, partition.held(tree)
-
-
-def _state(tree: Tree, q: Array, multipliers: Array) -> State:
-    """Velocities and accelerations that the motions and, through the loops, all other coordinates have (eq. 18, 20)."""
-    n = len(q)
-    v, a = np.zeros(n), np.zeros(n)
-    given = []
-    for m in tree.mechanism.motions:
-        j = tree.coordinate(m.coordinate)
-        v[j], a[j] = m.rate, m.acceleration
-        given.append(j)
-    if tree.welds:
-        rest = np.setdiff1d(np.arange(n), given)
-        k = kinematics(tree, q, v, a)
-        J = partition.jacobian(tree, k.B)
-        v[rest] = np.linalg.lstsq(J[:, rest], -J @ v, rcond=1e-9)[0]
-        k = kinematics(tree, q, v, a)
-        a[rest] = np.linalg.lstsq(J[:, rest], -J @ a - partition.jacobian(tree, k.B1) @ v, rcond=1e-9)[0]
-        left = np.abs(J @ v).max()
-        if left > 1e-7 * max(float(np.abs(v).max()), 1e-300) * _size(k.poses):
-            raise MechanismError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
-    k = kinematics(tree, q, v, a)
-    c = dynamics.cartesian(tree, k, multipliers)
-    return State(q, v, a, multipliers, k, c)
-
-
-def _size(x: Array) -> float:
-    return max(1.0, float(np.abs(x[:, :3, 3]).max(initial=0.0)))

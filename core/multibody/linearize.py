@@ -1,41 +1,17 @@
-"""Analytic linearisation about the steady state: M̂ δv̇_I + Ĉ δv_I + K̂ δq_I = 0 (Park et al. 2010, eq. 23–25, varied).
-
-With δq = R δq_I at all times, δv = R δv_I + Ṙ δq_I and δv̇ = R δv̇_I + 2 Ṙ δv_I + R̈ δq_I; projecting by Rᵀ removes the
-variation of the multipliers, while their steady values stay in K* as the curvature of the constraints.
-"""
+"""Linearise a mechanism about its steady state, and its modes there."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import eigen
-from . import dynamics
-from .equilibrium import State, assemble, steady
+from . import periodic
+from .equilibrium import State, assemble, moving, steady, unresisted
 from .kinematics import kinematics
+from .linear import Linear, about
 from .mechanism import Mechanism, MechanismError, at_time
-from .partition import Partition, freedom, partition
+from .partition import freedom, partition
 from .tree import Tree, compile_tree
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Linear:
-    """M̂, Ĉ, K̂ (i, i) over the independent coordinates, and the state they hold about."""
-
-    tree: Tree
-    state: State
-    partition: Partition
-    M: Array
-    C: Array
-    K: Array
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The independent coordinates."""
-        return tuple(self.tree.coordinates[j] for j in self.partition.independent)
 
 
 def linearize(
@@ -46,10 +22,10 @@ def linearize(
 ) -> Linear:
     """Find the steady state and linearise about it.
 
-    Where motions change with time (a law, an acceleration), this is a frozen-time linearisation: the coordinates that are
-    free are balanced, and vibrate, as if positions, rates and accelerations stayed what they are at ``time``. Its modes
-    mean something where the motion changes little within their periods; stability of a periodic motion needs Floquet's
-    theory instead.
+    Where a motion follows a law of time, this is a frozen-time linearisation: the coordinates that are free are balanced,
+    and vibrate, as if positions, rates and accelerations stayed what they are at ``time``. Its modes mean something where
+    the motion changes little within their periods; stability of a periodic motion needs Floquet's theory instead. Motions
+    given by numbers claim a steady state: it is refused if M̂, Ĉ, K̂ or the balance change as they go on (``periodic``).
 
     Args:
         mechanism: the mechanism.
@@ -58,12 +34,15 @@ def linearize(
         time: s, the instant looked at; it matters where motions follow laws.
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned; the message says what.
+        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is not steady; the message says what.
     """
     tree = compile_tree(at_time(mechanism, time))
     state = steady(tree, guess)
     _check_regular(tree, state)
-    return about(tree, state, independent)
+    linear = about(tree, state, independent)
+    if all(m.law is None for m in mechanism.motions):
+        periodic.check(linear)
+    return linear
 
 
 def _check_regular(tree: Tree, state: State) -> None:
@@ -83,36 +62,30 @@ def _check_regular(tree: Tree, state: State) -> None:
         )
 
 
-def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linear:
-    """Linearise about a given state."""
-    M, C, K = dynamics.tangent(tree, state.kinematics, state.cartesian)
-    p = partition(tree, state.kinematics, independent)
-    pick = np.ix_(p.free, p.free)
-    M, C, K = M[pick], C[pick], K[pick]
-    if not len(p.dependent):  # R is the unit matrix
-        return Linear(tree, state, p, M, C, K)
-    return Linear(
-        tree,
-        state,
-        p,
-        p.R.T @ M @ p.R,
-        p.R.T @ (C @ p.R + 2.0 * M @ p.R1),
-        p.R.T @ (K @ p.R + C @ p.R1 + M @ p.R2),
-    )
-
-
 def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Damped:
-    """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped."""
+    """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
+
+    Raises:
+        EigenError: if the eigenvalue solver fails.
+    """
     M, C, K = 0.5 * (linear.M + linear.M.T), linear.C, linear.K
     if not len(M):  # everything is prescribed
         return eigen.Eigen(np.zeros(0), np.zeros((0, 0), np.complex128))
-    size = np.abs(K).max(initial=0.0), np.abs(C).max(initial=0.0)
-    conservative = (np.abs(K - K.T).max(initial=0.0) <= 1e-9 * size[0]) and (
-        np.abs(C + C.T).max(initial=0.0) <= 1e-9 * size[1]
-    )
-    if conservative:
+    rigid = unresisted(linear.tree, linear.state, linear.names)
+    if not _conservative(linear):
+        return eigen.damped(M, C, K, count, rigid)
+    C, K = 0.5 * (C - C.T), 0.5 * (K + K.T)
+    if not rigid[0].shape[1]:
         try:
-            return eigen.gyroscopic(M, 0.5 * (C - C.T), 0.5 * (K + K.T), count)
+            return eigen.gyroscopic(M, C, K, count)
         except eigen.UnstableError:
-            pass  # a zero mode, or stable by gyroscopic forces alone: the general solver tells
-    return eigen.damped(M, C, K, count)
+            pass  # stable by gyroscopic forces alone, or unstable: the general solver tells
+    return eigen.damped(M, C, K, count, rigid)
+
+
+def _conservative(linear: Linear) -> bool:
+    """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
+    mechanism = linear.tree.mechanism
+    dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]
+    still = not linear.state.a.any() and not moving(linear.tree, linear.state).any()
+    return still and not any(np.any(d.damping) for d in dampers)

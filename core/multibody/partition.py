@@ -5,31 +5,28 @@ so its rates are differences of Ḃ and B̈. Which coordinates depend on the oth
 """
 
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from ..space import spatial as sp
 from .kinematics import Kinematics
 from .mechanism import MechanismError
+from .rank import pivots, ranked
 from .tree import Tree
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-_RANK = 1e-8
-
 
 def misfit(tree: Tree, poses: Array) -> Array:
-    """Φ (6w,) of all welds at the ground's origin, in its axes."""
-    out = []
-    for body, copy in tree.welds:
-        x = np.eye(4) if body < 0 else poses[body]
-        gap = sp.log((sp.inverse(poses[copy]) @ x)[None])[0]
-        out.append(sp.adjoint(poses[copy]) @ gap)
-    return np.concatenate(out) if out else np.zeros(0)
+    """Φ (6w,) of all welds at the ground's origin, in its axes: the whole error of pose, half-turns included."""
+    if not tree.welds:
+        return np.zeros(0)
+    body, copy = np.array(tree.welds).T
+    x = np.concatenate([poses, np.eye(4)[None]])  # the ground, so that index −1 finds it
+    gap = sp.log(sp.inverse(x[copy]) @ x[body])
+    return (sp.adjoint(x[copy]) @ gap[..., None]).ravel()
 
 
 def jacobian(tree: Tree, B: Array) -> Array:
@@ -78,14 +75,13 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     """
     free = np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))
     J = jacobian(tree, k.B)[:, free]
-    rank, order = _rank(J)
-    if independent is None:
-        dependent, chosen = np.sort(order[:rank]), np.sort(order[rank:])
-    else:
+    dependent, chosen = pivots(J)
+    rank = len(dependent)
+    if independent is not None:
         wanted = [tree.coordinate(name) for name in independent]
         chosen = np.flatnonzero(np.isin(free, wanted))
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
-        if len(chosen) != len(free) - rank or _rank(J[:, dependent])[0] < rank:
+        if len(chosen) != len(free) - rank or ranked(J[:, dependent]).rank < rank:
             raise MechanismError(
                 f"independent: {', '.join(independent)} do not determine the rest: {len(free) - rank} are needed, free and not "
                 "tied to each other by a loop; or leave the choice to the solver"
@@ -94,33 +90,24 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     R[chosen, np.arange(len(chosen))] = 1.0
     R1, R2 = np.zeros_like(R), np.zeros_like(R)
     if rank:
-        solve = np.linalg.pinv(J[:, dependent], rcond=_RANK)
+        back = ranked(J[:, dependent])
         J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
         # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14), and δq = R δq_I (eq. 15)
-        R[dependent] = -solve @ J[:, chosen]
-        R1[dependent] = -solve @ (J1 @ R)
-        R2[dependent] = -solve @ (J2 @ R + 2.0 * J1 @ R1)
+        R[dependent] = -back.solve(J[:, chosen])
+        R1[dependent] = -back.solve(J1 @ R)
+        R2[dependent] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
     return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, J, rank))
 
 
 def freedom(tree: Tree, B: Array) -> int:
     """How many ways the free coordinates can move at a configuration with velocity transformation B."""
     J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))]
-    return J.shape[1] - _rank(J)[0]
-
-
-def _rank(J: Array) -> tuple[int, Index]:
-    if not J.size:
-        return 0, np.arange(J.shape[1])
-    r, order = cast(tuple[Array, Index], scipy.linalg.qr(J, mode="r", pivoting=True))
-    size = np.abs(np.diagonal(r))
-    return int((size > _RANK * max(size[0], 1e-300)).sum()), order.astype(np.intp)
+    return J.shape[1] - ranked(J).rank
 
 
 def _redundant(tree: Tree, J: Array, rank: int) -> tuple[str, ...]:
     """Rows that depend on others, at the copies' origins in the ground's axes."""
     if rank == len(J):
         return ()
-    order = _rank(J.T)[1]
     parts = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
-    return tuple(sorted(f"{tree.weld_names[r // 6]}: {parts[r % 6]}" for r in order[rank:]))
+    return tuple(sorted(f"{tree.weld_names[r // 6]}: {parts[r % 6]}" for r in pivots(J.T)[1]))

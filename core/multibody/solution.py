@@ -98,7 +98,8 @@ def solve(
         time: s, where motions follow laws of time: the instant frozen (see ``linearize``).
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned; the message says what.
+        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is periodic; the message says what.
+        EigenError: if the eigenvalue solver fails.
     """
     linear = linearize(mechanism, guess, independent, time)
     found = modes(linear, count)

@@ -135,16 +135,38 @@ def exp(twist: Array, out: Array) -> None:
 
 @compiled
 def log(pose: Array, out: Array) -> None:
-    """The twist (6,) whose exponential is the pose; a rotation of less than half a turn."""
+    """The twist (6,) whose exponential is the pose, its rotation at most half a turn; at half a turn either sense serves.
+
+    The rotation is cos φ 1 + sin φ N + (1 − cos φ) n nᵀ, N the cross-product matrix of the axis n: up to a quarter turn the
+    axis follows from the skew part, beyond it from the largest column of n nᵀ, which does not vanish at half a turn.
+    """
     v, w = out[:3], out[3:]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         w[i] = 0.5 * (pose[k, j] - pose[j, k])
     sine = np.sqrt(_dot(w, w))
-    angle = np.arctan2(sine, 0.5 * (pose[0, 0] + pose[1, 1] + pose[2, 2] - 1.0))
-    scale = 1.0 if sine < 1e-8 else angle / sine
-    for i in range(3):
-        w[i] *= scale
+    cosine = 0.5 * (pose[0, 0] + pose[1, 1] + pose[2, 2] - 1.0)
+    angle = np.arctan2(sine, cosine)
+    if cosine >= 0.0:
+        scale = 1.0 if sine < 1e-8 else angle / sine
+        for i in range(3):
+            w[i] *= scale
+    else:
+        m = 0
+        for i in range(1, 3):
+            if pose[i, i] > pose[m, m]:
+                m = i
+        x, y, z = 0.5 * (pose[0, m] + pose[m, 0]), 0.5 * (pose[1, m] + pose[m, 1]), 0.5 * (pose[2, m] + pose[m, 2])
+        if m == 0:
+            x -= cosine
+        elif m == 1:
+            y -= cosine
+        else:
+            z -= cosine
+        scale = angle / np.sqrt(x * x + y * y + z * z)
+        if w[0] * x + w[1] * y + w[2] * z < 0.0:
+            scale = -scale
+        w[0], w[1], w[2] = scale * x, scale * y, scale * z
     z, s = _dot(w, w), w[0] * pose[0, 3] + w[1] * pose[1, 3] + w[2] * pose[2, 3]
     alpha, _, _ = _sums(_INVERSE[0], z)
     beta, _, _ = _sums(_INVERSE[1], z)

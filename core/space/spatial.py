@@ -93,7 +93,7 @@ def exp(twist: Array) -> Array:
 
 
 def log(x: Array) -> Array:
-    """Twists (..., 6) whose exponential is the pose; rotations of less than half a turn."""
+    """Twists (..., 6) whose exponential is the pose; rotations of at most half a turn."""
     return _each(_log, (6,), x)
 
 

@@ -14,11 +14,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from ...core.effects import FULL
 from ...core.multibody.mechanism import Mechanism
+from ...core.multibody.rank import ranked
 from ...core.multibody.tree import Tree, compile_tree
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CodeError, Shares
@@ -57,7 +57,7 @@ class Stages:
     @property
     def null(self) -> Array:
         """(f, i) orthonormal directions in which the free coordinates can move."""
-        return scipy.linalg.null_space(self.J[self.free].T, rcond=1e-9) if self.J.size else np.eye(len(self.free))
+        return ranked(self.J[self.free].T).null
 
     def reduced(self, basis: Array) -> tuple[Array, Array, Array]:
         """M, C, K over a basis (f, i) of the free coordinates' motion."""
@@ -96,12 +96,13 @@ class ExudynMechanism:
         """All modes; see ``mechanism_interface.MechanismCode``.
 
         Raises:
-            CodeError: an unsupported mechanism, no steady state near the guess, or loops that move in it.
+            CodeError: an unsupported or periodic mechanism, no steady state near the guess, or loops that move in it.
         """
         if reason := self.unsupported_mechanism(mechanism):
             raise CodeError(reason)
         begun = time.perf_counter()
         stages = linearize(compile_tree(mechanism), guess)
+        _check_constant(compile_tree(mechanism), stages)
         null = stages.null
         values, x = damped_modes(*stages.reduced(null))
         shapes = np.zeros((len(values), len(stages.q)), np.complex128)
@@ -124,6 +125,24 @@ def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
             q[tree.coordinate(m.coordinate)] = m.position
     made = system(tree)
     return stages(tree, made, _settle(tree, made, q))
+
+
+def _check_constant(tree: Tree, found: Stages) -> None:
+    """Compare Exudyn's own reduced matrices with those at another azimuth of what turns.
+
+    Raises:
+        CodeError: they differ: the equations are periodic.
+    """
+    v = velocity(tree)
+    fastest = float(np.abs(v).max(initial=0.0))
+    if fastest == 0.0 or not found.null.shape[1]:
+        return
+    later = stages(tree, system(tree), found.q + v * (1.9 / fastest))
+    null, powers = found.null, (2, 1, 0)
+    here, there = ([fastest**p * m for p, m in zip(powers, one.reduced(null), strict=True)] for one in (found, later))
+    size = max(float(np.abs(a).max()) for a in here)
+    if max(float(np.abs(a - b).max()) for a, b in zip(here, there, strict=True)) > 1e-6 * size:
+        raise CodeError("periodic: its matrices change with the azimuth, which this adapter would freeze")
 
 
 def stages(tree: Tree, made: System, q: Array) -> Stages:
@@ -164,7 +183,7 @@ def _settle(tree: Tree, made: System, q: Array) -> Array:
             continue
         multipliers = _least(J, -force)
         K = made.matrices(q)[2] + made.curvature(q, multipliers)
-        null = scipy.linalg.null_space(J.T, rcond=1e-9) if J.shape[1] else np.eye(len(free))
+        null = ranked(J.T).null
         K = K[np.ix_(free, free)]
         along = _least(null.T @ K @ null, null.T @ (force - K @ close), 1e-13)
         step = close + null @ along

@@ -60,7 +60,7 @@ def build(kinds: list[Kind], parents: list[int], rng: np.random.Generator):
     return compile_tree(Mechanism(tuple(bodies), tuple(joints), gravity=tuple(gravity))), model
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 @given(trees())
 def test_every_stage_of_a_random_tree(tree_data) -> None:
     kinds, parents, seed = tree_data
@@ -98,7 +98,7 @@ def test_every_stage_of_a_random_tree(tree_data) -> None:
         assert np.abs(ours - other).max() <= tolerance * np.abs(other).max(), name
 
 
-@settings(max_examples=10, deadline=None, derandomize=True)
+@settings(max_examples=10)
 @given(trees())
 def test_b_matrix_is_the_frames_jacobian(tree_data) -> None:
     """B of every body against Pinocchio's joint Jacobians, and Y = B v."""

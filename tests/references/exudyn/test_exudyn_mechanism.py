@@ -153,7 +153,7 @@ KINDS: list[Kind] = ["revolute", "prismatic", "cylindrical", "universal", "spher
 LOOPS: list[Kind] = ["revolute", "cylindrical", "universal", "spherical", "planar", "prismatic"]
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=25)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=3, max_size=5),
     loop=st.sampled_from(LOOPS),
@@ -180,8 +180,7 @@ def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: li
             springs.append(
                 mb.CoordinateSpring(f"j{i}.{name}", rng.uniform(200, 400), rng.uniform(0, 2), guess[f"j{i}.{name}"])
             )
-    pull = rng.normal(size=3) * 2
-    gravity = float(pull[0]), float(pull[1]), float(pull[2])
+    gravity = (0.0, 0.0, float(rng.normal() * 2))  # along the hub's axis, or the equations would be periodic
     hub = (mb.Motion("hub.rz", 0.0, 2.0),)
     chain = compile_tree(mb.Mechanism(tuple(bodies), tuple(joints), hub))
     q = np.array([guess.get(c, 0.0) for c in chain.coordinates])
@@ -236,6 +235,26 @@ def test_loops_that_move_are_refused() -> None:
     m = replace(four_bar("C"), motions=(mb.Motion("A.rz", 0.9, 1.0),))
     with pytest.raises(CodeError, match="loops move"):
         em.CODE.solve_mechanism(m, FOUR)
+
+
+def test_a_periodic_mechanism_is_refused_by_its_own_matrices() -> None:
+    """Ground resonance: the blade's inertia seen from the support turns with the rotor."""
+    m = mb.Mechanism(
+        (mb.Body("slide", mb.inertia(20.0)), mb.Body("rotor", mb.inertia(2.0, 0.1)), bar("blade", 1.0, 3.0)),
+        (
+            mb.Joint("X", "prismatic", "ground", "slide", mb.at(axis="x"), mb.at(axis="x")),
+            mb.Joint("shaft", "revolute", "slide", "rotor"),
+            mb.Joint("lag", "revolute", "rotor", "blade", mb.at(0.3)),
+        ),
+        (mb.Motion("shaft.rz", rate=5.0),),
+        (mb.CoordinateSpring("X.z", 800.0), mb.CoordinateSpring("lag.rz", 20.0)),
+    )
+    tree = compile_tree(m)
+    at_rest = em.stages(tree, system(tree), np.zeros(3))
+    with pytest.raises(CodeError, match="periodic"):
+        em._check_constant(tree, at_rest)
+    with pytest.raises(mb.MechanismError, match=r"shaft\.rz.*periodic"):
+        mb.solve(m)
 
 
 def test_no_steady_state_is_an_error() -> None:

@@ -1,0 +1,52 @@
+"""Analytic linearisation about a state: M̂ δv̇_I + Ĉ δv_I + K̂ δq_I = 0 (Park et al. 2010, eq. 23–25, varied).
+
+With δq = R δq_I at all times, δv = R δv_I + Ṙ δq_I and δv̇ = R δv̇_I + 2 Ṙ δv_I + R̈ δq_I; projecting by Rᵀ removes the
+variation of the multipliers, while their steady values stay in K* as the curvature of the constraints.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import dynamics
+from .equilibrium import State
+from .partition import Partition, partition
+from .tree import Tree
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Linear:
+    """M̂, Ĉ, K̂ (i, i) over the independent coordinates, and the state they hold about."""
+
+    tree: Tree
+    state: State
+    partition: Partition
+    M: Array
+    C: Array
+    K: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The independent coordinates."""
+        return tuple(self.tree.coordinates[j] for j in self.partition.independent)
+
+
+def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linear:
+    """Linearise about a given state."""
+    M, C, K = dynamics.tangent(tree, state.kinematics, state.cartesian)
+    p = partition(tree, state.kinematics, independent)
+    pick = np.ix_(p.free, p.free)
+    M, C, K = M[pick], C[pick], K[pick]
+    if not len(p.dependent):  # R is the unit matrix
+        return Linear(tree, state, p, M, C, K)
+    return Linear(
+        tree,
+        state,
+        p,
+        p.R.T @ M @ p.R,
+        p.R.T @ (C @ p.R + 2.0 * M @ p.R1),
+        p.R.T @ (K @ p.R + C @ p.R1 + M @ p.R2),
+    )
