@@ -18,13 +18,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .blade_checks import ROOT, BladeError, check
+
 Array = NDArray[np.float64]
 
 AXIAL, SHEAR_Y, SHEAR_Z, TORSION, BEND_Y, BEND_Z = range(6)
-
-
-class BladeError(ValueError):
-    """A blade that cannot be: the message names the field, the value, the likely cause and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +37,19 @@ class Blade:
         mass: (n, 6, 6) mass per length in section axes: linear and angular momentum from velocity and angular
             velocity of the reference point.
         twist: (n,) rad, structural twist.
-        curve: (n, 3) m, reference curve from the root in blade axes (prebend, sweep); straight along x by default.
+        curve: (n, 3) m, reference curve from the root in blade axes (prebend, sweep); straight along x by default. Between
+            the stations it is a cubic spline of the arc length.
         hub_radius: m, from the rotor's axis to the root.
         precone: rad, the blade's axis tilted from the plane of rotation towards +z.
         pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
         root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
             N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring.
+        kinks: those of the inner stations where the curve's tangent jumps, m: each piece between them has a spline of its own,
+            and the sections turn with the tangent. A piece of two stations is straight.
+
+    Raises:
+        BladeError: what cannot be; see ``blade_checks``. A first station within rounding of 0 is made 0.
     """
 
     name: str
@@ -59,14 +63,19 @@ class Blade:
     pitch: float = 0.0
     tip_mass: Array = field(default_factory=lambda: np.zeros((6, 6)))
     root: Array = field(default_factory=lambda: np.full(6, np.inf))
+    kinks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass", "root"):
             set_(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
+        s = self.stations
+        if s.ndim == 1 and len(s) and 0 < abs(s[0]) <= ROOT * abs(s[-1]):
+            set_(self, "stations", np.concatenate([[0.0], s[1:]]))
+        set_(self, "kinks", _on_stations(self))
         if self.curve.size == 0:
             set_(self, "curve", np.outer(self.stations, [1.0, 0.0, 0.0]))
-        _check(self)
+        check(self)
 
     @property
     def length(self) -> float:
@@ -74,42 +83,13 @@ class Blade:
         return float(self.stations[-1])
 
 
-def _check(blade: Blade) -> None:
-    n = len(blade.stations)
-    matrices = dict.fromkeys(("stiffness", "mass"), (n, 6, 6))
-    shapes = {"stations": (n,), "twist": (n,), "curve": (n, 3), "tip_mass": (6, 6), "root": (6,), **matrices}
-    for name, shape in shapes.items():
-        value = getattr(blade, name)
-        if value.shape != shape:
-            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
-        finite = ~np.isnan(value) if name in ("stiffness", "root") else np.isfinite(value)
-        if not finite.all():
-            where = np.argwhere(~finite)[0].tolist()
-            raise BladeError(f"{name}: not a finite number at index {where}: a gap in the table? give every value")
-    if n < 2:
-        raise BladeError(f"stations: {n} given: a blade needs at least a root and a tip")
-    if blade.stations[0] != 0.0:
-        raise BladeError(f"stations: first is {blade.stations[0]:g} m: lengths are measured from the root; start at 0")
-    if (np.diff(blade.stations) <= 0).any():
-        k = int(np.argmax(np.diff(blade.stations) <= 0)) + 1
-        raise BladeError(
-            f"stations: number {k} ({blade.stations[k]:g} m) does not lie beyond the one before it "
-            f"({blade.stations[k - 1]:g} m): sort them and drop duplicates"
-        )
-    if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
-        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: it is a distance from the rotor's axis; give 0 or more")
-    if (blade.root < 0).any():
-        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for held")
-    for name in ("stiffness", "mass"):
-        diagonal = np.diagonal(getattr(blade, name), axis1=1, axis2=2)
-        bad = diagonal <= 0 if name == "stiffness" else diagonal < 0
-        if name == "mass":
-            bad = bad | (diagonal[:, :3] <= 0).any(1, keepdims=True)
-        if bad.any():
-            k, i = np.argwhere(bad)[0]
-            raise BladeError(
-                f"{name}: diagonal {i} at station {k} is {diagonal[k, i]:g}: it must be positive; wrong sign or unit?"
-            )
+def _on_stations(blade: Blade) -> tuple[float, ...]:
+    """The kinks, each on its station to the last digit where it is one within rounding."""
+    s = blade.stations
+    if s.ndim != 1 or not len(s):
+        return ()
+    nearest = ((float(kink), float(s[np.abs(s - kink).argmin()])) for kink in blade.kinks)
+    return tuple(at if abs(kink - at) <= ROOT * abs(s[-1]) else kink for kink, at in nearest)
 
 
 def section_stiffness(
@@ -264,7 +244,8 @@ def uniform(blade: Blade) -> bool:
 
 
 def without_rotary_inertia(blade: Blade) -> Blade:
-    """The same blade with mass but no sectional moments of inertia."""
+    """The same blade with its mass at the sections' mass centres: no moments of inertia about those."""
     mass = blade.mass.copy()
-    mass[:, 3:, 3:] = 0.0
+    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m c×
+    mass[:, 3:, 3:] = -moment @ moment / mass[:, :1, :1]
     return replace(blade, mass=mass)

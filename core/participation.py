@@ -13,11 +13,13 @@ has no kinetic energy in torsion, however far it turns.
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from . import curve
 from .blade import Blade, mass_at
 from .element.sections import frames, root
 from .modes import STATIONS, Modes
@@ -108,13 +110,37 @@ def _quadrature(blade: Blade) -> tuple[Array, Array]:
 
 
 def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Complex, Complex]:
-    """Velocity of the mass centres (at ``centre`` (k, 3) from the reference curve) and turning (m, k, 3) at ``s``, hub axes."""
-    at = STATIONS * blade.length
-    section = frames(blade, at)[:, :3, :3]
+    """Velocity of the mass centres (at ``centre`` (k, 3) from the reference curve) and turning (m, k, 3) at ``s``, hub axes.
+
+    Piece by piece between kinks; one with fewer than three of the common stations is taken with the one before it.
+    """
+    at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
+    ends = [0.0, blade.length]
+    for kink in blade.kinks:
+        if min(np.sum((at >= ends[-2]) & (at <= kink)), np.sum(at >= kink)) >= 3:
+            ends.insert(-1, kink)
+    velocity = np.empty((len(modes.frequencies), len(s), 3), complex)
+    turning = np.empty_like(velocity)
+    for start, end in pairwise(ends):
+        own = (at >= start) & (at <= end)
+        here = (s >= start) & (s <= end)
+        section = np.where(
+            (at[own] == start)[:, None, None], *(frames(blade, at[own], before=b) for b in (False, True))
+        )
+        velocity[:, here], turning[:, here] = _smooth_motion(
+            blade, at[own], section[:, :3, :3], modes.shapes[:, own], s[here], centre[here]
+        )
+    return velocity, turning
+
+
+def _smooth_motion(
+    blade: Blade, at: Array, section: Array, shapes: Complex, s: Array, centre: Array
+) -> tuple[Complex, Complex]:
+    """As ``_motion``, from shapes (m, n, 4) and axes (n, 3, 3) at stations ``at`` (n,) between which the curve is smooth."""
     tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
-    moved = modes.shapes[:, :, :3]
+    moved = shapes[:, :, :3]
     bent = np.cross(tangent, CubicSpline(at, moved, axis=1)(at, 1))  # of the sections' turning about x, not torsion
-    torsion = (modes.shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
+    torsion = (shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
     line = CubicSpline(at, moved + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
     along = frames(blade, s)[:, :3, 0]
     bending = np.cross(along, line(s, 1))

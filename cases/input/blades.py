@@ -12,6 +12,7 @@ import numpy as np
 from msgspec import Meta
 
 from ...core.blade import (
+    ROOT,
     Blade,
     BladeError,
     mass_at,
@@ -127,7 +128,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         path = folder / self.file
         columns = read_table(path, self.COLUMNS, self.OPTIONAL)
         fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
-        if fraction[-1] != 1.0:
+        if abs(fraction[-1] - 1.0) > ROOT:
             raise CaseError(
                 f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
             )
@@ -136,7 +137,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         try:
             blade = Blade(
                 name=name,
-                stations=fraction * self.length,
+                stations=np.append(fraction[:-1], 1.0) * self.length,
                 stiffness=section_stiffness(axial, torsion, self.bending_factor * flap, self.bending_factor * edge),
                 mass=self.mass_factor * sections,
                 twist=np.radians(twist) * self.twisted,

@@ -22,7 +22,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
         omega: rotor speed, rad/s.
         gravity: (3,) m/s², in the hub's axes at the instant looked at, when they are the ground's.
     """
-    n = len(chain.nodes) - 1
+    n, between = len(chain.nodes) - 1, chain.between
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
     frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
     held: list[str] = []
@@ -39,7 +39,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
                 "elastic",
                 f"body {k}",
                 f"body {k + 1}",
-                at_parent=chain.beams.rest[k] @ frames[k],
+                at_parent=between[k] @ frames[k],
                 at_child=frames[k],
             )
             for k in range(n)
@@ -49,7 +49,10 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
         bodies=bodies,
         joints=joints,
         motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in held)),
-        beams=tuple(Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), axes_of="hub") for k in range(n)),
+        beams=tuple(
+            Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), at_b=chain.corner[k], axes_of="hub")
+            for k in range(n)
+        ),
         loads=tuple(Load(f"body {k}", f, "hub") for k, f in enumerate(chain.force) if f.any()),
         gravity=gravity,
     )

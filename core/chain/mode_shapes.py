@@ -18,7 +18,7 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     read = np.empty((len(e), 4, d + 6))
     p = body.samples
     beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
-    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, beta, body.beams.law.eta, read)
+    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
     own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
     first = own[e - 1, -6:]
     first[e == 0] = 0.0  # the clamped node
@@ -33,12 +33,13 @@ def _readings(
     shape: Array,
     bubble: Array,
     nodes: Array,
+    corner: Array,
     beta: Array,
     eta_at_rest: Array,
     out: Array,
 ) -> None:
     """(q, 4, 12 or 18) a point's displacement and rotation about x in the hub's axes, from (ξ_a, ξ_b, β) in the nodes' own."""
-    back, x, position = np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4))
+    back, node, x, position = np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4))
     eta, change, zeta = np.empty(6), np.empty(6), np.empty(6)
     inverse, lever, T, slope, H = (
         np.empty((6, 6)),
@@ -51,10 +52,11 @@ def _readings(
     for q in range(len(element)):
         e = element[q]
         rigid.inverse(nodes[e], back)
-        rigid.compose(back, nodes[e + 1], x)
+        rigid.compose(back, nodes[e + 1], node)
+        rigid.adjoint(node, lever)
+        rigid.compose(node, corner[e], x)
         rigid.log(x, eta)
         rigid.tangent_inverse(eta, inverse)
-        rigid.adjoint(x, lever)
         for i in range(6):
             change[i] = eta[i] - eta_at_rest[e, i]
         ride(rest[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)

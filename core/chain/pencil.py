@@ -90,7 +90,8 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     n, d = len(shape.nodes), 6 + chain.beams.inner
     frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
     x, lever = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
-    _place(np.ascontiguousarray(shape.nodes), omega, gravity, chain.force, frame, fall, axes, push, x, lever)
+    nodes, corner = np.ascontiguousarray(shape.nodes), np.ascontiguousarray(chain.corner)
+    _place(nodes, omega, gravity, chain.force, corner, frame, fall, axes, push, x, lever)
     p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
     inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
@@ -120,6 +121,7 @@ def _place(
     omega: float,
     gravity: Array,
     force: Array,
+    corner: Array,
     frame: Array,
     fall: Array,
     axes: Array,
@@ -127,8 +129,8 @@ def _place(
     x: Array,
     lever: Array,
 ) -> None:
-    """Of every node, in its own axes: twist of the hub's frame, free fall, load; the hub's axes; and what is relative to a."""
-    back, to_node = np.empty((4, 4)), np.empty((6, 6))
+    """Of every node, in its own axes: twist of the hub's frame, free fall, load, and the hub's axes; x is end b seen from a."""
+    back, to_node, node = np.empty((4, 4)), np.empty((6, 6)), np.empty((4, 4))
     for k in range(len(nodes)):
         rigid.inverse(nodes[k], back)
         rigid.adjoint(back, to_node)
@@ -141,8 +143,9 @@ def _place(
                 fall[k, i] += back[i, j] * gravity[j]
                 push[k, i] += back[i, j] * force[k, j]
         if k + 1 < len(nodes):
-            rigid.compose(back, nodes[k + 1], x[k])
-            rigid.adjoint(x[k], lever[k])
+            rigid.compose(back, nodes[k + 1], node)
+            rigid.adjoint(node, lever[k])
+            rigid.compose(node, corner[k], x[k])
 
 
 @compiled

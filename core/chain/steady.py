@@ -145,7 +145,6 @@ def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
     elastic = linearize(bare, rest(bare), 0.0, np.zeros(3), still).factor
     step = np.concatenate([np.zeros((1, 6)), blocks.solution(elastic, -residual[:, -6:].ravel()).reshape(-1, 6)])
-    x = chain.beams.rest
-    rho = (sp.adjoint(x) @ step[1:, :, None])[..., 0] - step[:-1]
+    rho = (sp.adjoint(chain.between) @ step[1:, :, None])[..., 0] - step[:-1]
     loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))
     return replace(chain, beams=replace(loaded, inner_preload=-residual[:, :-6]))

@@ -6,6 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import curve
 from ..blade import Blade, clamped, mass_at
 from ..modes import STATIONS
 from ..space import spatial as sp
@@ -31,6 +32,8 @@ class Chain:
         samples: where mode shapes are read, at ``modes.STATIONS``; massless.
         scale: the blade's length, m.
         force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
+        corner: (n, 4, 4) pose of each element's end b in the frame of the node there: the identity, but where the blade has a
+            kink, whose node has the frame of the section beyond it. All are by default.
         held: (6, 6) projector of node 1's twist, in its own axes, on what the root's joint holds, where there is one: the first
             element then is that joint, without length. Else empty.
         root_axes: (3, 3) the root's axes, which that joint is along, in the first section's.
@@ -42,8 +45,18 @@ class Chain:
     samples: Points
     scale: float
     force: Array
+    corner: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
     held: Array = field(default_factory=lambda: np.zeros((0, 0)))
     root_axes: Array = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        if not self.corner.size:
+            object.__setattr__(self, "corner", np.tile(np.eye(4), (len(self.nodes) - 1, 1, 1)))
+
+    @property
+    def between(self) -> Array:
+        """(n, 4, 4) rest pose of each node but the first in the frame of the one before."""
+        return self.beams.rest @ sp.inverse(self.corner)
 
     @property
     def elements(self) -> int:
@@ -58,7 +71,7 @@ def discretize(
     stiffness: Measure = "corotational",
     load: Array | None = None,
 ) -> Chain:
-    """Divide a blade into ``elements`` of equal arc length.
+    """Divide a blade into ``elements``, of equal arc length but for its kinks (see ``divide``).
 
     Args:
         blade: the blade.
@@ -78,11 +91,15 @@ def discretize(
         raise ValueError(
             f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
         )
-    s = np.linspace(0.0, blade.length, elements + 1)
-    at = STATIONS * blade.length
+    s = divide(blade, elements)
+    elements = len(s) - 1
+    at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
-    nodes = sections.frames(blade, s)
-    rest = sp.inverse(nodes[:-1]) @ nodes[1:]
+    nodes, ends = sections.frames(blade, s), sections.frames(blade, s[1:], before=True)
+    rest = sp.inverse(nodes[:-1]) @ ends
+    corner = np.tile(np.eye(4), (elements, 1, 1))
+    kinked = np.isin(s[1:], blade.kinks)
+    corner[kinked] = sp.inverse(nodes[1:][kinked]) @ ends[kinked]
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
@@ -109,8 +126,38 @@ def discretize(
         samples=_samples(blade, seg, at, nodes, rest),
         scale=blade.length,
         force=force,
+        corner=corner,
     )
     return chain if clamped(blade) else _on_joint(chain, blade)
+
+
+LEAST = 16
+"""Elements that are shared out among the pieces between kinks; more are these, halved."""
+
+
+def divide(blade: Blade, elements: int) -> Array:
+    """Arc lengths (n+1,) of the nodes: every kink is one, and the pieces between have elements in proportion to their lengths.
+
+    At least one each, so there may be more than asked for. Twice as many elements are the same ones halved (from twice
+    ``LEAST`` on), so that refinement converges regularly.
+    """
+    if not blade.kinks:
+        return np.linspace(0.0, blade.length, elements + 1)
+    ends = np.array([0.0, *blade.kinks, blade.length])
+    halved = 1
+    while elements % (2 * halved) == 0 and elements >= 2 * LEAST * halved:
+        halved *= 2
+    number = halved * _shared_out(elements // halved, np.diff(ends))
+    inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], number, strict=True)]
+    return np.concatenate([*inner, ends[-1:]])
+
+
+def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
+    """How many elements each piece has: one, and each further one goes where elements are longest."""
+    number = np.ones(len(lengths), dtype=np.intp)
+    for _ in range(elements - len(lengths)):
+        number[np.argmax(lengths / number)] += 1
+    return number
 
 
 def _on_joint(chain: Chain, blade: Blade) -> Chain:
@@ -143,6 +190,7 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
         lumps=before(none, chain.lumps),
         force=before(none[:, 0, :3], chain.force),
         beams=beams,
+        corner=before(np.eye(4)[None], chain.corner),
         samples=replace(chain.samples, element=chain.samples.element + 1),
         held=turn @ np.diag(holds.astype(float)) @ turn.T,
         root_axes=turn[:3, :3],

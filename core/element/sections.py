@@ -16,8 +16,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
+from .. import curve
 from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, stiffness_at, straight, twist_at
 from ..space import spatial as sp
 
@@ -35,18 +35,20 @@ def root(blade: Blade) -> Array:
     return sp.pose(cone @ pitch, cone @ np.array([blade.hub_radius, 0.0, 0.0]))
 
 
-def frames(blade: Blade, s: Array) -> Array:
-    """Rest poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist."""
+def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
+    """Rest poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist.
+
+    At a kink there are two: of the section just ``before`` it, or of the one just beyond.
+    """
     turn = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
         local = sp.pose(turn, np.outer(s, [1.0, 0.0, 0.0]))
     else:
-        curve = CubicSpline(blade.stations, blade.curve)
-        t = curve(s, 1)
+        place, t = curve.at(blade.stations, blade.curve, blade.kinks, s, before=before)
         t /= np.linalg.norm(t, axis=1, keepdims=True)
         w = sp.skew(np.cross([1.0, 0.0, 0.0], t))
         swing = np.eye(3) + w + w @ w / (1.0 + t[:, 0])[:, None, None]
-        local = sp.pose(swing @ turn, curve(s))
+        local = sp.pose(swing @ turn, place)
     return root(blade) @ local
 
 
@@ -126,7 +128,10 @@ def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadr
 
 
 def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
-    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,)."""
+    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,).
+
+    Every kink must be a node: the elements' frames are those of the sections at their ends, of the side the element is on.
+    """
     points = quadrature(blade, nodes)
     h, element, s = points.length, points.element, points.s
     _, b, a = collocation(GAUSS)
@@ -173,7 +178,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
     local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
     static = local @ stiffness[element][:, None]
     loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
-    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:]))
+    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:], before=True))
     length = np.diff(nodes)[element][:, None, None]
     part = (s - nodes[element][:, None])[..., None] / length
     rate = turn @ stiffness[element][:, None]

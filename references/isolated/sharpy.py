@@ -65,9 +65,11 @@ class Sharpy:
         return SHARPY.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped, or a strain other than shear is rigid."""
+        """A reason if the root is not clamped, the curve has kinks, or a strain other than shear is rigid."""
         if not clamped(blade):
             return "the root is not clamped: the beam's first node is held"
+        if blade.kinks:
+            return f"a kink at {blade.kinks[0]:g} m: SHARPy lets no axes jump between elements"
         rigid = {int(strain) for strain in np.argwhere(np.isinf(blade.stiffness))[:, 1]} - {SHEAR_Y, SHEAR_Z}
         if rigid:
             return f"infinite stiffness against strain {min(rigid)}: only shears can be rigid here"

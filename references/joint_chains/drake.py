@@ -18,7 +18,7 @@ from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
 from ..protocol.interface import Shares
-from .joint_chain import chain_modes, check, places, refusal, rigid
+from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
 
@@ -130,15 +130,15 @@ def plant(chain: Chain) -> Bodies:
     nothing = tree.SpatialInertia.Zero()
     link = made.AddRigidBody("hub", nothing)
     hub = made.AddJoint(tree.RevoluteJoint("hub", made.world_frame(), link.body_frame(), [0, 0, 1]))
-    joints, bodies = [], []
-    for k, (place, lump) in enumerate(zip(places(chain), chain.lumps[1:], strict=True), 1):
+    joints, links = [], []
+    for k, (place, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
         frame = made.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(place)))
         for i, axis in enumerate(np.tile(np.eye(3), (2, 1))):
             link = made.AddRigidBody(f"{k} {i}", _inertia(lump) if i == 5 else nothing)
             kind = tree.PrismaticJoint if i < 3 else tree.RevoluteJoint
             joints.append(made.AddJoint(kind(f"{k} {i}", frame, link.body_frame(), axis)))
             frame = link.body_frame()
-        bodies.append(link)
+        links.append(link)
     made.Finalize()
     auto = made.ToAutoDiffXd()
     return Bodies(
@@ -146,7 +146,7 @@ def plant(chain: Chain) -> Bodies:
         context=made.CreateDefaultContext(),
         auto=auto,
         auto_context=auto.CreateDefaultContext(),
-        bodies=bodies,
+        bodies=links,
         position=np.array([j.position_start() for j in joints]),
         velocity=np.array([j.velocity_start() for j in joints]),
         hub=hub.velocity_start(),

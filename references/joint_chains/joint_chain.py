@@ -13,12 +13,14 @@ from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.linalg import block_diag
 
+from ...core import curve
 from ...core.blade import Blade, clamped
-from ...core.element.discretize import Chain, discretize
+from ...core.element.discretize import Chain, discretize, divide
+from ...core.element.inertia import moved
 from ...core.modes import STATIONS, Modes
+from ...core.space import spatial as sp
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
 
@@ -80,14 +82,24 @@ def chain_modes(
     q = steady(body, elastic, omega, chain.scale)
     _, stiffness, gyroscopic = body.inertial(q, omega)
     frequencies, vectors = gyroscopic_modes(body.mass(q), gyroscopic, elastic + stiffness, count)
-    moved = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
-    shapes = CubicSpline(np.linspace(0.0, 1.0, elements + 1), moved)(STATIONS).transpose(2, 0, 1)
-    return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+    at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
+    shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
+    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, seconds=time.perf_counter() - begun)
 
 
 def places(chain: Chain) -> Array:
-    """(e, 4, 4) rest pose of each body in the frame of the one before, the first's in the hub's."""
-    return np.concatenate([chain.nodes[1:2], chain.beams.rest[1:]])
+    """(e, 4, 4) rest pose of each body in the frame of the one before, the first's in the hub's.
+
+    A body's frame is that of the end of the element before it, along which its joints lie; at a kink the next element
+    begins turned from it.
+    """
+    before = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
+    return before @ chain.beams.rest
+
+
+def bodies(chain: Chain) -> Array:
+    """(e, 6, 6) inertia of each body, in the frame that ``places`` gives it."""
+    return moved(chain.lumps[1:], sp.inverse(chain.corner))
 
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:

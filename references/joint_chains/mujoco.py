@@ -17,7 +17,7 @@ from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
 from ..protocol.interface import Shares
-from .joint_chain import chain_modes, check, places, refusal, rigid
+from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
 
@@ -155,7 +155,7 @@ def plant(chain: Chain) -> Bodies:
             for axis in np.eye(3):
                 body.add_joint(type=kind, axis=axis)
     model = spec.compile()
-    for k, lump in enumerate(chain.lumps[1:], 2):
+    for k, lump in enumerate(bodies(chain), 2):
         mass, centre, moments = rigid(lump)
         moments, axes = np.linalg.eigh(moments - mass * (centre @ centre * np.eye(3) - np.outer(centre, centre)))
         axes[:, 0] *= np.sign(np.linalg.det(axes))

@@ -17,7 +17,7 @@ from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
 from ..protocol.interface import Shares
-from .joint_chain import chain_modes, check, places, refusal
+from .joint_chain import bodies, chain_modes, check, places, refusal
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,7 @@ def plant(chain: Chain) -> Any:
     model.gravity.setZero()
     here = pin.SE3.Identity()
     link = model.addJoint(0, pin.JointModelRZ(), here, "hub")
-    for k, (place, lump) in enumerate(zip(places(chain), chain.lumps[1:], strict=True), 1):
+    for k, (place, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
         link = model.addJoint(link, pin.JointModelTranslation(), pin.SE3(place), f"{k} x y z")
         for axis, turn in (("x", pin.JointModelRX), ("y", pin.JointModelRY), ("z", pin.JointModelRZ)):
             link = model.addJoint(link, turn(), here, f"{k} about {axis}")

@@ -65,7 +65,8 @@ def curved() -> Blade:
     mass[:, 2, 3] = mass[:, 3, 2] = base.mass[:, 0, 0] * offset
     mass[:, 3, 3] += base.mass[:, 0, 0] * offset**2
     mass[:, 5, 5] += base.mass[:, 0, 0] * offset**2
-    curve = np.stack([base.stations, -0.8 * x**2, 1.5 * x**2], axis=1)
+    along = _parabola(base.stations, 1.7 / base.length**2)
+    curve = np.outer(along, [1.0, 0.0, 0.0]) + np.outer((along / base.length) ** 2, [0.0, -0.8, 1.5])
     return Blade(
         name="curved",
         stations=base.stations,
@@ -77,3 +78,12 @@ def curved() -> Blade:
         precone=np.radians(2.5),
         pitch=np.radians(5.0),
     )
+
+
+def _parabola(s: np.ndarray, a: float) -> np.ndarray:
+    """Where the parabola y = a x² has the arc length s = x √(1 + 4a²x²)/2 + asinh(2ax)/4a, by Newton's method."""
+    x = s.copy()
+    for _ in range(8):
+        speed = np.sqrt(1 + (2 * a * x) ** 2)
+        x -= (x * speed / 2 + np.arcsinh(2 * a * x) / (4 * a) - s) / speed
+    return x

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ....core.blade import Blade, BladeError
+from ....core.blade_checks import follows
 from ..errors import CaseError
 from . import elastodyn
-from .beamdyn_axis import Axis, line, measured, roll
+from .beamdyn_axis import Axis, line, measured, resolved, roll
 from .matrices import BEAMDYN, fault, in_axes, mass_fault
 from .source import OPENFAST_AXES, Mount, Reading, Source
 from .text import Table, Text, fractions, keys, leading, load, row, table, whole, word
@@ -69,7 +70,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     found, stiffness, mass = _sections(text)
     eta = fractions(found, "station_eta")
     files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if told and mount.main else ())
-    blade = assemble(path.stem, axis, eta, stiffness, mass, settled)
+    blade = assemble(path.stem, path, axis, eta, stiffness, mass, settled)
     if told and told.tip_mass:
         blade = replace(blade, tip_mass=np.diag([told.tip_mass] * 3 + [0.0] * 3))
     notes = [
@@ -182,8 +183,10 @@ def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[floa
     return row(text, k, tuple(f"{what} {j + 1}{c}" for c in range(1, 7)))
 
 
-def assemble(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
+def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
     """A blade of sections at fractions ``eta`` (n,) of a curve's length, in BeamDyn's axes; stations at key points too.
+
+    If those are too few for the curve, there are stations in between. ``path`` is the file's, for messages.
 
     Raises:
         CaseError: what cannot be.
@@ -193,8 +196,10 @@ def assemble(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, m
     points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > SAME * length]
     s = np.sort(np.concatenate([own, points]))
     s[-1] = length
+    if not follows(s, axis.points(axis.at(s))):
+        s = resolved(axis, s)
     z = axis.at(s)
-    x, y, degrees = axis.spline(z).T
+    degrees = axis.spline(z)[:, 2]
     if mount.length is not None and abs(mount.length - length) > 0.02 * length:
         raise CaseError(
             f"length: {mount.length:g} m by the main file or --length, {length:g} m by the key points: "
@@ -209,12 +214,12 @@ def assemble(name: str, axis: Axis, eta: Array, stiffness: Array, mass: Array, m
             mass=in_axes(at[1], BEAMDYN),
             twist=roll(axis, z) - np.radians(degrees),
             hub_radius=mount.hub_radius or 0.0,
-            curve=np.stack([z, -y, x], axis=1),
+            curve=axis.points(z),
             precone=mount.precone or 0.0,
             pitch=mount.pitch or 0.0,
         )
     except BladeError as error:
-        raise CaseError(f"{name}: {error}") from error
+        raise CaseError(f"{path}: {error}") from error
 
 
 def _between(stations: Array, values: Array, s: Array) -> Array:

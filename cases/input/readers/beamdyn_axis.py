@@ -12,6 +12,10 @@ from ....core.space.spatial import skew
 Array = NDArray[np.float64]
 
 
+TURN, FINE = np.radians(1.0), 65
+"""Of the tangent between two stations; points at which it is taken between two, and the most they are divided into."""
+
+
 class Axis(NamedTuple):
     """A reference curve in BeamDyn's axes: splines in z of x, y and twist (degrees), and z at arc lengths."""
 
@@ -25,6 +29,11 @@ class Axis(NamedTuple):
         for _ in range(8):
             z = np.clip(z - (_arc(self, z) - s) / _speed(self.spline, z), self.z[0], self.z[-1])
         return z
+
+    def points(self, z: Array) -> Array:
+        """The curve's points (n, 3) at ``z`` (n,), in our axes."""
+        x, y, _ = self.spline(z).T
+        return np.stack([z, -y, x], axis=1)
 
 
 def line(length: float) -> Axis:
@@ -54,6 +63,16 @@ def _piece(spline: CubicSpline, a: float, b: float) -> float:
 def _arc(axis: Axis, z: Array) -> Array:
     k = np.clip(np.searchsorted(axis.z, z, side="right") - 1, 0, len(axis.z) - 2)
     return np.array([axis.arc[i] + _piece(axis.spline, float(axis.z[i]), float(b)) for i, b in zip(k, z, strict=True)])
+
+
+def resolved(axis: Axis, s: Array) -> Array:
+    """The arc lengths ``s`` (n,), with more between two where the curve turns by over ``TURN``: core's spline follows those."""
+    fine = (s[:-1, None] + np.diff(s)[:, None] * np.linspace(0, 1, FINE)).ravel()
+    t = _tangents(axis, np.interp(fine, axis.arc, axis.z)).reshape(-1, FINE, 3)
+    turn = np.linalg.norm(np.diff(t, axis=1), axis=2).sum(1)
+    pieces = np.clip(np.ceil(turn / TURN), 1, FINE).astype(int)
+    inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(s[:-1], s[1:], pieces, strict=True)]
+    return np.concatenate([*inner, s[-1:]])
 
 
 def _tangents(axis: Axis, z: Array) -> Array:

@@ -22,12 +22,13 @@ def write(blade: Blade, path: Path) -> Mount:
     A twist and a curve between stations are as BeamDyn makes them, a natural spline in z.
 
     Raises:
-        CaseError: naming what the format cannot hold: rigid strains, root joints, tip masses, curves that turn back.
+        CaseError: naming what the format cannot hold: rigid strains, root joints, tip masses, kinks, curves that turn back.
     """
     lacks = {
         "rigid strains": bool(np.isinf(blade.stiffness).any()),
         "a root that is not clamped": not np.isinf(blade.root).all(),
         "a tip mass (ElastoDyn's main file has it)": bool(blade.tip_mass.any()),
+        "a kink in the curve": bool(blade.kinks),
         "a curve that turns back": bool((np.diff(blade.curve[:, 0]) <= 0).any()),
         "a curve that begins beside the root": bool(blade.curve[0].any()),
     }

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
 from ..errors import CaseError
-from .text import Text, load, number
+from .text import Text, believable, load, number
 
 Array = NDArray[np.float64]
 
@@ -137,7 +137,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
 
 def _section(command: Command) -> list[float]:
     values = [number(w) for w in command.words[2:6]]
-    if len(values) != 4 or any(v is None or not np.isfinite(v) for v in values):
+    if len(values) != 4 or any(v is None or not believable(v) for v in values):
         raise CaseError(f"{command.at}: sec: not x, y, z and twist: {' '.join(command.words)}: correct it")
     return [float(v) for v in values if v is not None]
 

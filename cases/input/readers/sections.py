@@ -70,7 +70,11 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     tip_mass: Annotated[TipMass | None, Meta(description="a rigid body at the tip")] = None
 
     def mounted(self, blade: Blade) -> Blade:
-        """The blade so mounted."""
+        """The blade so mounted.
+
+        Raises:
+            CaseError: a tip mass that no body has.
+        """
         changes: dict[str, Any] = {}
         if self.precone_deg is not None:
             changes["precone"] = float(np.radians(self.precone_deg))
@@ -80,20 +84,32 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
             changes["root"] = springs(self.root)
         if self.tip_mass is not None:
             changes["tip_mass"] = self.tip_mass.matrix()
-        return replace(blade, **changes)
+        try:
+            return replace(blade, **changes)
+        except BladeError as error:
+            raise CaseError(f"blade.{error}") from error
 
 
 class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
     """A blade's sections as they are: matrices about the reference curve in section axes, 21 numbers a station.
 
-    The 21 are the rows of the upper triangle, first (11 … 16), then (22 … 26), and so on; rigid strains have zeros.
+    The 21 are the rows of the upper triangle, first (11 … 16), then (22 … 26), and so on; rigid strains have zeros. Where the
+    curve's direction jumps, ``kinks`` says so; they are stations: ``s = [0, 8, 10]``, ``kinks = [8]`` is two straight pieces.
     """
 
     s: Annotated[list[float], Meta(min_length=2, description="arc length from the root, m")]
     stiffness: Annotated[list[Upper], Meta(description="N, N m, N m²")]
     mass: Annotated[list[Upper], Meta(description="kg/m, kg, kg m")]
     twist_deg: Annotated[list[float] | None, Meta(description="degrees")] = None
-    curve: Annotated[list[Vector] | None, Meta(description="reference curve from the root in blade axes, m")] = None
+    curve: Annotated[
+        list[Vector] | None,
+        Meta(
+            description="reference curve from the root in blade axes, m; between its points a spline of s, its arc length"
+        ),
+    ] = None
+    kinks: Annotated[
+        list[float], Meta(description="those of s where the curve's tangent jumps, m: it is splined between them")
+    ] = []
     rigid: Annotated[
         tuple[Literal["axial", "shear_y", "shear_z", "torsion"], ...], Meta(description="rigid strains")
     ] = ()
@@ -124,6 +140,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
                 twist=np.radians(self.twist_deg) if self.twist_deg is not None else np.zeros(n),
                 hub_radius=self.hub_radius,
                 curve=np.array(self.curve) if self.curve is not None else np.zeros((0, 3)),
+                kinks=tuple(self.kinks),
             )
         except BladeError as error:
             raise CaseError(f"blade.{error}") from error
@@ -209,6 +226,7 @@ def describe(blade: Blade) -> Sections:
         mass=blade.mass[:, UPPER[0], UPPER[1]].tolist(),
         twist_deg=np.degrees(blade.twist).tolist(),
         curve=[tuple(p) for p in blade.curve.tolist()],
+        kinks=list(blade.kinks),
         rigid=tuple(STRAINS[i] for i in range(4) if np.isinf(blade.stiffness[:, i, i]).all()),  # pyright: ignore[reportArgumentType]
         hub_radius=blade.hub_radius,
         precone_deg=float(np.degrees(blade.precone)),

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import files
 from ..errors import CaseError
+from ..toml import LARGEST
 
 Array = NDArray[np.float64]
 
@@ -96,7 +97,14 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
     for name, value, written in zip(columns, found, words, strict=False):
         if not math.isfinite(value):
             raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number; a gap in the data? give a value")
+        if not believable(value):
+            raise CaseError(f"{text.at(k)}: {name}: {written}: nothing is so large; a slip in the exponent? correct it")
     return found
+
+
+def believable(value: float) -> bool:
+    """Whether a number is finite, and no larger than a quantity in any unit is."""
+    return abs(value) <= LARGEST
 
 
 @dataclass(frozen=True)
@@ -189,7 +197,7 @@ def value(text: Text, named: dict[str, tuple[int, str]], *names: str) -> float:
     """
     k, token = named[_name(text, named, names)]
     out = number(token)
-    if out is None or not math.isfinite(out):
+    if out is None or not believable(out):
         raise CaseError(f"{text.at(k)}: {names[0]}: {token!r} is not a finite number: correct it")
     return out
 

@@ -76,7 +76,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     settled = settle(mount or Mount(), _hub(top, told))
     eta, stiffness, mass, loose = (_lists if told.version == 2 else _rows)(told.elastic)
     name = top.find("name")
-    blade = beamdyn.assemble(name.word() if name else path.stem, _axis(told), eta, stiffness, mass, settled)
+    called = name.word() if name else path.stem
+    blade = beamdyn.assemble(called, path, _axis(told), eta, stiffness, mass, settled)
     blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(told.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
     open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]

@@ -8,7 +8,7 @@ import yaml
 from numpy.typing import NDArray
 
 from ..errors import CaseError, nearest
-from .text import Text, number
+from .text import Text, believable, number
 
 Array = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ def fields(text: Text) -> Field:
 def _number(text: Text, node: yaml.Node, name: str) -> float:
     said = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
     found = number(said)
-    if found is None or not np.isfinite(found):
+    if found is None or not believable(found):
         raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: a gap in the data? correct it")
     return found
 

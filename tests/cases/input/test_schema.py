@@ -186,7 +186,10 @@ BAD_TABLES = [
     (TABLE.replace("90,2", "90,two"), ["line 3: mass [kg/m]: 'two' is not a number"]),
     (TABLE.replace("90,2", "90,"), ["line 3: mass [kg/m]: '' is not a number"]),
     (TABLE.replace("0,1,3", "0,3"), ["line 5: 6 columns instead of 7", "comma"]),
-    (TABLE.replace("90,2,3", "90,2,-3"), ["stiffness: diagonal 4 at station 0 is -3", "positive"]),
+    (
+        TABLE.replace("90,2,3", "90,2,-3"),
+        ["stiffness: diagonal 4 (bending about y) at station 0 (0 m) is -3", "positive"],
+    ),
     (TABLE.replace("mass [kg/m]", "mass [lb/ft]"), ["unknown column 'mass [lb/ft]': did you mean mass [kg/m]?"]),
     (TABLE.split("\n1,0")[0], ["rows: 1: two at least"]),
 ]

@@ -106,7 +106,7 @@ def test_the_same_call_gives_the_same_answer() -> None:
         (replace(PARK, tip_mass=np.eye(6)), "this bar has none"),
         (without_rotary_inertia(PARK), r"I_y = 0 kg m: a solid of this EI and EA has 0\.0006"),
         (uniform_blade("s", 1, 0, EA=np.inf, GJ=1, EI_y=1, EI_z=1, mass=1), "rigid in bending or stretch"),
-        (replace(PARK, mass=PARK.mass * np.diag([1, 1, 2, 1, 1, 1])), "mass differs with direction"),
+        (replace(PARK, mass=PARK.mass * np.diag([1, 1, 1.00005, 1, 1, 1])), "mass differs with direction"),
     ],
     ids=["tapered", "curved", "tip mass", "thin", "rigid", "added mass"],
 )

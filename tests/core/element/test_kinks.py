@@ -1,0 +1,232 @@
+"""A kink in the reference curve: exact in core, seen alike by a mechanism with a rigid corner and by Pinocchio's chain."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell import multibody as mb
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.readers import reading, southwell_toml
+from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness
+from southwell.core.chain.as_mechanism import mechanism, one
+from southwell.core.element.discretize import discretize, divide
+from southwell.core.element.sections import frames
+from southwell.core.participation import participation
+from southwell.core.solve import modes
+from southwell.core.space import spatial as sp
+from southwell.references.joint_chains import joint_chain
+from southwell.references.protocol import registry
+
+from ...support.beams import curved
+
+ANGLE, OMEGA = np.radians(30.0), 60 * np.pi / 30
+DENSE = np.array([0, 4, 7, 7.5, 7.8, 7.9, 7.99, 7.999, 8, 8.001, 8.01, 8.1, 8.2, 8.5, 9, 10])
+
+
+def line(s: np.ndarray, at: float = 8.0, angle: float = ANGLE) -> np.ndarray:
+    """(n, 3) along x, and from ``at`` on swept backwards."""
+    beyond = np.maximum(s - at, 0.0)
+    return np.stack([np.minimum(s, at) + beyond * np.cos(angle), -beyond * np.sin(angle), 0 * s], axis=1)
+
+
+def beam(s: np.ndarray, curve: np.ndarray, kinks: tuple[float, ...] = (), **more: object) -> Blade:
+    """The uniform beam of the review's kink-coarse and kink-dense, with another curve."""
+    n = len(s)
+    stiffness = np.repeat(section_stiffness(1e7, 1e4, 1e4, 4e4, 4e6, 4e6), n, axis=0)
+    mass = np.repeat(section_mass(10.0, 0.01, 0.02), n, axis=0)
+    changes = {"hub_radius": 1.0, **more}
+    return Blade("swept tip", s, stiffness, mass, np.zeros(n), curve=curve, kinks=kinks, **changes)  # type: ignore[arg-type]
+
+
+def kinked(**more: object) -> Blade:
+    """Two straight pieces, 8 m and 2 m."""
+    s = np.array([0.0, 8.0, 10.0])
+    return beam(s, line(s), (8.0,), **more)
+
+
+def with_all() -> Blade:
+    """Everything a blade can have, and two kinks: out of one plane into another."""
+    smooth = curved()
+    s, r = smooth.stations, smooth.curve
+    turned = [np.eye(3), sp.rotation(2, np.array(-0.3)), sp.rotation(2, np.array(-0.3)) @ sp.rotation(1, np.array(0.2))]
+    pieces = [0, 0, 1, 2, 2]  # of the intervals; pieces of two points are straight
+    steps = [turned[p] @ (r[k + 1] - r[k]) for k, p in enumerate(pieces)]
+    steps[2] *= (s[3] - s[2]) / np.linalg.norm(steps[2])
+    return replace(smooth, curve=np.concatenate([r[:1], r[0] + np.cumsum(steps, axis=0)]), kinks=(s[2], s[3]))
+
+
+@pytest.mark.parametrize(("mass", "stiffness"), [("consistent", "corotational"), ("half_end", "parent")])
+def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) -> None:
+    """Two straight beams, each divided on its own, fixed to each other at an angle in a general mechanism."""
+    s = np.array([0.0, 1.0])
+    inner, outer = (beam(length * s, line(length * s)) for length in (8.0, 2.0))
+    first, second = (
+        discretize(inner, 8, mass, stiffness),
+        discretize(replace(outer, hub_radius=0.0), 2, mass, stiffness),
+    )
+    m = mechanism(first, OMEGA)
+    bodies = tuple(mb.Body(f"tip {k}", lump) for k, lump in enumerate(second.lumps))
+    corner = mb.Joint(
+        "corner", "fixed", "body 8", "tip 0", at_parent=sp.pose(sp.rotation(2, np.array(-ANGLE)), np.zeros(3))
+    )
+    rest = second.beams.rest
+    joints = tuple(
+        mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=rest[k]) for k in range(2)
+    )
+    beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", one(second.beams, k)) for k in range(2))
+    whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))
+    found = modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
+    np.testing.assert_allclose(found, mb.solve(whole).frequencies[:8], rtol=1e-9)
+
+
+@pytest.mark.parametrize("blade", [kinked(), kinked(precone=0.1, pitch=0.2), with_all()], ids=["beam", "coned", "all"])
+def test_the_general_solver_agrees_on_kinks(blade: Blade) -> None:
+    """The velocity transformation on the same discretisation, elements ending in frames that are not their nodes'."""
+    own = modes(blade, 1.0, 8, 6).frequencies
+    np.testing.assert_allclose(own, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
+
+
+def test_elements_end_at_kinks_and_refinement_is_of_fourth_order() -> None:
+    f = [modes(kinked(), OMEGA, n, 6).frequencies for n in (80, 160, 320, 640)]
+    change = np.abs(np.diff(f, axis=0)).max(1)
+    assert np.log2(change[:-1] / change[1:]).min() > 3.7
+    for n in (2, 7, 50, 200):
+        assert {0.0, 8.0, 10.0} <= set(divide(kinked(), n))
+        assert len(divide(kinked(), n)) == n + 1
+    np.testing.assert_array_equal(divide(kinked(), 160)[::4], divide(kinked(), 40))
+    assert modes(kinked(), OMEGA, 1, 2).elements == 2
+
+
+def test_a_well_rounded_corner_is_nearly_the_kink() -> None:
+    """The review's dense table: what it differs by is its own corner, and goes with it; the coarse one was 6.7 % off."""
+    exact = modes(kinked(), OMEGA, 160, 5).frequencies
+    tighter = np.unique(np.concatenate([DENSE, 8 + np.outer([1, -1], 0.001 * 2.0 ** np.arange(10)).ravel()]))
+    off = [np.abs(modes(beam(s, line(s)), OMEGA, 160, 5).frequencies / exact - 1).max() for s in (DENSE, tighter)]
+    assert off[0] < 5e-4
+    assert off[1] < off[0] / 4
+
+
+def test_sections_turn_with_the_tangent_at_the_kink() -> None:
+    before, beyond = (frames(kinked(), np.array([8.0]), before=b)[0] for b in (True, False))
+    np.testing.assert_allclose(before[:3, :3], np.eye(3), atol=1e-15)
+    np.testing.assert_allclose(beyond[:3, 0], [np.cos(ANGLE), -np.sin(ANGLE), 0], atol=1e-15)
+    np.testing.assert_allclose(before[:3, 3], beyond[:3, 3], atol=1e-15)
+
+
+def test_a_kink_that_turns_by_nothing_changes_nothing() -> None:
+    s = np.array([0.0, 8.0, 10.0])
+    plain, declared = (modes(beam(s, line(s, angle=0.0), k), OMEGA, 20, 6).frequencies for k in ((), (8.0,)))
+    np.testing.assert_allclose(declared, plain, rtol=1e-12)
+
+
+def test_the_roots_joint_and_a_kink() -> None:
+    """Stiff springs clamp."""
+    clamped, stiff = (modes(kinked(root=np.full(6, k)), OMEGA, 10, 6).frequencies for k in (np.inf, 1e13))
+    np.testing.assert_allclose(stiff, clamped, rtol=1e-7)
+
+
+def test_shares_of_a_kinked_blade_are_those_of_the_rounded_one() -> None:
+    sharp, round_ = (modes(b, OMEGA, 100, 4) for b in (kinked(), beam(DENSE, line(DENSE))))
+    expected = participation(round_, beam(DENSE, line(DENSE)))
+    np.testing.assert_allclose(participation(sharp, kinked()), expected, atol=0.01)
+
+
+@pytest.mark.parametrize("blade", [kinked(), with_all()], ids=["beam", "all"])
+@pytest.mark.parametrize("name", ["pinocchio", "mujoco", "drake"])
+def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
+    """Kinematics, dynamics and derivatives by the other code, on core's nodes, bodies and elements."""
+    code = registry.code(name)
+    if code.version() is None:
+        pytest.skip(f"{name} is not installed")
+    ours = modes(blade, 1.0, 12, 6, mass="half_end", stiffness="parent")
+    theirs = code.solve(blade, 1.0, 12, 6)
+    np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=1e-8 if name == "pinocchio" else 1e-6)
+    np.testing.assert_allclose(
+        np.abs(np.einsum("mij,mij->m", theirs.shapes[..., :3].conj(), ours.shapes[..., :3])),
+        np.linalg.norm(theirs.shapes[..., :3], axis=(1, 2)) * np.linalg.norm(ours.shapes[..., :3], axis=(1, 2)),
+        rtol=2e-3,
+    )
+    assert theirs.elements == ours.elements
+
+
+def test_bodies_of_the_joint_chain_keep_their_place() -> None:
+    chain = discretize(with_all(), 9, "half_end", "parent")
+    here = np.eye(4)
+    for k, place in enumerate(joint_chain.places(chain), 1):
+        here = here @ place
+        np.testing.assert_allclose(here, chain.nodes[k] @ chain.corner[k - 1], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [n for n in registry.OURS if n not in ("pinocchio", "mujoco", "drake")])
+def test_other_codes_say_that_they_have_no_kinks(name: str) -> None:
+    assert registry.code(name).unsupported(kinked())
+
+
+FILE = """
+name = "swept tip"
+[blade]
+kind = "sections"
+hub_radius = 1.0
+s = [0.0, 8.0, 10.0]
+kinks = {kinks}
+stiffness = [{k}, {k}, {k}]
+mass = [{m}, {m}, {m}]
+curve = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [9.732050808, -1.0, 0.0]]
+"""
+K = "[1e7, 0, 0, 0, 0, 0, 4e6, 0, 0, 0, 0, 4e6, 0, 0, 0, 1e4, 0, 0, 1e4, 0, 4e4]"
+M = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]"
+
+
+def test_a_file_declares_its_kinks(tmp_path: Path) -> None:
+    path = tmp_path / "blade.toml"
+    path.write_text(FILE.format(kinks="[8.0]", k=K, m=M))
+    found = reading(path).blade
+    expected = modes(kinked(), OMEGA, 20, 5).frequencies
+    np.testing.assert_allclose(modes(found, OMEGA, 20, 5).frequencies, expected, rtol=1e-8)
+    southwell_toml.write(found, path)
+    assert reading(path).blade.kinks == (8.0,)
+
+
+def test_too_few_points_around_a_corner_are_refused(tmp_path: Path) -> None:
+    """The review's kink-coarse: splined through its kink, flap 2 was 6.7 % low."""
+    path = tmp_path / "blade.toml"
+    path.write_text(FILE.format(kinks="[]", k=K, m=M))
+    with pytest.raises(CaseError, match=r"between 0 m and 8 m the spline.*30° at 8 m.*add points.*kinks = \[8\]"):
+        reading(path)
+
+
+@pytest.mark.parametrize("n", [3, 6, 11, 21])
+@pytest.mark.parametrize("degrees", [10.0, 30.0, 60.0])
+def test_a_corner_between_even_points_is_refused(n: int, degrees: float) -> None:
+    s = np.union1d(np.linspace(0.0, 10.0, n), 8.0)
+    with pytest.raises(BladeError, match="the spline through its points"):
+        beam(s, line(s, angle=np.radians(degrees)))
+
+
+@pytest.mark.parametrize(("degrees", "n"), [(10, 3), (30, 4), (60, 6), (90, 8)])
+def test_smooth_curves_with_points_every_fifteen_degrees_are_accepted(degrees: float, n: int) -> None:
+    s, a = np.linspace(0.0, 10.0, n), np.radians(degrees) / 10
+    beam(s, np.stack([np.sin(a * s), 1 - np.cos(a * s), 0 * s], axis=1) / [a, a, 1])
+
+
+@pytest.mark.parametrize(
+    ("kinks", "match"),
+    [
+        ((8.05,), r"kinks: 8\.05 m: not a station.*nearest is 8 m"),
+        ((0.0,), "not a station between root and tip"),
+        ((10.0,), "not a station between root and tip"),
+        ((8.0, 8.0), "not ascending"),
+        ((np.nan,), "not a station"),
+    ],
+)
+def test_impossible_kinks_are_refused(kinks: tuple[float, ...], match: str) -> None:
+    s = np.array([0.0, 8.0, 10.0])
+    with pytest.raises(BladeError, match=match):
+        beam(s, line(s), kinks)
+
+
+def test_a_kink_within_rounding_of_its_station_is_on_it() -> None:
+    s = np.array([0.0, 8.0, 10.0])
+    assert beam(s, line(s), (8.0 + 1e-12,)).kinks == (8.0,)
