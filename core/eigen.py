@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from .multibody.rank import TOLERANCE
+from .rank import TOLERANCE
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -23,6 +23,8 @@ class Modes:
         elements: what refinement this is (elements, or terms of a series).
         damping: (m,) damping ratios, zero for undamped models.
         uncertainty: (m,) relative, where the code itself brackets its answer; empty: to be had by refinement.
+        rounding: (m,) relative error due to rounding alone, where the code estimates it; empty: not estimated.
+        strain: largest steady strain of the reference curve (axial and shear); nan: not computed.
         seconds: wall time of the solution.
     """
 
@@ -32,6 +34,8 @@ class Modes:
     elements: int
     damping: Array = field(default_factory=lambda: np.zeros(0))
     uncertainty: Array = field(default_factory=lambda: np.zeros(0))
+    rounding: Array = field(default_factory=lambda: np.zeros(0))
+    strain: float = float("nan")
     seconds: float = 0.0
 
     def __post_init__(self) -> None:

@@ -20,7 +20,7 @@ from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
 from .multibody import equilibrium
-from .multibody import linearize as lz
+from .multibody import linear as lz
 from .multibody.mechanism import MechanismError
 from .multibody.reduced import reduced
 from .multibody.tree import compile_tree
@@ -117,4 +117,4 @@ def _shapes(body: Chain, linear: lz.Linear, vectors: NDArray[np.complex128]) -> 
     if not len(inner):
         beta, dbeta = np.zeros((n - 1, 0)), np.zeros((n - 1, 0, vectors.shape[1]), complex)
     own = np.concatenate([dbeta, twists[1:]], axis=1).reshape(-1, vectors.shape[1])
-    return mode_shapes(body, Shape(nodes, beta), own)
+    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), own)

@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from ...core.solve import modes, sweep
+from ...core.solve import mesh_modes, mesh_sweep
 from ...references.protocol import registry as registry
 from ...references.protocol.interface import CodeError
 from ..input import library
@@ -176,7 +176,7 @@ def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, t
     blade = library.load(CASE).variants[0].blade
     code = None if name == "core" else registry.code(name)
     begun = time.perf_counter()
-    found = code.solve(blade, omega, elements, COUNT) if code else modes(blade, omega, elements, COUNT)
+    found = code.solve(blade, omega, elements, COUNT) if code else mesh_modes(blade, omega, elements, COUNT)
     seconds = time.perf_counter() - begun
     if len(found.frequencies) < 6:
         raise CodeError(f"{name}: {len(found.frequencies)} modes found of {COUNT} asked for")
@@ -189,7 +189,7 @@ def _swept(name: str, elements: int, speeds: Sequence[float]) -> float:
     code = None if name == "core" else registry.code(name)
     begun = time.perf_counter()
     if code is None:
-        for _ in sweep(blade, speeds, elements, COUNT):
+        for _ in mesh_sweep(blade, speeds, elements, COUNT):
             pass
     else:
         for omega in speeds:
@@ -211,12 +211,12 @@ def _growth(say: Callable[[str], None]) -> tuple[Growth, ...]:
 
 def _grown(elements: int) -> Growth:
     blade = library.load(CASE).variants[0].blade
-    modes(blade, OMEGA, 1, COUNT)
+    mesh_modes(blade, OMEGA, 1, COUNT)
     before = _peak()
     seconds = []
     for _ in range(3):
         begun = time.perf_counter()
-        modes(blade, OMEGA, elements, COUNT)
+        mesh_modes(blade, OMEGA, elements, COUNT)
         seconds.append(time.perf_counter() - begun)
     return Growth(elements, statistics.median(seconds), _peak() - before)
 

@@ -18,7 +18,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, section_mass, section_stiffness
 from ...core.element.sections import compliance
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered, participation
-from ...core.solve import modes
+from ...core.solve import mesh_modes
 from ..input.errors import CaseError
 from ..judge.pairing import Array
 
@@ -113,7 +113,7 @@ def polynomials(blade: Blade, omega: float, elements: int = 50) -> tuple[Polynom
         CaseError: if one of them is not among the lowest modes.
     """
     plain = principal(blade)
-    return tuple(_of(modes(plain, omega, elements, 8), plain, name) for name in WANTED)
+    return tuple(_of(mesh_modes(plain, omega, elements, 8), plain, name) for name in WANTED)
 
 
 def as_it_is(blade: Blade, solved: Modes) -> tuple[Polynomial, ...]:

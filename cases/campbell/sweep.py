@@ -1,50 +1,91 @@
 """Core's own answer for a blade over speeds: frequencies with names."""
 
+import warnings
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from types import MappingProxyType
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
+
+import numpy as np
 
 from ...core import solve, velocity_transformation
 from ...core.blade import Blade
+from ...core.modes import Modes
 from ..input.errors import NO_STATE, unsteady
 from ..judge.pairing import aligned, families, weights
-from ..verify.core_solver import Solver
 
 Method = Literal["chain", "velocity-transformation"]
-
-METHODS: Mapping[Method, Solver] = MappingProxyType(
-    {"chain": solve.modes, "velocity-transformation": velocity_transformation.modes}
-)
 """Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
+
+ELEMENTS = 50
+"""Of the velocity transformation, where none are given: its matrices are dense."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """One natural frequency: its place from the lowest, and its name, ``flapwise 2``, at that speed; rad/s."""
+    """One natural frequency: its place from the lowest, and its name, ``flapwise 2``, at that speed.
+
+    Attributes:
+        omega: rotor speed, rad/s.
+        mode: 1 for the lowest.
+        name: family and number.
+        frequency: rad/s.
+        uncertainty: relative; infinite where it is not known.
+        strain: largest steady strain at that speed.
+    """
 
     omega: float
     mode: int
     name: str
     frequency: float
+    uncertainty: float
+    strain: float
 
 
-def sweep(blade: Blade, speeds: Sequence[float], elements: int, count: int, method: Method = "chain") -> list[Named]:
-    """The ``count`` lowest modes (fewer if there are fewer) at each of ``speeds``, rad/s.
+def sweep(
+    blade: Blade,
+    speeds: Sequence[float],
+    elements: int | None,
+    count: int,
+    accuracy: float = 1e-6,
+    allow_large_strain: bool = False,
+    method: Method = "chain",
+) -> list[Named]:
+    """The ``count`` lowest modes (fewer if there are fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
 
     Raises:
-        CaseError: if a speed has no stable steady state.
+        CaseError: if a speed has no stable steady state, or one of large strain.
     """
     weight = weights(blade)
     rows = []
-    for omega in speeds:
-        try:
-            found = aligned(METHODS[method](blade, omega, elements, count), weight)
-        except NO_STATE as error:
-            raise unsteady(blade.name, omega, error) from error
-        seen: Counter[str] = Counter()
-        for mode, (family, frequency) in enumerate(zip(families(found, weight), found.frequencies, strict=True), 1):
-            seen[family] += 1
-            rows.append(Named(float(omega), mode, f"{family} {seen[family]}", float(frequency)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", solve.AccuracyWarning)  # uncertainties are in the rows
+        if method == "velocity-transformation":
+            found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)
+        else:
+            found = solve.sweep(
+                blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain
+            )
+        for omega in speeds:
+            try:
+                one = aligned(next(found), weight)
+            except NO_STATE as error:
+                raise unsteady(blade.name, omega, error) from error
+            seen: Counter[str] = Counter()
+            known = zip(families(one, weight), one.frequencies, one.uncertainty, strict=True)
+            for mode, (family, frequency, sure) in enumerate(known, 1):
+                seen[family] += 1
+                name = f"{family} {seen[family]}"
+                rows.append(Named(float(omega), mode, name, float(frequency), float(sure), one.strain))
     return rows
+
+
+def _by_velocity_transformation(
+    blade: Blade, speeds: Sequence[float], elements: int, count: int, allow_large_strain: bool
+) -> Iterator[Modes]:
+    """The uncertainty is that of the chain solver on the same mesh, and the difference between both methods."""
+    chain = solve.sweep(blade, speeds, elements, count, allow_large_strain=allow_large_strain)
+    for omega, same in zip(speeds, chain, strict=True):
+        found = velocity_transformation.modes(blade, omega, elements, count)
+        apart = np.abs(found.frequencies / same.frequencies - 1.0)
+        yield replace(found, uncertainty=same.uncertainty + apart, strain=same.strain)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.solve import modes
+from ...core.solve import mesh_modes
 from ..input import library
 from ..judge.pairing import Array
 from .diagram import Campbell, Wanted, campbell, rises
@@ -47,7 +47,7 @@ def variations(case: str = "park-blade", elements: int = 50) -> tuple[Variation,
         crude = campbell(
             blade,
             wanted,
-            lambda omega, blade=blade: modes(
+            lambda omega, blade=blade: mesh_modes(
                 blade,
                 omega,
                 lumping.elements,

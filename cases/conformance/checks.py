@@ -285,14 +285,14 @@ def shear(code: Code) -> None:
 
 @cache
 def _stubby(model: Model) -> Array:
-    return solve.modes(known.STUBBY, known.FAST, 30, 4, model=model).frequencies
+    return solve.mesh_modes(known.STUBBY, known.FAST, 30, 4, model=model).frequencies
 
 
 @cache
 def _with_and_without(name: str, model: Model) -> tuple[Array, Array]:
     """Core's frequencies of the blades that have a property, and lack it."""
     (one,) = (p for p in PROPERTIES if p.name == name)
-    having, lacking = (solve.modes(b, one.omega, 30, 4, model=model) for b in (one.having, one.lacking))
+    having, lacking = (solve.mesh_modes(b, one.omega, 30, 4, model=model) for b in (one.having, one.lacking))
     return having.frequencies, lacking.frequencies
 
 

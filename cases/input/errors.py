@@ -5,11 +5,13 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from ...core.chain.steady import SteadyStateError
+from ...core.chain.completeness import MissedModesError
+from ...core.chain.lanczos import EigensolverError
+from ...core.chain.steady import LargeStrainError, SteadyStateError
 from ...core.eigen import UnstableError
 
-NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError)
-"""What the solver raises where there is no steady state to vibrate about, or its numbers are out of all proportion."""
+NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError, EigensolverError, MissedModesError)
+"""What the solver raises where there is no steady state to vibrate about, or its eigensolver fails."""
 
 
 class CaseError(ValueError):
@@ -33,9 +35,12 @@ def unsteady(blade: str, omega: float, error: Exception) -> CaseError:
         return CaseError(
             f"{blade}: speed: {omega:g} rad/s: stiffness and mass are out of all proportion: check their units"
         )
+    what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
+    if isinstance(error, (EigensolverError, MissedModesError, LargeStrainError)):
+        remedy = " (--allow-large-strain)" if isinstance(error, LargeStrainError) else ""
+        return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}{remedy}")
     if not omega:
         cause = "does nothing hold a hinge at rest? give speeds above 0; are values too far apart? check units"
         return CaseError(f"{blade}: at rest: the stiffness is not positive definite: {cause}")
-    what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
     remedy = "hold the hinge, or give lower speeds" if "hinge" in what else "give lower speeds"
     return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}: {remedy}")

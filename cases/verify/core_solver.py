@@ -11,7 +11,7 @@ from ...core.effects import FULL, Model
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
-from ...core.solve import modes
+from ...core.solve import mesh_modes
 from ...references.protocol.worker import Answer, Failure, Run
 from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare
@@ -58,7 +58,7 @@ def answers(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     model: Model = FULL,
-    by: Solver = modes,
+    by: Solver = mesh_modes,
 ) -> list[Answer]:
     """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
     out: list[Answer] = []

@@ -26,7 +26,7 @@ from ...core.eigen import UnstableError
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
-from ...core.solve import modes
+from ...core.solve import mesh_modes
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Share
 from .controls import changed
@@ -99,7 +99,7 @@ def _solved(
     """None where there is no answer: what is left out may have held the blade."""
     try:
         with np.errstate(invalid="ignore"):
-            return modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
 

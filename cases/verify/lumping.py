@@ -12,7 +12,7 @@ from ...core.blade import Blade
 from ...core.effects import Model
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
-from ...core.solve import modes
+from ...core.solve import mesh_modes
 from ..judge.pairing import MOTIONS, aligned, families, weights
 from ..judge.results import Level
 
@@ -44,7 +44,9 @@ def lumping(blade: Blade) -> tuple[Level, ...]:
     weight = weights(blade)
     rows = []
     for mass, stiffness, n in product(MASSES, STIFFNESSES, ELEMENTS):
-        found = aligned(modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, model=POINT_MASSES), weight)
+        found = aligned(
+            mesh_modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, model=POINT_MASSES), weight
+        )
         named = zip(families(found, weight), found.frequencies.tolist(), strict=True)
         chordwise = [f for family, f in named if family == MOTIONS[1]][:COUNT]
         rows += [Level(CASE, OMEGA, k, variant(mass, stiffness), n, f) for k, f in enumerate(chordwise, 1)]

@@ -56,7 +56,7 @@ class Mistake:
 
 def right(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
     """Core as it is."""
-    return solve.modes(blade, omega, elements, count, model=model)
+    return solve.mesh_modes(blade, omega, elements, count, model=model)
 
 
 def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
@@ -136,7 +136,7 @@ LUMPED: tuple[Mass, Measure] = ("half_end", "parent")
 def lumped(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
     """Core with point masses, half of each element's mass at either end."""
     mass, stiffness = LUMPED
-    return solve.modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+    return solve.mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
 
 
 def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:

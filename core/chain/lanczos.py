@@ -14,15 +14,24 @@ from scipy.linalg import eigh
 
 from .. import eigen
 from ..eigen import Eigen
-from . import blocks
+from . import blocks, completeness
 from .krylov import Operator, extend, forward, hermitian, noise, quotients
 from .pencil import Linear
 
 Array = NDArray[np.float64]
 
 _TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
-_SOLVED, _REFINEMENTS = 1e-8, 4  # relative error of a solution with K that is let be, and the most steps to get there
+_SOLVED, _REFINEMENTS, _ILL = (
+    1e-8,
+    20,
+    0.3,
+)  # relative error of a solution with K that is let be, the most steps to get there, and of the first
 _FIRST, _EVERY = 26, 12  # when to look whether the modes are there
+_BEYOND = 4  # modes beyond those wanted, to find a gap in
+
+
+class EigensolverError(ArithmeticError):
+    """The eigensolver failed; it says nothing about the blade's stability."""
 
 
 def lanczos(p: Linear, count: int) -> Eigen:
@@ -34,18 +43,25 @@ def lanczos(p: Linear, count: int) -> Eigen:
 
     Raises:
         UnstableError: if K is not positive definite.
-        ArithmeticError: if the basis is full before the modes are there.
+        EigensolverError: if the basis is full before the modes are there, or rounding leaves nothing of K.
+        MissedModesError: if the modes are not all there, by ``completeness``.
     """
     try:
         factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
-    if not factor.positive:
-        raise eigen.unstable()
     n, exact = p.K.size, p.strained
     M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
-    refinements = _refinements(noise(factor, exact, M, w))
+    lost = noise(factor, exact, M, w)
+    if not lost < _ILL:
+        raise EigensolverError(
+            f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
+            "fewer elements"
+        )
+    if not factor.positive:
+        raise eigen.unstable()
+    refinements = _refinements(lost)
     a = Operator(M, C, K, factor, exact, refinements)
     w, _, _ = forward(a, w)  # smooth
     limit = min(2 * n, max(200, 8 * count))
@@ -54,31 +70,41 @@ def lanczos(p: Linear, count: int) -> Eigen:
     while True:
         w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
         if not size:
-            raise ArithmeticError("stiffness and mass are out of all proportion: check their units")
+            raise EigensolverError("stiffness and mass are out of all proportion: check their units")
         look = size + _EVERY
-        wanted = min(count, size // 2)
-        mu, z = eigh(hermitian(projected, size), subset_by_index=[size - wanted, size - 1], check_finite=False)
+        wanted, more = min(count, size // 2), min(count + _BEYOND, size // 2)
+        mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)
+        beyond, mu, z = mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _TOLERANCE).all():
             break
     positive = mu > 1e-12 * mu.max(initial=0.0)
     if not positive.any() or not np.isfinite(mu).all():
-        raise ArithmeticError("Lanczos found no mode: the stiffness is all but singular")
+        raise EigensolverError("Lanczos found no mode: the stiffness is all but singular")
     if error[positive].max() > 1e-6:
-        raise ArithmeticError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
+        raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
     z = z[:, positive].T
     x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
     x = x.reshape(len(z), 2, n)
     kappa, inertia, half = quotients(a, x)
     frequencies = kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)  # of a loose joint κ is rounding
     if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
-        raise ArithmeticError(
+        raise EigensolverError(
             "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
         )
     order = np.argsort(frequencies)
+    completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()], lost)
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
     return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
+
+
+def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
+    """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
+    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.rest))
+    x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
+    kappa, inertia, half = quotients(Operator(M, C, K, p.factor, p.strained, 0), x)
+    return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)
 
 
 @lru_cache(maxsize=4)

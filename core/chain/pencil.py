@@ -66,15 +66,24 @@ class Linear:
 
 @dataclass(frozen=True)
 class Shape:
-    """Where a chain is: node poses (n+1, 4, 4) in the hub's axes and the elements' internal coordinates β (n, 6 or 0)."""
+    """Where a chain is.
+
+    Attributes:
+        nodes: (n+1, 4, 4) poses in the hub's axes.
+        beta: (n, 6 or 0) the elements' internal coordinates β.
+        relative: (n, 4, 4) pose of each node in the frame of the one before. They follow from ``nodes``, but differences of
+            poses lose the strains' last digits: with an axial stiffness EA and elements of length h, at a radius R, a force of
+            EA R/h times the rounding of one.
+    """
 
     nodes: Array
     beta: Array
+    relative: Array
 
 
 def rest(chain: Chain) -> Shape:
     """The undeformed shape."""
-    return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)))
+    return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)), chain.between)
 
 
 def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: Model = FULL) -> Linear:
@@ -90,8 +99,8 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     n, d = len(shape.nodes), 6 + chain.beams.inner
     frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
     x, lever = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
-    nodes, corner = np.ascontiguousarray(shape.nodes), np.ascontiguousarray(chain.corner)
-    _place(nodes, omega, gravity, chain.force, corner, frame, fall, axes, push, x, lever)
+    nodes, relative, corner = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, chain.corner))
+    _place(nodes, relative, omega, gravity, chain.force, corner, frame, fall, axes, push, x, lever)
     p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
     inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
@@ -118,6 +127,7 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
 @compiled
 def _place(
     nodes: Array,
+    relative: Array,
     omega: float,
     gravity: Array,
     force: Array,
@@ -130,7 +140,7 @@ def _place(
     lever: Array,
 ) -> None:
     """Of every node, in its own axes: twist of the hub's frame, free fall, load, and the hub's axes; x is end b seen from a."""
-    back, to_node, node = np.empty((4, 4)), np.empty((6, 6)), np.empty((4, 4))
+    back, to_node = np.empty((4, 4)), np.empty((6, 6))
     for k in range(len(nodes)):
         rigid.inverse(nodes[k], back)
         rigid.adjoint(back, to_node)
@@ -143,9 +153,8 @@ def _place(
                 fall[k, i] += back[i, j] * gravity[j]
                 push[k, i] += back[i, j] * force[k, j]
         if k + 1 < len(nodes):
-            rigid.compose(back, nodes[k + 1], node)
-            rigid.adjoint(node, lever[k])
-            rigid.compose(node, corner[k], x[k])
+            rigid.adjoint(relative[k], lever[k])
+            rigid.compose(relative[k], corner[k], x[k])
 
 
 @compiled

@@ -23,19 +23,23 @@ def holds(chain: Chain) -> NDArray[np.bool_]:
     return np.diagonal(turn.T @ chain.held @ turn) > 0.5
 
 
-def put(chain: Chain, nodes: Array) -> Array:
-    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its held coordinates zero; the blade is carried along."""
+def put(chain: Chain, nodes: Array) -> tuple[Array, Array]:
+    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its held coordinates zero; the blade is carried along.
+
+    Also returned: the pose (4, 4) of node 1 in the frame of node 0.
+    """
     fixed = holds(chain)
     if not fixed.any():
-        return nodes
+        return nodes, sp.inverse(nodes[0]) @ nodes[1]
     q = np.where(fixed, 0.0, _coordinates(chain, nodes))
     frame = sp.pose(chain.root_axes, np.zeros(3))
     here = frame.copy()
     for step in sp.exp(_SCREWS * q[:, None]):
         here = here @ step
+    first = here @ frame.T
     out = nodes.copy()
-    out[1:] = nodes[0] @ here @ frame.T @ sp.inverse(nodes[1]) @ nodes[1:]
-    return out
+    out[1:] = nodes[0] @ first @ sp.inverse(nodes[1]) @ nodes[1:]
+    return out, first
 
 
 def held(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..compiled import compiled
 from ..effects import Model
 from ..element import beams as bm
+from ..element import measures
 from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
@@ -19,13 +20,22 @@ from .pencil import Linear, Shape, linearize, rest
 Array = NDArray[np.float64]
 
 _STEPS = 40
-_BALANCED, _ROUNDING = 1e-10, 1e-15  # Newton's step, of the displacement, and of the blade's length (or a radian)
+_EPS = float(np.finfo(float).eps)
+_STALLED, _NOTHING = (
+    10.0,
+    1e-4,
+)  # times a bound of rounding's energy: Newton's steps may stop shrinking here; and need go on
+_SHRINKING = 1e-2  # least factor between the energies of steps that converge
 ORDER = 3  # of the extrapolation along the speeds
 _SMALLEST_RAMP = 2.0**-8
 
 
 class SteadyStateError(ValueError):
     """No steady rotating state was found at this speed."""
+
+
+class LargeStrainError(SteadyStateError):
+    """The steady state is strained beyond what linear elastic sections describe."""
 
 
 @dataclass(frozen=True)
@@ -67,11 +77,17 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
 
 
 def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
+    """Newton's method down to rounding.
+
+    The error of the energy norm is that of the step, δᵀKδ. It is compared with the energy of the rounding of the nodes' poses,
+    below which no step can be told from none; the size of the step says nothing about a blade that hardly stretches.
+    """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
     for _ in range(_STEPS):
         if chain.held.size:
-            shape = Shape(root_joint.put(chain, shape.nodes), shape.beta)
+            nodes, first = root_joint.put(chain, shape.nodes)
+            shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
         try:
             step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)
@@ -80,33 +96,55 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        displaced = np.abs(shape.nodes - chain.nodes)
-        far = max(displaced[:, :3, 3].max() / chain.scale, displaced[:, :3, :3].max())
-        # there, or as near as rounding lets it; the last step still improves the shape, from which others are extrapolated
-        if change < max(_BALANCED * far, _ROUNDING) or (change < 1e-6 and change > 0.1 * before):
+        energy, noise = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
+        stalled = energy > _SHRINKING * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= _NOTHING * noise or (stalled and energy <= _STALLED * noise):
             return Steady(moved(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
-        shape = moved(shape, step)
-        before = change
+        shape, before = moved(shape, step), energy
     raise SteadyStateError("no convergence")
+
+
+def rounding_energy(p: Linear, shape: Shape) -> float:
+    """Σ ρᵀ S ρ of relative poses in error by rounding: no step of less energy can be told from none."""
+    length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
+    weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
+    return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.spring, weight**2)))
+
+
+def largest_strain(chain: Chain, shape: Shape) -> float:
+    """Largest steady strain of the reference curve: axial, and shear of a ``corotational`` chain, mean over each element.
+
+    Bending strains are not included: they need the sections' thickness, which a blade does not state.
+    """
+    length = np.linalg.norm(chain.beams.law.eta[:, :3], axis=1)
+    real = length > 1e-9 * chain.scale  # not a root's joint
+    kept = 3 if chain.beams.law.measure == "corotational" else 1
+    found = measures.response(chain.beams.law, shape.relative @ chain.corner, shape.beta)
+    strain = found.strain[real, :kept] / length[real, None]
+    return float(np.linalg.norm(strain, axis=1).max(initial=0.0))
 
 
 def moved(shape: Shape, step: Array) -> Shape:
     """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
-    nodes = shape.nodes.copy()
-    _move(step, nodes[1:])
-    return Shape(nodes, shape.beta + step[:, :-6])
+    nodes, relative = shape.nodes.copy(), shape.relative.copy()
+    _move(step, nodes[1:], relative)
+    return Shape(nodes, shape.beta + step[:, :-6], relative)
 
 
 @compiled
-def _move(step: Array, nodes: Array) -> None:
-    inner, here, change = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
+def _move(step: Array, nodes: Array, relative: Array) -> None:
+    inner, here, between = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
+    change, back = np.empty((4, 4)), np.eye(4)
     for k in range(len(nodes)):
         rigid.exp(step[k, inner:], change)
         for i in range(4):
             for j in range(4):
                 here[i, j] = nodes[k, i, j]
         rigid.compose(here, change, nodes[k])
+        rigid.compose(back, relative[k], between)
+        rigid.compose(between, change, relative[k])
+        rigid.inverse(change, back)
 
 
 @compiled

@@ -66,16 +66,17 @@ class Chain:
 
 def discretize(
     blade: Blade,
-    elements: int,
+    elements: int | Array,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     load: Array | None = None,
 ) -> Chain:
-    """Divide a blade into ``elements``, of equal arc length but for its kinks (see ``divide``).
+    """Divide a blade into elements.
 
     Args:
         blade: the blade.
-        elements: how many.
+        elements: how many, of equal arc length but for kinks (see ``divide``); or the arc lengths (n+1,) of their ends, every
+            kink among them.
         mass: ``consistent`` keeps the mass where it is (fourth order); ``half_end`` lumps each element's halves at its
             ends, as Park et al. 2010 do (second order).
         stiffness: strain measure, see ``elements``.
@@ -85,14 +86,18 @@ def discretize(
     Raises:
         ValueError: if there is not at least one element, or the load is not one row of three a station.
     """
-    if elements < 1:
+    if isinstance(elements, np.ndarray):
+        s = elements
+        elements = len(s) - 1
+    elif elements < 1:
         raise ValueError(f"elements: {elements}: a blade needs at least one element")
+    else:
+        s = divide(blade, elements)
+        elements = len(s) - 1
     if load is not None and (load.shape != (len(blade.stations), 3) or not np.isfinite(load).all()):
         raise ValueError(
             f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
         )
-    s = divide(blade, elements)
-    elements = len(s) - 1
     at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
     nodes, ends = sections.frames(blade, s), sections.frames(blade, s[1:], before=True)

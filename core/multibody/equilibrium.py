@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rank import TOLERANCE, Ranked, ranked
 from . import dynamics, partition
 from .dynamics import Cartesian
 from .kinematics import Kinematics, kinematics, poses
 from .mechanism import MechanismError
-from .rank import TOLERANCE, Ranked, ranked
 from .tree import Tree
 
 Array = NDArray[Any]

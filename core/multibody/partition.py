@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rank import pivots, ranked
 from ..space import spatial as sp
 from .kinematics import Kinematics
 from .mechanism import MechanismError
-from .rank import pivots, ranked
 from .tree import Tree
 
 Array = NDArray[np.float64]

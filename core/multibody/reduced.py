@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rank import ranked
 from . import partition as pt
 from .dynamics import cartesian, reduced_mass, unbalanced
 from .kinematics import kinematics
@@ -16,8 +17,6 @@ from .tree import Tree
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-_RANK = 1e-9  # of Φ_qD, which redundant constraints make singular
 
 
 @dataclass(frozen=True)
@@ -64,22 +63,22 @@ def reduced(tree: Tree, q: Array, v_I: Array, independent: tuple[str, ...] | Non
     Phi_q = np.concatenate([pt.jacobian(tree, at_rest.B), prescribed])  # of Φ = [Φᶜ; Φᴹ] (eq. 9)
     I = pt.partition(tree, at_rest, independent).independent
     D = np.setdiff1d(np.arange(n), I)  # q = [q_I; q_D] (eq. 12)
-    solve = np.linalg.pinv(Phi_q[:, D], rcond=_RANK)  # Φ_qD⁻¹
+    inverse = ranked(Phi_q[:, D]).solve  # Φ_qD⁻¹, which redundant constraints make singular
 
     R = np.zeros((n, len(I)))
     R[I] = np.eye(len(I))
-    R[D] = -solve @ Phi_q[:, I]  # R = [1; −Φ_qD⁻¹ Φ_qI] (eq. 16)
+    R[D] = -inverse(Phi_q[:, I])  # R = [1; −Φ_qD⁻¹ Φ_qI] (eq. 16)
 
     loops = 6 * len(tree.welds)
     Phi_t = np.concatenate([np.zeros(loops), [-given[j].rate for j in sorted(given)]])
     v = np.empty(n)
     v[I] = v_I
-    v[D] = -solve @ (Phi_q[:, I] @ v_I + Phi_t)  # from Φ_qD q̇_D + Φ_qI q̇_I + Φ_t = 0 (eq. 17) (eq. 18)
+    v[D] = -inverse(Phi_q[:, I] @ v_I + Phi_t)  # from Φ_qD q̇_D + Φ_qI q̇_I + Φ_t = 0 (eq. 17) (eq. 18)
 
     k = kinematics(tree, q, v, still)  # v̇ = 0, so that Ẏ is Ḃ v alone
     gamma = np.concatenate([pt.jacobian(tree, k.B1) @ v, [-given[j].acceleration for j in sorted(given)]])
     gamma_bar = np.zeros(n)
-    gamma_bar[D] = -solve @ gamma  # q̈_D of Φ_qD q̈_D + Φ_qI q̈_I + γ = 0 at q̈_I = 0 (eq. 19) (eq. 20) (eq. 22)
+    gamma_bar[D] = -inverse(gamma)  # q̈_D of Φ_qD q̈_D + Φ_qI q̈_I + γ = 0 at q̈_I = 0 (eq. 19) (eq. 20) (eq. 22)
 
     wrenches = cartesian(tree, k)  # M Ḃ v − Q
     M_star = reduced_mass(k, wrenches)
@@ -93,4 +92,4 @@ def accelerations(r: Reduced) -> tuple[Array, Array]:
     """Accelerations v̇ (n,) and multipliers λ (c,), least ones where constraints are redundant."""
     dv_I = np.linalg.solve(r.M_hat, r.Q_hat)  # M̂ v̇_I = Q̂ (eq. 23)
     dv = r.R @ dv_I + r.gamma_bar  # (eq. 21)
-    return dv, np.linalg.lstsq(r.Phi_q.T, r.Q_star - r.M_star @ dv, rcond=_RANK)[0]  # M* v̇ + Φ_qᵀ λ = Q* (eq. 8)
+    return dv, ranked(r.Phi_q.T).solve(r.Q_star - r.M_star @ dv)  # M* v̇ + Φ_qᵀ λ = Q* (eq. 8)

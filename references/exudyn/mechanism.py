@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from ...core.effects import FULL
 from ...core.multibody.mechanism import Mechanism
-from ...core.multibody.rank import ranked
 from ...core.multibody.tree import Tree, compile_tree
+from ...core.rank import ranked
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CodeError, Shares
 from ..protocol.mechanism_interface import MechanismModes

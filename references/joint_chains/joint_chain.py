@@ -29,6 +29,14 @@ Array = NDArray[np.float64]
 STEPS, SMALLEST_RAMP = 40, 2.0**-8
 """Of Newton's method for the steady state; of the load, where Newton fails with all of it at once."""
 
+EPS = float(np.finfo(float).eps)
+
+STALLED, NOTHING = 10.0, 1e-4
+"""Times a bound of rounding's energy: Newton's steps may stop shrinking at the first, and go on to the second at most."""
+
+SHRINKING = 1e-2
+"""Least factor between the energies of steps that converge."""
+
 
 class Plant(Protocol):
     """A chain in another code: a hub that turns about z, then a body on six joints for every node but the clamped one.
@@ -79,12 +87,30 @@ def chain_modes(
     chain = discretize(blade, elements, "half_end", "parent")
     body = plant(chain)
     elastic = cast(Array, block_diag(*chain.beams.stiffness))
-    q = steady(body, elastic, omega, chain.scale)
+    q, before = steady(body, elastic, omega, chain)
     _, stiffness, gyroscopic = body.inertial(q, omega)
-    frequencies, vectors = gyroscopic_modes(body.mass(q), gyroscopic, elastic + stiffness, count)
+    mass = body.mass(q)
+    frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
+    noise = rounding(mass, elastic, stiffness, before, frequencies, vectors)
     at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
     shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
-    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, seconds=time.perf_counter() - begun)
+    seconds = time.perf_counter() - begun
+    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=noise, seconds=seconds)
+
+
+def rounding(
+    mass: Array, elastic: Array, stiffness: Array, before: Array, frequencies: Array, vectors: NDArray[np.complex128]
+) -> Array:
+    """(m,) relative error of the frequencies that the rounding of K and M brings: δω/ω = x*(δK − ω²δM)x / 2x*Kx.
+
+    δK is bounded by what breaks the symmetry of the code's derivative and by what a step of rounding changes in it.
+    """
+    error = np.maximum(np.abs(stiffness - before), np.abs(stiffness - stiffness.T))
+    error += EPS * (np.abs(elastic) + np.abs(stiffness))
+    size = np.abs(vectors)
+    energy = np.einsum("im,ij,jm->m", vectors.conj(), elastic + stiffness, vectors).real
+    kinetic = EPS * frequencies**2 * np.einsum("im,ij,jm->m", size, np.abs(mass), size)
+    return 0.5 * (np.einsum("im,ij,jm->m", size, error, size) + kinetic) / np.abs(energy)
 
 
 def places(chain: Chain) -> Array:
@@ -133,41 +159,54 @@ def _rigid(inertia: Array) -> bool:
     return max(np.abs(w).max() for w in wrong) <= 1e-12 * np.abs(inertia).max()
 
 
-def steady(plant: Plant, elastic: Array, omega: float, length: float) -> Array:
+def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Array, Array]:
     """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial ones.
 
     The load, Ω², is raised in steps only if all of it at once is too much for Newton's method.
+
+    Returns:
+        The coordinates, and the derivative (n, n) of the inertial forces one step of rounding before.
 
     Raises:
         CodeError: no steady state near the undeformed chain.
     """
     q, done, step = np.zeros(len(elastic)), 0.0, 1.0
+    stiffness = np.zeros_like(elastic)
     while done < 1.0:
         load = min(1.0, done + step)
-        found = _newton(plant, elastic, omega * load**0.5, q, length)
+        found = _newton(plant, elastic, omega * load**0.5, q, chain)
         if found is not None:
-            q, done = found, load
+            (q, stiffness), done = found, load
         elif step > SMALLEST_RAMP:
             step /= 2
         else:
             raise CodeError(f"omega: {omega:g} rad/s: no steady state past {done:.0%} of Ω²; lower the speed")
-    return q
+    return q, stiffness
 
 
-def _newton(plant: Plant, elastic: Array, omega: float, q: Array, length: float) -> Array | None:
-    size = np.tile(np.repeat([length, 1.0], 3), len(q) // 6)
+def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) -> tuple[Array, Array] | None:
+    """Newton's method until the energy of its step, the square of the error in the energy norm, is that of rounding.
+
+    The inertial forces are sums over all bodies further out, so they are known to the rounding of the largest, at the
+    radius of the tip.
+    """
+    size = np.tile(np.repeat([chain.scale, 1.0], 3), len(q) // 6)
+    lever = np.tile(np.repeat([1.0, float(np.linalg.norm(chain.nodes[-1, :3, 3]))], 3), len(q) // 6)
     before = np.inf
     for _ in range(STEPS):
         force, stiffness, _ = plant.inertial(q, omega)
+        residual = force + elastic @ q
         try:
-            step = np.linalg.solve(elastic + stiffness, -force - elastic @ q)
+            step = np.linalg.solve(elastic + stiffness, -residual)
         except np.linalg.LinAlgError:
             return None
-        change = np.abs(step / size).max()
-        if not change < 1.0:
+        if not np.abs(step / size).max() < 1.0:
             return None
         q = q + step
-        if change < 1e-10 or 0.1 * before < change < 1e-7:  # converged, or down to rounding
-            return q
-        before = change
+        unsure = EPS * (np.abs(force / lever).max() * lever + np.abs(elastic) @ np.abs(q))
+        energy, noise = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
+        stalled = energy > SHRINKING * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= NOTHING * noise or (stalled and energy <= STALLED * noise):
+            return q, stiffness
+        before = energy
     return None

@@ -34,7 +34,7 @@ def decode_modes(data: dict[str, Any]) -> Modes:
         ValueError: if frequencies or shapes are not finite or do not fit each other.
     """
     pairs = np.array(data["shapes"], dtype=float).reshape(len(data["frequencies"]), len(STATIONS), 4, 2)
-    arrays = {name: np.array(data[name], dtype=float) for name in ("frequencies", "damping", "uncertainty")}
+    arrays = {name: np.array(data[name], dtype=float) for name in ("frequencies", "damping", "uncertainty", "rounding")}
     return Modes(**{**data, **arrays, "shapes": pairs[..., 0] + 1j * pairs[..., 1]})
 
 

@@ -28,6 +28,9 @@ Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
 
+Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
+"""A relative uncertainty."""
+
 Flag = Annotated[bool, Parameter(negative=())]
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from ...cases.campbell.sweep import Method, Named, sweep
+from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
 from ...cases.input import library
 from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
@@ -14,7 +14,7 @@ from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import PASSED, Elements, Flag, UsageError, Whole
+from .arguments import PASSED, Accuracy, Elements, Flag, UsageError, Whole
 from .mounting import Mounting
 
 
@@ -24,9 +24,11 @@ def modes(
     *,
     omega: str | None = None,
     rpm: str | None = None,
-    elements: Elements = 50,
+    elements: Elements | None = None,
+    accuracy: Accuracy = 1e-6,
     modes: Whole = 10,
     method: Method = "chain",
+    allow_large_strain: Flag = False,
     json: Flag = False,
     mounting: Mounting | None = None,
 ) -> int:
@@ -42,16 +44,21 @@ def modes(
     rpm
         The same in revolutions per minute.
     elements
-        Beam elements along the blade.
+        Beam elements of equal length along the blade; by default, as many as --accuracy takes.
+    accuracy
+        Largest relative uncertainty of a frequency, without --elements.
     modes
         How many, from the lowest.
     method
         `chain`: block-tridiagonal matrices, no velocity transformation. `velocity-transformation`: the method of Park et al.
-        (2010), with dense matrices; at most 200 elements.
+        (2010), with dense matrices: 50 elements by default, at most 200.
+    allow_large_strain
+        Accept steady strains above 20 %.
     json
-        Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz.
+        Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown),
+        steady_strain.
     """
-    if method != "chain" and elements > MOST_ELEMENTS:
+    if method != "chain" and (elements or 0) > MOST_ELEMENTS:
         raise UsageError(
             f"--elements {elements}: --method {method} has dense matrices: at most {MOST_ELEMENTS}; or use --method chain"
         )
@@ -61,11 +68,21 @@ def modes(
         if speeds is None and not subject.speeds:
             raise UsageError(f"--rpm: missing: {case} says no speeds: give them, as in 0:15:5")
         blade = subject.blade
-        found = sweep(blade, subject.speeds if speeds is None else speeds, elements, modes, method)
+        at = subject.speeds if speeds is None else speeds
+        found = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method)
         rows += [_tidy(blade.name, row) for row in found]
         if not json:
-            title = f"{blade.name}: {len(blade.stations)} stations, {elements} elements, method: {method}"
-            output().print(terminal.frequencies(found, title, units or subject.units))
+            if elements is None and method != "chain":
+                elements = ELEMENTS
+            mesh = f"accuracy {accuracy:g}" if elements is None else f"{elements} elements"
+            title, shown = (
+                f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}",
+                units or subject.units,
+            )
+            console = output()
+            console.print(terminal.frequencies(found, title, shown))
+            for line in terminal.remarks(found, accuracy if elements is None else None, shown):
+                console.print(line, markup=False, soft_wrap=True)
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
     return PASSED
@@ -113,6 +130,8 @@ def _tidy(case: str, row: Named) -> dict[str, object]:
         "name": row.name,
         "frequency_rad_s": row.frequency,
         "frequency_hz": row.frequency / (2 * np.pi),
+        "relative_uncertainty": row.uncertainty if np.isfinite(row.uncertainty) else None,
+        "steady_strain": row.strain,
     }
 
 

@@ -1,0 +1,101 @@
+"""Are all modes there? A count of the frequencies below a given one, by Sylvester's law of inertia.
+
+For K positive definite, M positive semi-definite and C skew, the Hermitian matrix H(ω) = K + iωC − ω²M has as many negative
+eigenvalues as there are natural frequencies between 0 and ω: its eigenvalues are positive at ω = 0, and each one that
+crosses zero does so downwards, for x*H′x = −(x*Kx + ω²x*Mx)/ω < 0 wherever H x = 0. A block LDLᴴ factorisation gives the signs
+without an eigenvalue. (Sylvester 1852; Parlett, *The Symmetric Eigenvalue Problem*, 1998, sec. 3.3; Wittrick and Williams,
+Quart. J. Mech. Appl. Math. 24, 1971, 263, for the count.)
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from .pencil import Linear
+
+Array = NDArray[np.float64]
+
+_GAP, _NEAR, _FAR = 1e-3, 1e-6, 0.03
+"""Relative distances: between frequencies, where there is room for a count; from a frequency, where there is none, and the most
+that rounding makes of it."""
+
+
+class MissedModesError(ArithmeticError):
+    """The eigensolver missed modes, or found one twice."""
+
+
+def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> None:
+    """Prove that frequencies are the lowest ones, each as often as it is there.
+
+    The count is taken in the gap above them. Where the last one belongs to a cluster of which the rest was not asked for, there
+    may be more than were found; then there must be no more than found below that one.
+
+    Args:
+        p: the pencil.
+        frequencies: (m,) ascending.
+        beyond: (k,) estimates of the next, from above, to find the gap with.
+        noise: relative error of the pencil by rounding; frequencies nearer to each other than ten times that, or 3 %, are not
+            told apart.
+
+    Raises:
+        MissedModesError: there are more or fewer.
+    """
+    last, next_ = frequencies[-1], beyond[beyond > frequencies[-1]].min(initial=2.0 * frequencies[-1])
+    near = min(max(_NEAR, 10.0 * noise), _FAR)
+    room = min(next_ / last - 1.0, 0.1)
+    wide = room > _GAP
+    shift, found = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
+    counted = below(p, shift)
+    if counted > found or (counted == found and not wide):
+        shift = last * (1.0 - near)
+        found = int((frequencies < shift).sum())
+        counted = below(p, shift)
+    if counted != found:
+        raise MissedModesError(
+            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: ask for "
+            "another number of modes or elements, and report this blade"
+        )
+
+
+def below(p: Linear, omega: float) -> int:
+    """How many natural frequencies there are between 0 and ``omega`` (rad/s), which is none of them."""
+    K, C, M = p.K, p.C, p.M
+    return _negative(K.diagonal, K.upper, C.diagonal, C.upper, M.diagonal, M.upper, omega)
+
+
+@compiled
+def _negative(K: Array, K_upper: Array, C: Array, C_upper: Array, M: Array, M_upper: Array, omega: float) -> int:
+    """Negative pivots of the block LDLᴴ factorisation of K + iωC − ω²M, without exchange of rows."""
+    n, d = K.shape[:2]
+    H, U = np.empty((d, d), np.complex128), np.empty((6, d), np.complex128)
+    square, count, first = omega * omega, 0, d - 6
+    pivots = np.empty(d)
+    for k in range(n):
+        for i in range(d):  # the lower half
+            for j in range(i + 1):
+                H[i, j] = complex(K[k, i, j] - square * M[k, i, j], omega * C[k, i, j])
+        if k > 0:  # less Uᴴ Δ⁻¹ U of the block before
+            for m in range(6):
+                for i in range(d):
+                    scaled = U[m, i].conjugate() / pivots[first + m]
+                    for j in range(i + 1):
+                        H[i, j] -= scaled * U[m, j]
+        for p in range(d):  # H = L Δ Lᴴ in place
+            pivot = H[p, p].real
+            pivots[p] = pivot
+            if pivot < 0.0:
+                count += 1
+            for i in range(p + 1, d):
+                entry = H[i, p]
+                H[i, p] = entry / pivot
+                for j in range(p + 1, i + 1):
+                    H[i, j] -= entry * H[j, p].conjugate()
+        if k < n - 1:  # U = L⁻¹ (block above), of the last six
+            for i in range(6):
+                for j in range(d):
+                    U[i, j] = complex(K_upper[k, i, j] - square * M_upper[k, i, j], omega * C_upper[k, i, j])
+                for m in range(i):
+                    factor = H[first + i, first + m]
+                    for j in range(d):
+                        U[i, j] -= factor * U[m, j]
+    return count

@@ -1,0 +1,55 @@
+"""Where a blade is divided: at its kinks and stations, and finely in the boundary layer at the root."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blade import Blade, mass_at, stiffness_at
+
+Array = NDArray[np.float64]
+
+_GROWTH = 1.5  # of an element over the one before, outwards from the root
+_JUMP = 1e-4  # of the blade's length: stations nearer to each other are one step of the properties
+_STATIONS = 200  # more are not told apart
+
+
+def coarse(blade: Blade, elements: int, omega: float) -> Array:
+    """(n+1,) arc lengths of nodes: at least ``elements`` elements, no longer at the root than the layer there.
+
+    A blade under a tension T bends within √(EI/T) of where it is clamped.
+    """
+    longest = blade.length / elements
+    sizes = [min(longest, _layer(blade, omega))]
+    while sum(sizes) < blade.length:
+        sizes.append(min(longest, _GROWTH * sizes[-1]))
+    ends = np.append(0.0, np.cumsum(sizes)) * blade.length / sum(sizes)
+    number = np.arange(len(ends), dtype=float)
+    stations = blade.stations[1:-1] if len(blade.stations) <= _STATIONS else np.empty(0)
+    kept = [0.0, *blade.kinks, blade.length]
+    for s in stations:
+        if np.abs(np.array(kept) - s).min() > _JUMP * blade.length:
+            kept.append(float(s))
+    kept.sort()
+    at = np.interp(kept, ends, number)
+    pieces = np.maximum(np.ceil(np.diff(at) - 1e-9).astype(int), 1)
+    inside = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(at[:-1], at[1:], pieces, strict=True)]
+    nodes = np.interp(np.append(np.concatenate(inside), at[-1]), number, ends)
+    nodes[np.append(0, np.cumsum(pieces))] = kept
+    return nodes
+
+
+def halved(nodes: Array) -> Array:
+    """Every element in two."""
+    out = np.empty(2 * len(nodes) - 1)
+    out[::2], out[1::2] = nodes, 0.5 * (nodes[1:] + nodes[:-1])
+    return out
+
+
+def _layer(blade: Blade, omega: float) -> float:
+    """√(EI/T) at the root, m; the smaller EI."""
+    s = np.linspace(0.0, blade.length, 401)
+    mass = mass_at(blade, s)[:, 0, 0]
+    tension = omega**2 * (
+        float(np.trapezoid(mass * (blade.hub_radius + s), s)) + blade.tip_mass[0, 0] * (blade.hub_radius + blade.length)
+    )
+    EI = np.diagonal(stiffness_at(blade, s[:1])[0])[4:].min()
+    return float(np.sqrt(EI / tension)) if tension > 0 and np.isfinite(EI) else blade.length

@@ -1,0 +1,88 @@
+"""The count of frequencies by the inertia of K + iωC − ω²M, and the proof that none of the modes is missing."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.core import eigen, solve
+from southwell.core.blade import uniform_blade
+from southwell.core.chain import blocks, completeness, lanczos
+from southwell.core.chain.completeness import MissedModesError
+from southwell.core.chain.pencil import Linear
+from southwell.core.effects import FULL
+from southwell.core.element.discretize import discretize
+from southwell.core.modes import Modes
+
+ROUND = uniform_blade("round", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=1e6, mass=10.0)
+FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
+
+
+def pencil(blade, omega: float, elements: int, **how: Any) -> Linear:
+    return solve.balance(discretize(blade, elements, **how), omega, np.zeros(3), FULL).linear
+
+
+@pytest.mark.parametrize("how", [{}, {"mass": "half_end", "stiffness": "parent"}], ids=["consistent", "half_end"])
+@pytest.mark.parametrize("elements", [1, 2, 7])
+@pytest.mark.parametrize("omega", [0.0, 8.0])
+def test_the_count_is_that_of_all_eigenvalues(omega: float, elements: int, how: dict[str, Any]) -> None:
+    """Between each two frequencies of the dense solver, and against the signs of the dense matrix' eigenvalues."""
+    p = pencil(FLAT, omega, elements, **how)
+    M, C, K = (blocks.dense(t) for t in (p.M, p.C, p.K))
+    f = eigen.gyroscopic(M, C, K).frequencies
+    f = f[f < 1e5 * f[0]]
+    shifts = np.append(0.5 * f[0], np.sqrt(f[1:] * f[:-1]))[np.append(True, f[1:] / f[:-1] > 1.001)]
+    assert [completeness.below(p, s) for s in shifts] == [int((f < s).sum()) for s in shifts]
+    signs = [int((np.linalg.eigvalsh(K + 1j * s * C - s**2 * M) < 0).sum()) for s in shifts[:6]]
+    assert [completeness.below(p, s) for s in shifts[:6]] == signs
+
+
+@pytest.mark.parametrize(("omega", "count"), [(0.0, 6), (8.0, 6), (0.0, 5)])
+def test_a_missing_a_double_and_a_foreign_mode_are_told(omega: float, count: int) -> None:
+    p = pencil(ROUND, omega, 20)
+    all_ = lanczos.lanczos(p, 10).frequencies
+    f, beyond = all_[:count], all_[count:]
+    completeness.check(p, f, beyond)
+    for k in range(count):
+        if k < count - 1 or omega:  # at rest the last one's twin takes its place
+            with pytest.raises(MissedModesError, match=r"found \d+ natural frequencies below .* there are \d+"):
+                completeness.check(p, np.delete(all_, k)[:count], np.delete(all_, k)[count:])
+    with pytest.raises(MissedModesError):
+        completeness.check(p, np.sort(np.append(f, f[2] * 1.0001)), beyond)
+
+
+@pytest.mark.parametrize("omega", [0.0, 8.0])
+@pytest.mark.parametrize("count", range(1, 8))
+def test_a_cut_through_a_double_mode_is_no_error(omega: float, count: int) -> None:
+    found = solve.mesh_modes(ROUND, omega, 20, count).frequencies
+    np.testing.assert_allclose(found, solve.mesh_modes(ROUND, omega, 20, 8).frequencies[:count], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [solve.modes, solve.mesh_modes, lambda blade, omega, *rest: next(solve.sweep(blade, [omega], *rest))],
+    ids=["modes", "mesh_modes", "sweep"],
+)
+def test_no_answer_without_the_proof(answer: Callable[..., Modes], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A projection that loses its third largest value: every way to an answer raises."""
+    whole = lanczos.eigh
+
+    def lossy(matrix, subset_by_index, **options):
+        first, last = subset_by_index
+        values, vectors = whole(matrix, subset_by_index=[first - 1, last], **options)
+        return np.delete(values, -3), np.delete(vectors, -3, axis=1)
+
+    monkeypatch.setattr(lanczos, "eigh", lossy)
+    with pytest.raises(MissedModesError, match=r"found 4 natural frequencies .* there are 5"):
+        answer(FLAT, 8.0, 40, 5)
+
+
+def test_stiffness_lost_to_rounding_is_not_called_unstable() -> None:
+    with pytest.raises(lanczos.EigensolverError, match="20000 elements is lost to rounding"):
+        solve.mesh_modes(FLAT, 0.0, 20_000, 2)
+
+
+def test_ten_thousand_elements_lose_nothing() -> None:
+    few, many = (solve.mesh_modes(FLAT, 0.0, n, 3).frequencies for n in (400, 10_000))
+    np.testing.assert_allclose(many, few, rtol=1e-9)
