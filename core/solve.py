@@ -210,9 +210,12 @@ class _Mesh:
         state = balance(body, omega, self.gravity, self.model, steady.extrapolate(self.known, omega))
         try:
             found = lanczos(state.linear, self.count)
-        except UnstableError as error:  # not positive definite, or too nearly not
-            loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
-            raise UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
+        except (UnstableError, EigensolverError) as error:
+            if pencil.loose(state.linear):
+                raise UnstableError(
+                    f"omega: {omega:.6g} rad/s: nothing holds a free hinge (at rest, or lead–lag without offset): add a spring"
+                ) from error
+            raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
         self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
         shapes, strain = mode_shapes(body, state.shape, found.vectors), steady.largest_strain(body, state.shape)
         seconds = time.perf_counter() - begun

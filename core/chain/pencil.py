@@ -17,11 +17,16 @@ from ..element import beams as bm
 from ..element import inertia
 from ..element.discretize import Chain
 from ..space import rigid
-from . import blocks, root_joint
+from . import blocks, root_joint, strained
 from .blocks import Factor, Tridiagonal
 from .strained import Strained
 
 Array = NDArray[np.float64]
+
+_CANCELLED, _STRAINLESS = (
+    1e-10,
+    1e-28,
+)  # of a rigid motion's stiffness, what rounding leaves: of forces, of strain energy
 
 
 @dataclass(frozen=True)
@@ -183,3 +188,21 @@ def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
     diagonal[0, -6:, -6:] += unit * held
     upper[:1], lower[:1] = free @ upper[:1], lower[:1] @ free
     return Tridiagonal(diagonal, upper, lower)
+
+
+def loose(p: Linear) -> bool:
+    """Whether a joint at the root lets the blade turn as a rigid body against no stiffness, but for rounding."""
+    if not p.held.size:
+        return False
+    free = np.linalg.svd(np.eye(6) - p.held)[0][:, : 6 - round(float(np.trace(p.held)))]
+    x = np.zeros((free.shape[1], len(p.lever), p.rest.diagonal.shape[1]))
+    twist = free
+    for k in range(len(p.lever)):  # ξ_b = Ad⁻¹ ξ_a: no strain
+        twist = twist if k == 0 else np.linalg.solve(p.lever[k], twist)
+        x[:, k, -6:] = twist.T
+    rows = x.reshape(len(x), -1)
+    force = np.empty_like(rows)
+    strained.times(p.strained, rows, force)
+    K = rows @ force.T
+    rounding = _CANCELLED * np.abs(rows * force).sum() + _STRAINLESS * np.abs(p.spring).max() * (rows**2).sum()
+    return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= rounding)

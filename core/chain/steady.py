@@ -93,6 +93,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
             step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
+        if p.held.size:
+            step[0, -6:] -= p.held @ step[0, -6:]  # a unit stiffness under the reaction's rounding
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")

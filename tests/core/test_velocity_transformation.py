@@ -49,7 +49,7 @@ ROOTS = {
 
 
 def both(blade: Blade, omega: float, elements: int, count: int = 6, **options: Any) -> tuple[Modes, Modes]:
-    ours, theirs = (method.modes(blade, omega, elements, count, **options) for method in (vt, solve))
+    ours, theirs = (solver(blade, omega, elements, count, **options) for solver in (vt.modes, solve.mesh_modes))
     assert ours.elements == theirs.elements
     np.testing.assert_allclose(ours.frequencies, theirs.frequencies, rtol=AGREE)
     return ours, theirs
