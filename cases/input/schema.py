@@ -25,6 +25,9 @@ Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
 Values = list[Annotated[float, Meta(ge=0)]] | str
 
 
+Confirmations = Annotated[int, Meta(ge=0, le=20)]
+
+
 class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
     """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends."""
 
@@ -45,6 +48,15 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     ] = get_args(Motion)
     target: Annotated[float, Meta(gt=0, description="largest difference, relative")] = 1e-3
     tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+    groups: Annotated[
+        Confirmations | dict[str, Confirmations],
+        Meta(description="how many independent groups must agree with core: a number, or one for each variant by name"),
+    ] = 1
+    lacking: Annotated[str, Meta(description="why no group is required, where none is")] = ""
+
+    def required(self, label: str) -> int:
+        """How many groups must confirm the variant ``label``."""
+        return self.groups if isinstance(self.groups, int) else self.groups.get(label, 1)
 
 
 class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
@@ -140,6 +152,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     for table in text.compare.tables:
         if table not in published.names():
             raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
+    _confirmed(text, path)
     speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
@@ -148,6 +161,19 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         name = f"{text.name}/{label}" if label else text.name
         variants.append(Variant(name, blade.blade(name, folder), speeds))
     return Case(path, text, tuple(variants))
+
+
+def _confirmed(text: CaseFile, path: str) -> None:
+    """Required groups are of this case's variants, and where none is required the file says why."""
+    compare = text.compare
+    if isinstance(compare.groups, dict):
+        for label in compare.groups:
+            if label not in text.variants:
+                raise CaseError(f"{path}: compare.groups.{label}: no such variant: {nearest(label, text.variants)}")
+    none = any(compare.required(label) == 0 for label in text.variants or {"": {}})
+    if none != bool(compare.lacking):
+        what = "0, and no reason" if none else "above 0, and a reason for none"
+        raise CaseError(f"{path}: compare.groups: {what}: give groups = 0 and compare.lacking together, or neither")
 
 
 FASTEST, MOST_SPEEDS = 1e6, 10_000

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import msgspec
 
-Verdict = Literal["pass", "fail", "inconclusive", "known difference", "not applicable", "not run"]
+Verdict = Literal["pass", "fail", "inconclusive", "known difference", "estimate", "not applicable", "not run"]
 Unit = Literal["rad_s", "rpm", "gamma"]
 
 
@@ -84,32 +84,34 @@ class Level:
 
 @dataclass(frozen=True)
 class Control:
-    """What one deliberate mistake in core does to one blade at one speed, and which independent answers notice.
+    """What became of one seeded fault, run through the whole pipeline; see ``cases.faults``.
 
     Attributes:
-        control: the mistake's name, see ``cases.mistakes``.
-        case: as in ``Cell``.
-        omega: rotor speed, rad/s.
-        mode: the one that changes most, by name: ``chordwise 1``; empty if the mistake leaves no steady state.
-        right: its frequency in core as it is, rad/s.
-        wrong: with the mistake, rad/s; None if no mode is like it.
-        caught: codes and printed tables, independent of core, that fail against it.
-        missed: those that do not.
+        control: the fault's name.
+        area: what is faulty: core, an adapter, pairing, …
+        what: what such a program does.
+        size: of its effect, in words.
+        case: the trial's blade, as in ``Cell``; empty for faults in history and gate.
+        omega: the trial's highest rotor speed, rad/s.
+        caught: the cells (or lines of the gate) that are bad with the fault and not without it; none: nobody notices.
+        change: the largest difference among those cells, relative.
+        needs: codes that the trial needs and that are not installed; it was not run then.
     """
 
     control: str
+    area: str
+    what: str
+    size: str
     case: str
     omega: float
-    mode: str
-    right: float | None
-    wrong: float | None
     caught: tuple[str, ...]
-    missed: tuple[str, ...]
+    change: float | None = None
+    needs: str = ""
 
     @property
-    def change(self) -> float | None:
-        """Relative difference of wrong from right."""
-        return self.wrong / self.right - 1.0 if self.right and self.wrong else None
+    def missed(self) -> bool:
+        """Whether it was run and nobody noticed."""
+        return not self.caught and not self.needs
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,19 @@ class Share:
 
 
 @dataclass(frozen=True)
+class Origin:
+    """Where the answers of one column for one blade come from; see ``references.interface.Independence``."""
+
+    case: str
+    code: str
+    engine: str
+    theory: str
+    rotation: str
+    sections: str
+    eigensolver: str
+
+
+@dataclass(frozen=True)
 class Setting:
     """What a report says of a case's blade, so that old results can be shown without the case's file.
 
@@ -146,6 +161,9 @@ class Setting:
         source: where its data come from.
         unit: what its speeds are given in: ``rad_s``, ``rpm`` or ``gamma``.
         facts: name → value with unit, in words.
+        groups: how many independent groups must agree with core; 0 where the run does not ask for any.
+        lacking: why the case asks for none.
+        target: the case's, relative; None where there is not one.
     """
 
     case: str
@@ -154,6 +172,9 @@ class Setting:
     source: str
     unit: Unit
     facts: dict[str, str] = field(default_factory=dict)
+    groups: int = 0
+    lacking: str = ""
+    target: float | None = None
 
 
 @dataclass(frozen=True)
@@ -168,6 +189,7 @@ class Run:
         settings: of each case's blade.
         controls: what became of core made wrong on purpose.
         shares: where differences come from.
+        origins: where the answers of each column come from.
     """
 
     cells: tuple[Cell, ...]
@@ -177,6 +199,7 @@ class Run:
     settings: tuple[Setting, ...] = ()
     controls: tuple[Control, ...] = ()
     shares: tuple[Share, ...] = ()
+    origins: tuple[Origin, ...] = ()
 
 
 def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
@@ -188,6 +211,7 @@ def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (),
         lines += [{"kind": "setting", **msgspec.to_builtins(s)} for s in run.settings]
         lines += [{"kind": "control", **msgspec.to_builtins(c)} for c in run.controls]
         lines += [{"kind": "share", **msgspec.to_builtins(s)} for s in run.shares]
+        lines += [{"kind": "origin", **msgspec.to_builtins(o)} for o in run.origins]
         lines.append({"kind": "run", "versions": run.versions, "command": run.command})
     with path.open("ab") as file:
         file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
@@ -219,9 +243,17 @@ def read(path: Path) -> Run:
         settings=tuple(rows[Setting]),
         controls=tuple(rows[Control]),
         shares=tuple(rows[Share]),
+        origins=tuple(rows[Origin]),
         **about,
     )
 
 
-KINDS: dict[str, type] = {"cell": Cell, "level": Level, "setting": Setting, "control": Control, "share": Share}
+KINDS: dict[str, type] = {
+    "cell": Cell,
+    "level": Level,
+    "setting": Setting,
+    "control": Control,
+    "share": Share,
+    "origin": Origin,
+}
 """What a line of each kind is."""

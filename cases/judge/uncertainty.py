@@ -11,7 +11,7 @@ Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import root_scalar
@@ -58,6 +58,8 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
         order: the theoretical order of convergence; 0 for spectral, where the last change is the uncertainty.
     """
     n, f = np.asarray(elements, float)[-3:], np.asarray(frequencies, float)[-3:]
+    if not f.any():
+        return Estimate(0.0, ROUNDING, note="a frequency of zero at every refinement")
     if order == 0 and len(f) >= 2:
         return Estimate(float(f[-1]), _at_least(abs(f[-1] - f[-2]) / abs(f[-1])))
     if len(f) < 3:
@@ -100,6 +102,11 @@ def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:
     if excess(low) >= 0:
         return low
     return high if excess(high) <= 0 else float(root_scalar(excess, bracket=(low, high)).root)
+
+
+def widened(estimate: Estimate, more: float) -> Estimate:
+    """The estimate with what a solver itself says of its answer, as of its rounding, added to the uncertainty (relative)."""
+    return estimate if estimate.uncertainty is None else replace(estimate, uncertainty=estimate.uncertainty + more)
 
 
 def from_bracket(frequency: float, uncertainty: float) -> Estimate:

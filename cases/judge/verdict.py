@@ -1,8 +1,18 @@
-"""What a difference means, given how sure it is and how large it may be.
+"""What a difference means: the table of verdicts, as pure functions of numbers.
 
-``pass`` if |d| + u ≤ target; ``fail`` if |d| − u > target; else ``inconclusive``. A code is held to core with the code's
-own effects, so that like is compared with like. What its missing effects change is then a *known difference*, its cause
-named and its size taken from core, with and without.
+============================ ===================================================================================
+pass                         ``|d| + u ≤ target``
+fail                         ``|d| − u > target``, or a code gave no answer to a question it accepts
+inconclusive                 neither: refine
+known difference             the cause is named, its size is computed, what remains is within the target, and
+                             refinement leads to the reference
+estimate                     a code that brackets its own answer, and a bracket too wide to tell: never evidence
+not applicable               declared by the code, with the reason
+not run                      not installed
+============================ ===================================================================================
+
+``d`` is the relative difference of two paired modes and ``u`` its numerical uncertainty. A code is compared with core
+lacking the same effects, so that like is compared with like. Only ``pass`` counts as agreement.
 """
 
 from collections.abc import Sequence
@@ -16,7 +26,7 @@ Judgement = tuple[Verdict, str]
 
 @dataclass(frozen=True)
 class Effect:
-    """What leaving one physical effect out does to a frequency of core's: ``change`` is ``without/with − 1``.
+    """What leaving one physical effect out does to one of core's frequencies: ``change`` is ``without/with − 1``.
 
     None where core has no such mode with, or without.
     """
@@ -40,14 +50,19 @@ def judge(difference: float, uncertainty: float | None, target: float) -> Judgem
 def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
     """The verdict on a code that agrees with core when both lack the same effects.
 
+    The remainder has passed ``judge`` already; the cause is what the code declares to lack. A cause without a size is none.
+
     Args:
-        shift: what lacking them changes, all together, relative; None where the mode does not exist with all effects.
+        shift: what lacking them changes, all together, relative; None where core has no such mode with all effects.
         target: largest shift that still counts as agreement with all effects.
         effects: each of them alone.
     """
     if shift is None:
         names = ", ".join(f"no {e.name}" for e in effects)
-        return "known difference", f"{names}: core with all effects has no mode like it; without, core agrees"
+        return (
+            "inconclusive",
+            f"{names}: size unknown, as core with all effects has no mode like it; without, core agrees",
+        )
     if abs(shift) <= target:
         return "pass", ""
     changes = {
@@ -58,39 +73,53 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
     return "known difference", f"{', '.join(causes + together)} (core with and without); without, core agrees"
 
 
-def bracketed(difference: float, uncertainty: float | None, otherwise: Judgement) -> Judgement:
-    """The verdict on a code that brackets its own estimate: wide, but true, is a known difference.
+def bracketed(difference: float, uncertainty: float | None, target: float) -> Judgement:
+    """The verdict on a code that declares that it brackets its own answer.
+
+    Refining does not narrow a bracket: what neither passes nor lies outside is an estimate, and no evidence.
 
     Args:
-        difference: of the estimate from the reference, relative to the reference.
-        uncertainty: half the bracket's width, relative to the estimate.
-        otherwise: the verdict that the two would have without a bracket.
+        difference: of the code's answer from the reference, relative to the reference.
+        uncertainty: half the bracket's width, relative to the code's answer.
+        target: relative.
     """
-    if otherwise[0] == "pass" or uncertainty is None:
-        return otherwise
+    verdict, reason = judge(difference, uncertainty, target)
+    if verdict == "pass" or uncertainty is None:
+        return verdict, reason
     away = -difference / (1.0 + difference)
     bracket = f"an estimate, by its own account within {unsigned(uncertainty)}: core, {percent(away)} from it, lies"
-    return ("known difference", f"{bracket} inside") if abs(away) <= uncertainty else ("fail", f"{bracket} outside")
+    return ("estimate", f"{bracket} inside") if abs(away) <= uncertainty else ("fail", f"{bracket} outside")
 
 
 def discretised(
-    difference: float, uncertainty: float | None, target: float, limit: float | None, what: str
+    difference: float,
+    uncertainty: float | None,
+    target: float,
+    remainder: float,
+    limit: float | None,
+    what: str,
+    size: float | None = None,
 ) -> Judgement:
-    """The verdict on one given discretisation: its error is known if refining it leads to the reference.
+    """The verdict on an answer of one given discretisation, whose error is known if it meets three conditions.
 
     Args:
-        difference: of that discretisation, relative.
-        uncertainty: of the reference, relative.
+        difference: of the answer from the converged reference, relative.
+        uncertainty: of that difference.
         target: relative.
-        limit: difference of its refinements' limit, relative; None if not known.
+        remainder: difference of the answer from core's with the same discretisation; 0 if it is core's own answer.
+        limit: difference from the reference of what core's refinements of that discretisation lead to; None if unknown.
         what: the discretisation's name.
+        size: its error: core's answer with it against the reference; ``difference`` if omitted.
     """
     verdict, reason = judge(difference, uncertainty, target)
-    error = f"discretisation error of {what}: {percent(difference)}"
     if verdict == "pass" or limit is None:
         return verdict, reason
+    if judge(remainder, uncertainty, target)[0] != "pass":
+        return verdict, reason
+    error = f"discretisation error of {what}: {percent(difference if size is None else size)}"
     if abs(limit) + (uncertainty or 0.0) <= target:
-        return "known difference", f"{error}; refined, its limit is {percent(limit)} from the reference"
+        rest = f", {percent(remainder)} remain" if remainder else ""
+        return "known difference", f"{error}{rest}; refined, its limit is {percent(limit)} from the reference"
     return "fail", f"{error}, and its refinements do not lead to the reference ({percent(limit)})"
 
 

@@ -1,26 +1,33 @@
-"""Who bears a case out, counted honestly: an answer is a witness by what it shares with core, and once for each model.
+"""Who confirms a case's answers, counted by groups of independent origin.
 
-A code with its own mechanical model, and a printed source, is a witness of the answer. Codes given core's mechanical model
-or its discretisation are, all together, one witness of the implementation: they can say that core solves its model rightly,
-not that the model is right. A witness counts if it agrees in every mode and at every speed it answers; one whose difference
-is only explained (a bracket, a coarse discretisation) is no witness.
+A witness is a column that answered: a code, a closed form, a printed series. It counts if it agrees with core in every mode
+and at every speed that it answers; one whose difference is only explained, or whose own bracket is too wide, is none.
+
+Witnesses with the same engine, theory or rotation terms may be wrong together, so they are one *group*, also when only a
+third witness links them. Who takes core's discretisation or frames confirms that core solves its model, not that the model
+is right, and is in no group; nor is who declares no origin (``references.interface.Independence``), nor a table that can be
+held only to a wider target than the case's.
 
 Independent witnesses have two targets: the case's own (0.1 %, the paper's), and ``FINE`` for what their refinements
 extrapolate to.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from .results import Cell
+from ...references.protocol.interface import CORE
+from .results import Cell, Origin, Run
 from .verdict import judge
 
 FINE = 1e-4
 """Relative: what independent models should agree to after extrapolation."""
 
-Kind = Literal["code", "closed form", "printed source", "core's model"]
+Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
 Standing = Literal["agrees", "explained", "open", "disagrees"]
+
+MATTERS = ("engine", "theory", "rotation")
+"""Of two origins that are the same in any of these, only one counts."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +35,15 @@ class Witness:
     """One witness of one blade's frequencies.
 
     Attributes:
-        name: the code's, the source's; of those with core's model, all names.
-        kind: a foreign code with its own model, a closed form of this package, a printed source, or whoever has core's model.
+        name: the code's, or the printed series'.
+        kind: a foreign code, a closed form of this package, a printed series (``coarse`` if held to a wider target than the
+            case's), whoever has something of core's, or whoever does not say what it has.
         standing: at the case's target.
         fine: at ``FINE``; None where that is no question (core's model, printed digits too few to tell).
         answers: how many numbers it gave.
         largest: largest |difference| from core with the same effects, relative.
+        target: the largest that its numbers are held to, relative.
+        origin: as declared.
     """
 
     name: str
@@ -42,37 +52,50 @@ class Witness:
     fine: Standing | None
     answers: int
     largest: float
+    target: float
+    origin: Origin | None = None
 
 
-def witnesses(cells: Iterable[Cell]) -> list[Witness]:
+def witnesses(run: Run, case: str) -> list[Witness]:
     """All that took part in one blade, in the order of the run; core's own discretisation is none."""
-    groups: dict[tuple[str, Kind], list[Cell]] = {}
-    for cell in cells:
+    origins = {o.code: o for o in run.origins if o.case == case}
+    columns: dict[str, list[Cell]] = {}
+    for cell in run.cells:
         asked = cell.difference is not None or cell.verdict in ("fail", "inconclusive")
-        if asked and (who := _who(cell)):
-            groups.setdefault(who, []).append(cell)
-    return [_witness(*who, group) for who, group in groups.items()]
+        if cell.case == case and asked and cell.shares:
+            columns.setdefault(cell.code, []).append(cell)
+    target = next((s.target for s in run.settings if s.case == case), None)
+    return [_witness(code, cells, origins.get(code), target) for code, cells in columns.items()]
 
 
-def _who(cell: Cell) -> tuple[str, Kind] | None:
-    if cell.shares in ("mechanical model", "discretisation"):
-        return "", "core's model"
-    if cell.shares != "nothing":
-        return None
-    if cell.role == "table":
-        return cell.code.partition("/")[0], "printed source"
-    return cell.code, "closed form" if cell.version.startswith("southwell ") else "code"
-
-
-def _witness(name: str, kind: Kind, cells: list[Cell]) -> Witness:
+def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float | None) -> Witness:
+    kind = _kind(cells[0], origin)
+    if target and kind == "printed source" and max(c.target for c in cells) > target:
+        kind = "coarse source"
     return Witness(
-        name=name or ", ".join(dict.fromkeys(c.code for c in cells)),
+        name=name,
         kind=kind,
         standing=_gravest(_standing(c, c.target) for c in cells),
-        fine=_gravest(_standing(c, FINE) for c in cells) if kind in ("code", "closed form") else None,
+        fine=_gravest(_standing(c, FINE) for c in cells) if kind in ("code", "closed form", "undeclared") else None,
         answers=sum(c.difference is not None for c in cells),
         largest=max(abs(c.difference or 0.0) for c in cells),
+        target=max(c.target for c in cells),
+        origin=origin,
     )
+
+
+def _kind(cell: Cell, origin: Origin | None) -> Kind:
+    if cell.shares != "nothing" or (origin and CORE in (*_key(origin), origin.sections)):
+        return "core's model"
+    if not origin:
+        return "undeclared"
+    if cell.role == "table":
+        return "printed source"
+    return "closed form" if cell.version.startswith("southwell ") else "code"
+
+
+def _key(origin: Origin) -> tuple[str, ...]:
+    return tuple(getattr(origin, field) for field in MATTERS)
 
 
 def _standing(cell: Cell, target: float) -> Standing:
@@ -82,7 +105,7 @@ def _standing(cell: Cell, target: float) -> Standing:
     verdict, _ = judge(cell.difference, cell.uncertainty, target)
     if verdict == "pass":
         return "agrees"
-    if cell.verdict == "known difference":
+    if cell.verdict in ("known difference", "estimate"):
         return "explained"
     return "disagrees" if verdict == "fail" else "open"
 
@@ -93,6 +116,36 @@ def _gravest(standings: Iterable[Standing]) -> Standing:
     return next(s for s in order if s in found)
 
 
-def independent(found: Iterable[Witness]) -> list[Witness]:
-    """Those that agree and share nothing with core: what a summary may count."""
-    return [w for w in found if w.kind != "core's model" and w.standing == "agrees"]
+def groups(found: Iterable[Witness]) -> list[tuple[Witness, ...]]:
+    """Witnesses that agree and have nothing of core's, those that share what matters together: each group counts once."""
+    counted = [w for w in found if w.kind in ("code", "closed form", "printed source") and w.standing == "agrees"]
+    out: list[list[Witness]] = []
+    for witness in counted:
+        linked = [group for group in out if any(_linked(witness, other) for other in group)]
+        out = [group for group in out if group not in linked]
+        out.append([*(other for group in linked for other in group), witness])
+    return [tuple(sorted(group, key=counted.index)) for group in out]
+
+
+def _linked(a: Witness, b: Witness) -> bool:
+    return bool(a.origin and b.origin and any(x == y for x, y in zip(_key(a.origin), _key(b.origin), strict=True)))
+
+
+@dataclass(frozen=True)
+class Short:
+    """A blade with fewer independent groups than its case requires."""
+
+    case: str
+    groups: int
+    required: int
+
+
+def short(run: Run) -> list[Short]:
+    """Blades whose answers fewer groups confirm than required."""
+    found = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
+    return [Short(s.case, there, s.groups) for s, there in found if there < s.groups]
+
+
+def engines(group: Sequence[Witness]) -> str:
+    """What a group is called: its engines."""
+    return ", ".join(dict.fromkeys(w.origin.engine for w in group if w.origin))

@@ -30,6 +30,7 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
     uncertainty: float | None
     verdict: Verdict
     seconds: float | None
+    target: float | None = None
 
     @property
     def key(self) -> "Key":
@@ -98,10 +99,11 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
                 uncertainty=c.uncertainty,
                 verdict=c.verdict,
                 seconds=c.seconds,
+                target=c.target,
             )
             for c in run.cells
         ),
-        controls=tuple(Caught(c.control, c.case, c.omega, c.caught) for c in run.controls),
+        controls=tuple(Caught(c.control, c.case, c.omega, c.caught) for c in run.controls if not c.needs),
     )
 
 

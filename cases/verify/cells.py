@@ -1,13 +1,16 @@
 """From a solver's study and core's reference to rows: the difference, how sure it is, and what it means."""
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from ...core.modes import Modes
 from ...references.protocol.worker import Answer, Failure
-from ..judge.pairing import LEAST_MAC, MOTIONS, Pair, pair, shares
+from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, pair, shares
 from ..judge.results import Cell, Level, Verdict
-from ..judge.uncertainty import ROUNDING, Estimate
-from ..judge.verdict import Judgement, bracketed, discretised, judge, known, percent
+from ..judge.uncertainty import ROUNDING, WARY, Estimate
+from ..judge.verdict import Judgement, bracketed, discretised, judge, known
 from .reference import Reference
 from .refinement import Settled, Study, settle
 
@@ -34,6 +37,8 @@ class Head:
     role: str
     target: float
     shares: str = ""
+    motions: tuple[str, ...] = MOTIONS
+    """What the code declares that its shapes have."""
 
 
 def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
@@ -57,16 +62,16 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
     )
 
 
-def refined(head: Head, omega: float, reference: Reference, study: Study, order: int) -> Rows:
+def refined(head: Head, omega: float, reference: Reference, study: Study, order: int, bracket: bool = False) -> Rows:
     """A code's cells at one speed, one for each mode the case compares, and every refinement's frequencies."""
     if not study.answers:
         return [_failed(head, omega, study.failure)], []
-    settled = settle(study.answers, reference.core.wanted, order)
+    settled = settle(study.answers, reference.core.wanted, order, bracket)
     late = f"finer: {study.failure.reason}" if study.failure else ""
     cells = []
     for i, mine in enumerate(settled):
         cell = _row(head, omega, i, reference, study.answers[-1], mine.partner)
-        if still := _still(reference, i, study.answers[-1]):
+        if still := _still(reference, i, head.motions):
             cell = replace(cell, verdict="not applicable", reason=still)
         elif mine.estimate:
             cell = _judged(cell, reference, i, mine, late)
@@ -77,8 +82,29 @@ def refined(head: Head, omega: float, reference: Reference, study: Study, order:
     return cells, levels
 
 
-def same(head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer) -> Rows:
-    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements."""
+def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
+    """Relative uncertainty (m,) that rounding leaves in core's frequencies ``mine``.
+
+    From core's answers ``again`` to the same equations but for common factors, so that only rounding tells them apart. The
+    largest change of any mode counts for all: what is rounded off the steady state moves them together. What core itself
+    says of its noise counts if it is more.
+    """
+    found = [other for other in (mine, *again) if not isinstance(other, Failure)]
+    if isinstance(mine, Failure) or len(found) <= len(again) or len({len(m.frequencies) for m in found}) > 1:
+        return np.zeros(0)
+    change = max(float(np.abs(other.frequencies / mine.frequencies - 1.0).max()) for other in found)
+    noise = np.full(len(mine.frequencies), max(ROUNDING, WARY * change))
+    return np.maximum(noise, mine.rounding) if len(mine.rounding) else noise
+
+
+def same(
+    head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer, noise: Array | None = None
+) -> Rows:
+    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements.
+
+    ``noise``: (m,) what rounding leaves of core's frequencies, relative. The other code, whose equations are as sensitive, is
+    taken to have as much, or what it says itself.
+    """
     if isinstance(theirs, Failure):
         return [_failed(head, omega, theirs)], []
     if isinstance(mine, Failure):
@@ -90,8 +116,11 @@ def same(head: Head, omega: float, reference: Reference, theirs: Answer, mine: A
         cell = _row(head, omega, i, reference, theirs, partner)
         if base.mode is not None and partner.mode is not None:
             f, f0 = float(theirs.frequencies[partner.mode]), float(mine.frequencies[base.mode])
-            verdict, reason = judge(f / f0 - 1.0, ROUNDING, head.target)
-            cell = replace(cell, frequency=f, reference=f0, difference=f / f0 - 1.0, uncertainty=ROUNDING)
+            core = float(noise[base.mode]) if noise is not None and len(noise) else ROUNDING
+            own = float(theirs.rounding[partner.mode]) if len(theirs.rounding) else core
+            sure = core + max(own, core)
+            verdict, reason = judge(f / f0 - 1.0, sure, head.target)
+            cell = replace(cell, frequency=f, reference=f0, difference=f / f0 - 1.0, uncertainty=sure)
             cell = replace(cell, verdict=verdict, reason=_join(reason, partner.note))
         cells.append(cell)
     return cells, levels
@@ -103,21 +132,34 @@ def printed(head: Head, omega: float, i: int, reference: Reference, value: Estim
     return _judged(_row(head, omega, i, reference, None, settled.partner), reference, i, settled, "")
 
 
-def excused(cell: Cell, value: Estimate, discretised: float | None, what: str) -> Cell:
-    """The cell of a printed number whose author's discretisation is known and core's answer with it is ``discretised``.
+@dataclass(frozen=True)
+class Coarse:
+    """Core's answer for one mode with an author's discretisation, and what its refinements lead to; both rad/s."""
 
-    Where the number is not within the target of the converged answer but agrees with that one, the rest is known.
+    frequency: float
+    limit: float
+
+
+def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
+    """The cell of a printed number whose author's discretisation, named ``what``, is known.
+
+    Where the number is not within the target of the converged answer, its difference is known if core so discretised agrees
+    with it, and the refinements of that discretisation lead to the converged answer.
     """
-    if cell.verdict == "pass" or discretised is None or cell.reference is None:
+    if cell.verdict == "pass" or not coarse or not cell.frequency or not cell.reference or cell.difference is None:
         return cell
-    verdict, _ = judge(value.value / discretised - 1.0, value.uncertainty, cell.target)
-    if verdict != "pass":
-        return cell
-    error = percent(discretised / cell.reference - 1.0)
-    reason = (
-        f"discretisation error of {what}: {error} (core so discretised, and converged); so discretised, core agrees"
+    remainder, limit, size = (
+        value - 1.0
+        for value in (
+            cell.frequency / coarse.frequency,
+            coarse.limit / cell.reference,
+            coarse.frequency / cell.reference,
+        )
     )
-    return replace(cell, verdict="known difference", reason=reason)
+    verdict, reason = discretised(cell.difference, cell.uncertainty, cell.target, remainder, limit, what, size)
+    if verdict == cell.verdict and verdict != "fail":
+        return cell
+    return replace(cell, verdict=verdict, reason=reason)
 
 
 def given(head: Head, omega: float, reference: Reference, study: Study, order: int, what: str) -> Rows:
@@ -137,7 +179,7 @@ def given(head: Head, omega: float, reference: Reference, study: Study, order: i
         base, difference = reference.core.settled[i].estimate, cell.difference
         if difference is not None and base is not None:
             cell = replace(cell, uncertainty=base.uncertainty)
-            verdict, reason = discretised(difference, base.uncertainty, head.target, limit.difference, what)
+            verdict, reason = discretised(difference, base.uncertainty, head.target, 0.0, limit.difference, what)
             if verdict != "fail":
                 lacking, why = _known(reference, i, head.target)
                 verdict, reason = verdict if lacking == "pass" else lacking, _join(reason, why)
@@ -175,12 +217,14 @@ def _known(reference: Reference, i: int, target: float) -> Judgement:
     return verdict, reason
 
 
-def _still(reference: Reference, i: int, modes: Modes) -> str:
-    """Why a code cannot have a mode: none of its shapes moves at all where this one moves most."""
+def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
+    """Why a code cannot have a mode: it declares ``motions``, and that which carries most of this mode is not among them.
+
+    What its shapes are is never asked: a column that an adapter has lost by mistake is empty, too.
+    """
     wanted = reference.core.wanted
-    share = shares(wanted.reference, wanted.weight)[wanted.indices[i]]
-    motion = int(share.argmax())
-    return "" if modes.shapes[:, :, motion].any() else f"no mode of this code has any {MOTIONS[motion]} motion"
+    motion = MOTIONS[int(shares(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
+    return "" if motion in motions else f"by its own declaration no mode of this code has any {motion} motion"
 
 
 def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) -> Cell:
@@ -190,9 +234,10 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) 
     difference = best.value / base.value - 1.0
     unsure = best.uncertainty is None or base.uncertainty is None
     uncertainty = None if unsure else (best.uncertainty or 0.0) + (base.uncertainty or 0.0)
-    verdict, reason = judge(difference, uncertainty, cell.target)
     if mine.bracketed:
-        verdict, reason = bracketed(difference, best.uncertainty, (verdict, reason))
+        verdict, reason = bracketed(difference, uncertainty, cell.target)
+    else:
+        verdict, reason = judge(difference, uncertainty, cell.target)
     if verdict == "pass":
         verdict, reason = _known(reference, i, cell.target)
     else:

@@ -10,17 +10,17 @@ from importlib.metadata import version
 from typing import Any
 
 from ...core import velocity_transformation
-from ...core.blade import Blade
+from ...core.blade import Blade, straight
 from ...core.effects import FULL, Model
 from ...core.modes import Modes
-from ...references.protocol.interface import Code
-from ...references.protocol.registry import cap
-from ...references.protocol.worker import Answer, Failure, answers
+from ...references.protocol.interface import CORE, Code, Independence, brackets, independence, motions
+from ...references.protocol.registry import cap, version_of
+from ...references.protocol.worker import Answer, Failure, answers, one_line
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Case, Discretisation, Variant
 from ..judge.results import Cell, Level, Verdict
 from . import core_solver
-from .cells import Head, empty, given, refined, same
+from .cells import Head, empty, given, refined, rounding, same
 from .published_tables import about, rows
 from .reference import Reference, felt
 from .refinement import Refining, Wanted, solve
@@ -49,12 +49,14 @@ class Column:
         model: the effects that its references keep.
         head: what its cells have in common.
         work: rows from core's references.
+        origin: where its answers come from, as declared; None if nothing is.
     """
 
     name: str
     model: Model
     head: Head
     work: Callable[[Any], Rows]
+    origin: Independence | None = None
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds; without a reference there is nothing to compare with."""
@@ -86,23 +88,31 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
-        out.append(Column(table.name, felt(table.series.model, blade), head, work))
+        theory = CORE if computed else table.series.theory or table.source
+        origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
+        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin))
     takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
     if codes and not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
     for name, code in takers.items():
-        head = Head(variant.name, code.name, code.version() or "", "code", target, getattr(code, "shares", ""))
-        out.append(_code(head, name, code, blade, timeout))
+        told, raised = version_of(code)
+        head = Head(variant.name, code.name, told, "code", target, getattr(code, "shares", ""), motions(code))
+        column = _raised(head, raised) if raised else _code(head, name, code, blade, timeout)
+        out.append(replace(column, origin=_origin(code, blade)))
     return out
 
 
 def _mechanisms_only(case: str, code: Any, target: float) -> Column:
-    head = Head(case, code.name, code.version() or "", "code", target)
+    head = Head(case, code.name, version_of(code)[0], "code", target)
     return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
 
 
 def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:
-    if why := code.unsupported(blade):
+    try:
+        why = code.unsupported(blade)
+    except Exception as error:  # whatever a foreign code raises costs its own cells only
+        return _raised(head, f"unsupported(): {type(error).__name__}: {one_line(error)}")
+    if why:
         return Column(code.name, FULL, head, partial(_absent, head, "not applicable", why))
     if not head.version:
         return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
@@ -115,8 +125,19 @@ def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Co
             head,
             partial(_same, head, name, blade, code.levels[-1], code.model, timeout),
         )
-    refining = Refining(tuple(code.levels), code.order, cap(code))
+    refining = Refining(tuple(code.levels), code.order, cap(code), bracket=brackets(code))
     return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
+
+
+def _origin(code: Any, blade: Blade) -> Independence | None:
+    """What a code declares; frames that core gives it are no matter where the sections' axes are those of the blade."""
+    declared = independence(code)
+    plain = straight(blade) and not (blade.twist.any() or blade.precone or blade.pitch)
+    return replace(declared, sections="blade") if declared and declared.theory != CORE and plain else declared
+
+
+def _raised(head: Head, what: str) -> Column:
+    return Column(head.code, FULL, head, partial(_absent, head, "fail", f"the adapter raised an exception: {what}"))
 
 
 def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
@@ -129,15 +150,17 @@ def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: f
 
     count = max(r.core.count for _, r in core)
     studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
-    return _join(refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, studies, strict=True))
+    return _join(
+        refined(head, omega, r, s, refining.order, refining.bracket)
+        for (omega, r), s in zip(core, studies, strict=True)
+    )
 
 
 def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
         return core_solver.answers(blade, runs, source.mass, source.stiffness, source.model)
 
-    n = source.elements
-    refining = Refining((n, 2 * n, 4 * n), 2, 8 * n)
+    refining = core_solver.as_given(source)
     count = max(r.core.count for _, r in core)
     studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
     return _join(
@@ -148,8 +171,11 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
 def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
     theirs = answers(name, blade, runs, timeout)
-    mine = core_solver.answers(blade, runs, "half_end", "parent", model)
-    return _join(same(head, omega, r, a, b) for (omega, r), a, b in zip(core, theirs, mine, strict=True))
+    scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
+    mine, *again = (core_solver.answers(b, runs, "half_end", "parent", model) for b in (blade, *scaled))
+    noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
+    rows = zip(core, theirs, mine, noises, strict=True)
+    return _join(same(head, omega, r, a, b, noise) for (omega, r), a, b, noise in rows)
 
 
 def _other_method(head: Head, blade: Blade, core: References) -> Rows:

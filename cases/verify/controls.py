@@ -1,14 +1,10 @@
-"""Negative controls: core made wrong on purpose must be caught by what judges core every day.
+"""What well-known mistakes would do to a blade's frequencies, so that a miss can be told from its likeness.
 
-Each of ``mistakes.MISTAKES`` is solved for every blade of a run and put in core's place: the independent codes' answers and
-the printed numbers, those that agree with core as it is, are judged against it by the same function and the same targets. A
-mistake is caught where one of them fails. One that must show in a case of the run and is caught by nobody means that the
-harness sees nothing: the run ends with status 1.
+Each of ``mistakes.MISTAKES`` is solved in core alone. Whether the harness notices such mistakes is another question, which
+``faults`` answers with the real matrix.
 """
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -19,10 +15,8 @@ from ...core.eigen import UnstableError
 from ...core.modes import Modes
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, families, pair, weights
-from ..judge.results import Cell, Control
-from ..judge.verdict import judge
 from .core_solver import START, qualifying
-from .mistakes import MISTAKES, Mistake, Solve
+from .mistakes import MISTAKES, Solve
 
 ELEMENTS = START
 """With and without a mistake: their error is much the same, and all but cancels in what the mistake changes."""
@@ -90,93 +84,3 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
         Changed(name, float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
         for name, k, p in zip(names, wanted, partners, strict=True)
     )
-
-
-def judged(case: str, wrongs: Iterable[Wrong], cells: Iterable[Cell]) -> list[Control]:
-    """A row for each mistake and speed: what it changes most, and which of one blade's ``cells`` fail against it."""
-    witnesses: dict[float, list[Cell]] = {}
-    for cell in cells:
-        if _witness(cell):
-            witnesses.setdefault(cell.omega, []).append(cell)
-    rows = []
-    for wrong in wrongs:
-        worst = max(wrong.modes, key=lambda m: abs(m.change or 0.0), default=Changed("", 0.0, None))
-        fails: dict[str, bool] = {}
-        for cell in witnesses.get(wrong.omega, []):
-            if (seen := _fails(cell, wrong)) is not None:
-                fails[cell.code] = fails.get(cell.code, False) or seen
-        rows.append(
-            Control(
-                control=wrong.mistake,
-                case=case,
-                omega=wrong.omega,
-                mode=worst.name,
-                right=worst.right or None,
-                wrong=worst.wrong,
-                caught=tuple(code for code, seen in fails.items() if seen),
-                missed=tuple(code for code, seen in fails.items() if not seen),
-            )
-        )
-    return rows
-
-
-def _witness(cell: Cell) -> bool:
-    """Whether a cell is independent of core and agrees, surely enough, with core as it is and all its effects."""
-    if cell.shares != "nothing" or cell.frequency is None or cell.full is None:
-        return False
-    return judge(cell.frequency / cell.full - 1.0, cell.uncertainty, cell.target)[0] == "pass"
-
-
-def _fails(cell: Cell, wrong: Wrong) -> bool | None:
-    """Whether a witness' cell fails against core made wrong; None if there is no such mode to put against it."""
-    if cell.frequency is None or cell.full is None:
-        return None
-    full = cell.full
-    alike = [m for m in wrong.modes if m.name.split()[0] == cell.family and abs(m.right / full - 1.0) < NEAR]
-    change = min(alike, key=lambda m: abs(m.right / full - 1.0)).change if alike else None
-    if change is None:
-        return None
-    return judge(cell.frequency / (full * (1.0 + change)) - 1.0, cell.uncertainty, cell.target)[0] == "fail"
-
-
-Status = Literal["caught", "needs a case", "needs a code", "missed"]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What became of one mistake in a run.
-
-    Attributes:
-        mistake: see ``mistakes``.
-        status: ``missed`` is the harness' failure; ``needs a case`` and ``needs a code``: the run has none that could tell.
-        cases: blade → its row with the largest change of those that were caught, else of all.
-    """
-
-    mistake: Mistake
-    status: Status
-    cases: dict[str, Control]
-
-
-def outcomes(rows: Sequence[Control]) -> list[Outcome]:
-    """What became of each mistake; none if there are no rows, as in a run of mechanisms only."""
-    return [_outcome(m, [r for r in rows if r.control == m.name]) for m in MISTAKES] if rows else []
-
-
-def _outcome(mistake: Mistake, rows: Sequence[Control]) -> Outcome:
-    cases: dict[str, Control] = {}
-    for row in rows:
-        if row.case not in cases or _weight(row) > _weight(cases[row.case]):
-            cases[row.case] = row
-    telling = [r for r in rows if r.case in mistake.seen_in]
-    status: Status = "missed"
-    if any(r.caught for r in rows):
-        status = "caught"
-    elif not telling:
-        status = "needs a case"
-    elif not any(r.missed for r in telling):
-        status = "needs a code"
-    return Outcome(mistake, status, cases)
-
-
-def _weight(row: Control) -> tuple[bool, float]:
-    return bool(row.caught), abs(row.change or 0.0)

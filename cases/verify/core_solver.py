@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ...core.modes import Modes
 from ...core.solve import mesh_modes
 from ...references.protocol.worker import Answer, Failure, Run
 from ..input.errors import NO_STATE, CaseError
-from ..input.schema import Compare
+from ..input.schema import Compare, Discretisation
 from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights
 from .refinement import Refining, Settled, Wanted, settle, solve
 
@@ -70,6 +70,17 @@ def answers(
     return out
 
 
+def rescaled(blade: Blade, factor: float) -> Blade:
+    """The blade with masses and stiffnesses ``factor`` times as large: the same frequencies, rounded otherwise."""
+    return replace(
+        blade,
+        mass=factor * blade.mass,
+        stiffness=factor * blade.stiffness,
+        tip_mass=factor * blade.tip_mass,
+        root=factor * blade.root,
+    )
+
+
 def refining(blade: Blade) -> Refining:
     """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations.
 
@@ -79,6 +90,12 @@ def refining(blade: Blade) -> Refining:
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))
     start = min(max(START, math.ceil(1.0 / shortest - 1e-9)), MOST)
     return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
+
+
+def as_given(source: Discretisation) -> Refining:
+    """How a source's own discretisation is refined: its number of elements first, then ever finer ones of its kind."""
+    n = source.elements
+    return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
 
 
 def converged(blade: Blade, omega: float, compare: Compare, model: Model) -> Converged | Failure:

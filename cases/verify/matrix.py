@@ -3,21 +3,20 @@
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
 from typing import Any
 
-from ...references.protocol.registry import code
+from ...references.protocol.registry import code, version_of
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Control, Level, Run, Share
-from . import controls, error_budget, mechanism_columns
+from ..judge.results import Cell, Level, Origin, Run, Share
+from . import error_budget, mechanism_columns
 from .columns import Column, Rows, columns
-from .controls import Wrong
 from .mechanism_case import MechanismCase, Turning
 from .reference import references
 from .settings import settings
@@ -49,13 +48,12 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Task:
-    """One thing to solve of one blade: core's references (no column), or a column; and core's with mistakes."""
+    """One thing to solve of one blade: core's references (no column), or a column; and what differences are made of."""
 
     variant: Variant | Turning
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
     column: Column | None = None
-    mistakes: Callable[[], list[Wrong]] | None = None
     shares: Callable[[], list[Share]] | None = None
 
     @property
@@ -70,6 +68,7 @@ def run(
     on_progress: Callable[[Progress], None] = lambda _: None,
     timeout: float = TIMEOUT,
     added: Sequence[Added] = (),
+    parts: bool = True,
 ) -> Run:
     """Every blade of ``cases`` through every one of ``codes``, judged.
 
@@ -80,6 +79,7 @@ def run(
         on_progress: told when the run starts and whenever a task ends; an exception from it stops the run.
         timeout: seconds for one worker.
         added: results without a code, each a column more.
+        parts: whether to say what core's differences are made of.
 
     Raises:
         CaseError: if core itself cannot solve a case, or results are added that are not of these cases.
@@ -92,13 +92,11 @@ def run(
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
-    wrong: list[tuple[_Task, Future[list[Wrong]]]] = []
     split: list[tuple[_Task, Future[list[Share]]]] = []
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
-        wrong = [(task, executor.submit(task.mistakes)) for task in plans if task.mistakes]
-        split = [(task, executor.submit(task.shares)) for task in plans if task.shares]
+        split = [(task, executor.submit(task.shares)) for task in plans if task.shares and parts]
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -111,19 +109,23 @@ def run(
                         pending[answer] = replace(task, column=column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
-        noticed = [row for task, future in wrong for row in _noticed(task, future.result(), rows)]
-        parts = [row for task, future in split for row in _parts(task, future.result(), rows)]
+        made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
     finally:
-        for future in [*pending, *(future for _, future in [*wrong, *split])]:
+        for future in [*pending, *(future for _, future in split)]:
             future.cancel()
     ordered = [rows[task.variant.name, column.name] for task in plans for column in task.columns]
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions({c.name: c.version() for c in known.values()}, added),
+        versions=versions(known.values(), added),
         settings=tuple(setting for case in cases for setting in settings(case)),
-        controls=tuple(noticed),
-        shares=tuple(parts),
+        shares=tuple(made_of),
+        origins=tuple(
+            Origin(task.variant.name, column.head.code, **asdict(column.origin))
+            for task in plans
+            for column in task.columns
+            if column.origin
+        ),
     )
 
 
@@ -138,14 +140,8 @@ def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float, ad
         made = (*columns(case, v, codes, timeout), *added_columns(v, added, case.text.compare.target))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        mistakes = partial(controls.solve, v, case.text.compare)
-        out.append(_Task(v, made, question, mistakes=mistakes, shares=partial(error_budget.solve, case, v)))
+        out.append(_Task(v, made, question, shares=partial(error_budget.solve, case, v)))
     return out
-
-
-def _noticed(task: _Task, wrongs: list[Wrong], rows: dict[tuple[str, str], Rows]) -> list[Control]:
-    """What the columns of one blade notice of core's mistakes."""
-    return controls.judged(task.variant.name, wrongs, _cells(task, rows))
 
 
 def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:
@@ -157,11 +153,13 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
     return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
 
 
-def versions(codes: dict[str, str | None], added: Sequence[Added] = ()) -> dict[str, str]:
+def versions(codes: Iterable[Any], added: Sequence[Added] = ()) -> dict[str, str]:
     """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
     files = {one.name: f"results in {Path(one.path).name}" for one in added}
-    return {"python": python_version(), **ours, **{name: v or "not installed" for name, v in codes.items()}, **files}
+    told = {c.name: version_of(c) for c in codes}
+    theirs = {name: version or ("unknown" if raised else "not installed") for name, (version, raised) in told.items()}
+    return {"python": python_version(), **ours, **theirs, **files}
 
 
 def _running(pending: dict[Future[Any], _Task]) -> tuple[str, ...]:

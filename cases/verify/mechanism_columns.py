@@ -20,7 +20,8 @@ from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
 from ...references.protocol.mechanism_interface import MechanismModes, takes_mechanisms
 from ...references.protocol.mechanism_worker import Answer, answers
-from ...references.protocol.worker import Failure
+from ...references.protocol.registry import version_of
+from ...references.protocol.worker import Failure, one_line
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError
 from ..input.mechanism_schema import ClosedForm
@@ -80,7 +81,7 @@ def columns(case: MechanismCase, codes: Mapping[str, Any], timeout: float) -> li
     out = []
     takers = {name: code for name, code in codes.items() if takes_mechanisms(code)}
     for name, code in (takers or codes).items():
-        head = Head(case.name, code.name, code.version() or "", "same discretisation", case.target)
+        head = Head(case.name, code.name, version_of(code)[0], "same discretisation", case.target)
         out.append(Column(code.name, FULL, head, _work(head, variant, name, code, timeout)))
     if form := variant.described.text.closed_form:
         head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
@@ -91,7 +92,14 @@ def columns(case: MechanismCase, codes: Mapping[str, Any], timeout: float) -> li
 def _work(head: Head, variant: Turning, name: str, code: Any, timeout: float) -> Work:
     if not takes_mechanisms(code):
         return partial(_absent, head, "not applicable", "it takes blades, not mechanisms")
-    if why := code.unsupported_mechanism(variant.described.mechanism):
+    try:
+        _, raised = version_of(code)
+        why = code.unsupported_mechanism(variant.described.mechanism)
+    except Exception as error:  # whatever a foreign code raises costs its own cells only
+        raised, why = f"unsupported_mechanism(): {type(error).__name__}: {one_line(error)}", ""
+    if raised:
+        return partial(_absent, head, "fail", f"the adapter raised an exception: {raised}")
+    if why:
         return partial(_absent, head, "not applicable", why)
     if not head.version:
         return partial(_absent, head, "not run", f"not installed: {code.hint}")

@@ -18,6 +18,7 @@ from ...core.chain.blocks import Tridiagonal
 from ...core.chain.lanczos import lanczos
 from ...core.chain.mode_shapes import mode_shapes
 from ...core.chain.pencil import Linear, Shape
+from ...core.chain.steady import Steady
 from ...core.effects import Model
 from ...core.element.discretize import Chain, Mass, discretize
 from ...core.element.measures import Measure
@@ -74,7 +75,7 @@ def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Model) 
     return right(replace(blade, hub_radius=0.0), omega, elements, count, model)
 
 
-def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def shifted(blade: Blade) -> Blade:
     """Sections about an axis ``OFFSET`` beside their own along y, with Steiner's terms but not the couplings they come with.
 
     About an axis shifted by e, EI_z grows by EA e², GJ by GA_y e² and the moments of inertia by m e², and stretch couples with
@@ -89,7 +90,12 @@ def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: M
         stiffness[:, TORSION, TORSION] += stiffness[:, SHEAR_Y, SHEAR_Y] * square
     for turning in (TORSION, BEND_Z):
         mass[:, turning, turning] += mass[:, AXIAL, AXIAL] * square
-    return right(replace(blade, stiffness=stiffness, mass=mass), omega, elements, count, model)
+    return replace(blade, stiffness=stiffness, mass=mass)
+
+
+def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+    """See ``shifted``."""
+    return right(shifted(blade), omega, elements, count, model)
 
 
 def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
@@ -106,9 +112,13 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, model: Model
     """Core with its spin softening multiplied by a factor."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
     state = solve.balance(body, omega, STILL, model)
-    p, own = state.linear, spin_softening(body, state.shape, omega)
-    less = Tridiagonal(*(a + (softening - 1.0) * b for a, b in zip(_parts(p.rest), _parts(own), strict=True)))
-    return _modes(body, replace(p, rest=less), state.shape, omega, count)
+    return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
+
+
+def softened(body: Chain, state: Steady, omega: float, factor: float) -> Linear:
+    """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
+    parts = zip(_parts(state.linear.rest), _parts(spin_softening(body, state.shape, omega)), strict=True)
+    return replace(state.linear, rest=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
 
 
 def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:

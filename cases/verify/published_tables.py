@@ -8,16 +8,16 @@ import numpy as np
 
 from ...core.blade import Blade, sample, uniform
 from ...core.effects import Model
-from ...references.protocol.worker import Failure
+from ...references.protocol.worker import Answer, Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
-from ..judge.pairing import pair
 from ..judge.results import Cell, Level
 from ..judge.uncertainty import from_print
 from ..judge.verdict import unsigned
-from .cells import Head, excused, printed
-from .core_solver import answers
+from .cells import Coarse, Head, excused, printed
+from .core_solver import answers, as_given
 from .reference import Reference
+from .refinement import settle, solve
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,14 @@ class Printed:
 
     Attributes:
         name: the table's and the series', ``park2010/present``.
+        source: the table's, ``park2010``.
         series: the numbers.
         unit: what the series' frequencies are multiplied by to be rad/s.
         speed: what its speeds are multiplied by.
     """
 
     name: str
+    source: str
     series: Series
     unit: float
     speed: float
@@ -54,7 +56,7 @@ def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
         TableError: if there is no such table.
     """
     return [
-        Printed(f"{name}/{series.name}", series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
+        Printed(f"{name}/{series.name}", name, series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
         for name in names
         for table in [load(name)]
         for series in table.series
@@ -95,7 +97,7 @@ def rows(
     for omega, reference in core:
         data = table.at(omega, reference.core.names)
         if any(data):
-            coarse = _coarse(blade, omega, table.series.model, reference, source) if source else [None] * len(data)
+            coarse = discretised(blade, omega, table.series.model, reference, source) if source else [None] * len(data)
             for i, datum in enumerate(data):
                 if datum:
                     value = from_print(datum.printed, table.unit)
@@ -103,17 +105,25 @@ def rows(
                     cell = printed(head, omega, i, reference, value, note)
                     if held.grounds and cell.verdict == "pass":
                         cell = replace(cell, reason=f"held to {unsigned(head.target)}: {held.grounds}")
-                    cells.append(excused(cell, value, coarse[i], source.what) if source else cell)
+                    cells.append(excused(cell, coarse[i], source.what) if source else cell)
     return cells, []
 
 
-def _coarse(
+def discretised(
     blade: Blade, omega: float, model: Model, reference: Reference, source: Discretisation
-) -> list[float | None]:
-    """Core's frequencies of the reference's modes in the source's discretisation, None where one has no partner."""
-    wanted, run = reference.core.wanted, (omega, source.elements, reference.core.count)
-    (modes,) = answers(blade, [run], source.mass, source.stiffness, model)
-    if isinstance(modes, Failure):
-        return [None] * len(wanted.indices)
-    partners = pair(wanted.reference, modes, wanted.indices, wanted.weight)
-    return [None if p.mode is None else float(modes.frequencies[p.mode]) for p in partners]
+) -> list[Coarse | None]:
+    """Core's answers for the reference's modes in the source's discretisation, and their limits; None without a partner."""
+    n, wanted = source.elements, reference.core.wanted
+
+    def ask(runs: Sequence[Run]) -> list[Answer]:
+        return answers(blade, runs, source.mass, source.stiffness, model)
+
+    plan = as_given(source)
+    (study,) = solve(ask, [omega], plan, reference.core.count, lambda *_: wanted)
+    fine = settle(study.answers, wanted, plan.order)
+    found: list[Coarse | None] = []
+    for mode in fine:
+        levels = dict(mode.history)
+        there = mode.estimate is not None and n in levels
+        found.append(Coarse(levels[n], mode.estimate.value) if there and mode.estimate else None)
+    return found or [None] * len(wanted.indices)

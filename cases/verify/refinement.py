@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core.modes import Modes
 from ...references.protocol.worker import Answer, Failure, Run
 from ..judge.pairing import Pair, pair
-from ..judge.uncertainty import Estimate, from_bracket, from_refinement
+from ..judge.uncertainty import Estimate, from_bracket, from_refinement, widened
 
 Array = NDArray[np.float64]
 Ask = Callable[[Sequence[Run]], list[Answer]]
@@ -23,12 +23,16 @@ SURE = 2e-4
 
 @dataclass(frozen=True)
 class Refining:
-    """How a solver is refined: ``levels`` first, all of them; then twice the last, up to ``cap``, until ``sure``."""
+    """How a solver is refined: ``levels`` first, all of them; then twice the last, up to ``cap``, until ``sure``.
+
+    ``bracket``: the solver declares that it brackets its own answer by ``Modes.uncertainty``, so that no refinement is needed.
+    """
 
     levels: tuple[int, ...]
     order: int
     cap: int
     sure: float = SURE
+    bracket: bool = False
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,7 @@ class Settled:
         estimate: None if no refinement had a partner for the mode.
         partner: at the finest refinement.
         history: (elements, frequency in rad/s) of every refinement that had a partner.
-        bracketed: whether the uncertainty is the code's own bracket rather than had by refinement.
+        bracketed: whether the uncertainty is the bracket that the code declares rather than had by refinement.
     """
 
     estimate: Estimate | None
@@ -105,24 +109,24 @@ def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
         s.bracketed
         or s.estimate is None
         or (s.estimate.uncertainty is not None and s.estimate.uncertainty <= refining.sure)
-        for s in settle(answers, wanted, refining.order)
+        for s in settle(answers, wanted, refining.order, refining.bracket)
     )
 
 
-def settle(answers: Sequence[Modes], wanted: Wanted, order: int) -> list[Settled]:
-    """Each wanted mode's estimate from a solver's answers at rising refinements."""
+def settle(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[Settled]:
+    """Each wanted mode's estimate from a solver's answers at rising refinements; ``bracket`` as in ``Refining``."""
     pairs = [pair(wanted.reference, modes, wanted.indices, wanted.weight) for modes in answers]
-    return [_settle(answers, [level[i] for level in pairs], order) for i in range(len(wanted.indices))]
+    return [_settle(answers, [level[i] for level in pairs], order, bracket) for i in range(len(wanted.indices))]
 
 
-def _settle(answers: Sequence[Modes], partners: Sequence[Pair], order: int) -> Settled:
+def _settle(answers: Sequence[Modes], partners: Sequence[Pair], order: int, bracket: bool) -> Settled:
     found = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
     last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code gave no modes")
     history = tuple((m.elements, float(m.frequencies[k])) for m, k in found)
     if last.mode is None:
         return Settled(None, last, history)
-    finest = answers[-1]
-    if len(finest.uncertainty):
-        bracket = from_bracket(history[-1][1], finest.uncertainty[last.mode])
-        return Settled(bracket, last, history, bracketed=True)
-    return Settled(from_refinement([n for n, _ in history], [f for _, f in history], order), last, history)
+    own = float(answers[-1].uncertainty[last.mode]) if len(answers[-1].uncertainty) else None
+    if bracket and own is not None:
+        return Settled(from_bracket(history[-1][1], own), last, history, bracketed=True)
+    refined = from_refinement([n for n, _ in history], [f for _, f in history], order)
+    return Settled(widened(refined, own or 0.0), last, history)

@@ -35,7 +35,18 @@ def _setting(case: Case, variant: Variant) -> Setting:
         d = text.discretisation
         what = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
         facts["source's discretisation"] = what
-    return Setting(variant.name, text.title, " ".join(text.description.split()), text.source, unit, facts)
+    groups = text.compare.required(variant.name.partition("/")[2])
+    return Setting(
+        case=variant.name,
+        title=text.title,
+        description=" ".join(text.description.split()),
+        source=text.source,
+        unit=unit,
+        facts=facts,
+        groups=groups,
+        lacking="" if groups else text.compare.lacking,
+        target=text.compare.target,
+    )
 
 
 def _dimensional(blade: Blade) -> dict[str, str]:

@@ -82,7 +82,8 @@ def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
     core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
     if len(core) < len(speeds):
         raise CaseError(f"{variant.name}: core without {', '.join(yours.lacks)} has no steady state at every speed")
-    refining = Refining(yours.levels, yours.order, 4 * yours.levels[-1]) if yours.refines else Refining((1,), 0, 1)
+    finest = 4 * yours.levels[-1]
+    refining = Refining(yours.levels, yours.order, finest) if yours.refines else Refining((1,), 0, 1, bracket=True)
     count = max(r.core.count for _, r in core)
     by_speed = {omega: r.core.wanted for omega, r in core}
     studies = solve(
@@ -90,7 +91,7 @@ def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
     )
     cells, levels = [], []
     for (omega, reference), study in zip(core, studies, strict=True):
-        new = refined(head, omega, reference, study, refining.order)
+        new = refined(head, omega, reference, study, refining.order, refining.bracket)
         cells += new[0]
         levels += new[1]
     return cells + _printed(cells, variant, compare, solved), levels

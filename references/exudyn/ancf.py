@@ -21,7 +21,7 @@ from scipy.interpolate import CubicHermiteSpline
 from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
 
@@ -40,6 +40,8 @@ class ExudynAncf:
     name = "exudyn-ancf"
     title = "Exudyn, ANCF cable"
     shares: Shares = "nothing"
+    independence = Independence("Exudyn", "ANCF cable", "references.exudyn_ancf")
+    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
     model = Model(rotary_inertia=False)
     levels = (10, 20, 40)
     order = 4

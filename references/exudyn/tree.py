@@ -18,7 +18,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
 from .hinged_segments import SLIDE, TURN, Tree, plant
@@ -35,6 +35,7 @@ class ExudynTree:
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
     shares: Shares = "nothing"
+    independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
     model = FULL
     levels = (24, 48, 96)
     order = 2

@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
 from ..theories.spectral import gauss, intervals
 from . import FRAME3DD, ask
@@ -50,6 +50,8 @@ class Frame3DD:
     name = "frame3dd"
     title = "Frame3DD, frame elements"
     shares: Shares = "nothing"
+    independence = Independence("Frame3DD", "frame elements", "references.frame3dd_frame", eigensolver="Frame3DD")
+    motions: tuple[Motion, ...] = ("chordwise", "flapwise")
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2

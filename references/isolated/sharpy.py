@@ -25,7 +25,7 @@ from ...core.effects import FULL
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CORE, CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.spectral import gauss, intervals
 from . import SHARPY, ask
@@ -54,6 +54,7 @@ class Sharpy:
     name = "sharpy"
     title = "SHARPy, geometrically exact beam"
     shares: Shares = "nothing"
+    independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=CORE)
     model = FULL
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2

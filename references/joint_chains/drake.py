@@ -17,7 +17,7 @@ from ...core.blade import Blade
 from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
-from ..protocol.interface import Shares
+from ..protocol.interface import CORE, Independence, Shares
 from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
@@ -35,6 +35,7 @@ class DrakeChain:
     name = "drake"
     title = "Drake, chain of joints"
     shares: Shares = "discretisation"
+    independence = Independence("Drake", CORE, "Drake", sections=CORE)
     model = FULL
     levels = (10, 20, 40)
     order = 2

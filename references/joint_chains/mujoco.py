@@ -16,7 +16,7 @@ from ...core.blade import Blade
 from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
-from ..protocol.interface import Shares
+from ..protocol.interface import CORE, Independence, Shares
 from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
@@ -38,6 +38,7 @@ class MujocoChain:
     name = "mujoco"
     title = "MuJoCo, chain of joints"
     shares: Shares = "discretisation"
+    independence = Independence("MuJoCo", CORE, "MuJoCo", sections=CORE)
     model = FULL
     levels = (10, 20, 40)
     order = 2

@@ -16,7 +16,7 @@ from ...core.blade import Blade
 from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
-from ..protocol.interface import Shares
+from ..protocol.interface import CORE, Independence, Shares
 from .joint_chain import bodies, chain_modes, check, places, refusal
 
 Array = NDArray[np.float64]
@@ -34,6 +34,7 @@ class PinocchioChain:
     name = "pinocchio"
     title = "Pinocchio, chain of joints"
     shares: Shares = "discretisation"
+    independence = Independence("Pinocchio", CORE, "Pinocchio", sections=CORE)
     model = FULL
     levels = (10, 20, 40)
     order = 2

@@ -8,7 +8,8 @@ Laws every code keeps:
 * ``solve`` is a pure function of its arguments: the same call gives the same answer in any order, in any process.
 """
 
-from typing import Literal, Protocol
+from dataclasses import dataclass
+from typing import Literal, Protocol, get_args
 
 from ...core.blade import Blade
 from ...core.effects import Model
@@ -16,9 +17,41 @@ from ...core.modes import Modes
 
 Shares = Literal["nothing", "mechanical model", "discretisation"]
 
+Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
+
+MOTIONS: tuple[Motion, ...] = get_args(Motion)
+"""What the four columns of a shape are, in a blade that lies along x: motion along x, y, z, and rotation about x."""
 
 DIGITS = 9
 """Of a code that declares none."""
+
+
+@dataclass(frozen=True)
+class Independence:
+    """Where a code's answer comes from, in names that are equal where the origin is.
+
+    Two codes with the same ``engine``, ``theory`` or ``rotation`` are one confirmation, not two. One that has ``CORE`` anywhere
+    is no independent one: it confirms that core solves its own model. That ``sections`` or ``eigensolver`` are the same is
+    shown and not counted: all codes read the same blade, and the adapters' eigensolver, ``references.quadratic``, is verified
+    by itself, against SciPy's dense eigenvalues of the state-space matrix in ``tests/cases/judge/test_groups.py``.
+
+    Attributes:
+        engine: the program that assembles the equations of motion: ``Exudyn``.
+        theory: whose derivation, discretised how, the matrices are: ``ANCF cable``.
+        rotation: where centrifugal and gyroscopic terms come from.
+        sections: where geometry and section data come from: ``blade`` (the adapter reads it itself) or core's frames.
+        eigensolver: what solves the eigenproblem.
+    """
+
+    engine: str
+    theory: str
+    rotation: str
+    sections: str = "blade"
+    eigensolver: str = "references.quadratic"
+
+
+CORE = "core"
+"""Of a declaration: it is core's own."""
 
 
 class CodeError(RuntimeError):
@@ -37,8 +70,14 @@ class Code(Protocol):
         order: the theoretical order of convergence of its frequencies (0: spectral).
         hint: how to install what it needs.
 
-    A code that prints, or iterates to, fewer than nine significant digits of its frequencies says so: ``digits: int``. No more
-    is then asked of two answers that should be the same, as of a blade in other units.
+    Three more are optional:
+
+    * ``independence: Independence``, without which the code confirms nothing: see there;
+    * ``motions: tuple[Motion, ...]``, those that its shapes have, if not all four; modes that mostly move otherwise are not
+      compared, and nothing else excuses a mode without a partner;
+    * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket of the code's own, not narrowed by refinement;
+    * ``digits: int``, of a code that prints, or iterates to, fewer than nine significant digits of its frequencies. No more is
+      then asked of two answers that should be the same, as of a blade in other units.
     """
 
     name: str
@@ -69,3 +108,18 @@ class Code(Protocol):
 def digits(code: Code) -> int:
     """Significant digits that its frequencies have: its own declaration, if it has one."""
     return getattr(code, "digits", DIGITS)
+
+
+def motions(code: Code) -> tuple[Motion, ...]:
+    """Motions that its shapes have: its own declaration, or all."""
+    return getattr(code, "motions", MOTIONS)
+
+
+def brackets(code: Code) -> bool:
+    """Whether it declares that it brackets its own answer."""
+    return bool(getattr(code, "bracket", False))
+
+
+def independence(code: object) -> Independence | None:
+    """What it declares about itself; None if nothing."""
+    return getattr(code, "independence", None)

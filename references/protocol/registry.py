@@ -92,6 +92,14 @@ def code(name: str) -> Any:
     return found
 
 
+def version_of(code: Any) -> tuple[str, str]:
+    """A code's version, empty if it is not installed, and what it raised instead of telling, empty if nothing."""
+    try:
+        return str(code.version() or ""), ""
+    except Exception as error:  # whatever a foreign code raises costs its own cells only
+        return "", f"version(): {type(error).__name__}: {' '.join(str(error).split())}"
+
+
 CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96, "frame3dd": 100}
 """Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
 freedoms, pyBModes dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that

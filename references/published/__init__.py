@@ -15,6 +15,9 @@ from msgspec import Meta, Struct
 
 from ...core.effects import Model
 
+COARSEST = 0.02
+"""Largest relative target that a table may be given: twenty times the paper's 0.1 %."""
+
 Family = Literal["chordwise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Unit = Literal["rad/s", "rpm, Hz", "dimensionless"]
@@ -63,10 +66,13 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
     hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length; of a uniform beam")] = 0.0
     blade: Annotated[str, Meta(description="the case's blade it is about, where that is no uniform beam")] = ""
     target: (
-        Annotated[float, Meta(gt=0, description="what the numbers can be held to, where coarser than the case's")]
+        Annotated[
+            float, Meta(gt=0, le=COARSEST, description="what the numbers can be held to, where coarser than the case's")
+        ]
         | None
     ) = None
     grounds: Annotated[str, Meta(description="of such a target")] = ""
+    theory: Annotated[str, Meta(description="that a code has too, as its ``Independence`` names it")] = ""
     slenderness: Annotated[float, Meta(gt=0, description="α = √(A L² / I); none: inextensible")] | None = None
     tip_mass_ratio: Annotated[float, Meta(ge=0, description="μ, tip mass over the beam's mass")] = 0.0
     height_taper: Annotated[

@@ -26,7 +26,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from ...core.blade import Blade, clamped, coupled, sample, straight
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
 
 Array = NDArray[np.float64]
@@ -85,6 +85,8 @@ class PyBModes:
     name = "pybmodes"
     title = "pyBModes, linear beam"
     shares: Shares = "nothing"
+    independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
+    motions: tuple[Motion, ...] = ("chordwise", "flapwise", "torsion")
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2

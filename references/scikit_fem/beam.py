@@ -17,7 +17,7 @@ from scipy.sparse import dia_array
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
@@ -41,6 +41,7 @@ class ScikitFemBeam:
     name = "scikit-fem"
     title = "scikit-fem, prestressed beam"
     shares: Shares = "nothing"
+    independence = Independence("scikit-fem", "references.scikit_fem_forms", "references.scikit_fem_forms")
     model = FULL
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4

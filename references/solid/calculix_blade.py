@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, sample, uniform
 from ...core.modes import Modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CodeError, Independence, Motion, Shares
 from . import calculix
 from .mesh import Bricks, blade, clamped
 
@@ -47,6 +47,8 @@ class Calculix:
     name = "calculix"
     title = "CalculiX, solid elements"
     shares: Shares = "nothing"
+    independence = Independence("CalculiX", "solid elements", "CalculiX", eigensolver="CalculiX")
+    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
     model = calculix.MODEL
     levels = (10, 20, 40)
     order = 4

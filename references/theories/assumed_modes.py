@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, Shares
+from ..protocol.interface import Code, Independence, Motion, Shares
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
 from .spectral import clamped
 from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
@@ -90,6 +90,8 @@ class AssumedModes:
     name = "assumed-modes"
     title = "Putter and Manor, assumed modes"
     shares: Shares = "nothing"
+    independence = Independence("references.ritz", "Putter and Manor 1978", "references.assumed_modes")
+    motions: tuple[Motion, ...] = ("chordwise", "flapwise")
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = LEVELS
     order = 0

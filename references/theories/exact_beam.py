@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from ...core.blade import TORSION, Blade
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, CodeError, Shares
+from ..protocol.interface import Code, CodeError, Independence, Shares
 from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
 from .spectral import clamped, pinned
 from .straight_beam import LEVELS, Line, line, refusal, refuse, terms, version
@@ -154,6 +154,7 @@ class ExactBeam:
     name = "exact-beam"
     title = "Exact extensible beam, spectral"
     shares: Shares = "nothing"
+    independence = Independence("references.ritz", "Kirchhoff rod", "references.exact_beam")
     model = FULL
     levels = LEVELS
     order = 0

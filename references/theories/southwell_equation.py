@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Model
 from ...core.modes import Modes
-from ..protocol.interface import Code, Shares
+from ..protocol.interface import Code, Independence, Motion, Shares
 from .assumed_modes import Bending, bendings
 from .ritz import Y, integral, part, stationary_modes, union
 from .spectral import pinned
@@ -62,9 +62,12 @@ class SouthwellEquation:
     name = "southwell-equation"
     title = "Southwell's equation"
     shares: Shares = "nothing"
+    independence = Independence("references.ritz", "Putter and Manor 1978", "references.assumed_modes")
+    motions: tuple[Motion, ...] = ("chordwise", "flapwise")
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = LEVELS
     order = 0
+    bracket = True
     hint = ""
 
     def version(self) -> str | None:

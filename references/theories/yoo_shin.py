@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, Shares
+from ..protocol.interface import Code, Independence, Motion, Shares
 from .assumed_modes import bendings
 from .ritz import X, Y, apart, coupled_modes, integral, part, shape_of, skew, stationary_modes, union
 from .spectral import clamped, pinned
@@ -57,6 +57,8 @@ class YooShin:
     name = "yoo-shin"
     title = "Yoo and Shin (1998), Rayleigh–Ritz"
     shares: Shares = "nothing"
+    independence = Independence("references.ritz", "Yoo and Shin 1998", "references.assumed_modes")
+    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
     model = Model(prestretch=False, rotary_inertia=False)
     levels = LEVELS
     order = 0

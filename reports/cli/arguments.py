@@ -25,6 +25,7 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
 
 
 Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
 

@@ -14,7 +14,6 @@ from ...cases.judge.results import Run
 from ...cases.regression import history
 from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
 from ...cases.regression.history import Entry
-from ...cases.verify.controls import outcomes
 from ..ci import gate_text, junit
 from ..shared.console import output
 from ..verification import report as matrix_report
@@ -70,7 +69,7 @@ def command(
     before, earlier = _before(against, commit) if against else (nothing(after), ())
     if partial:
         before = within(before, after)
-    missed = [o.mistake.name for o in outcomes(run.controls) if o.status == "missed"]
+    missed = [c.control for c in run.controls if c.missed]
     found = compare(before, after, earlier, tolerance, missed)
     console = output()
     for shown in gate_text.tables(found):

@@ -9,10 +9,11 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
 
+from ...cases.faults import table
 from ...cases.input import library, mechanisms
 from ...cases.input.schema import Case
 from ...cases.judge import results
-from ...cases.judge.results import Run
+from ...cases.judge.results import Run, Setting
 from ...cases.verify import lumping, matrix, mechanism_case, user_results
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
@@ -21,7 +22,7 @@ from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
 from ..ci import junit as xml
 from ..shared import console, summary
-from .arguments import INTERRUPTED, RESULTS, UsageError, Whole
+from .arguments import INTERRUPTED, RESULTS, Count, UsageError, Whole
 from .report import show
 
 
@@ -32,11 +33,14 @@ def command(
     workers: Whole | None = None,
     add: tuple[str, ...] = (),
     junit: Path | None = None,
+    faults: str = "fast",
+    witnesses: Count | None = None,
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
-    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive, or if
-    core made wrong on purpose (every run tries) is not caught; interrupted, it keeps and reports what is there, status 130.
+    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive, if nothing was
+    compared, if a blade is confirmed by fewer independent groups than its case requires, or if a seeded fault is not detected;
+    interrupted, it keeps and reports what is there, status 130.
 
     Parameters
     ----------
@@ -53,6 +57,11 @@ def command(
         columns: `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
     junit
         File for the same as JUnit's XML: a test case a cell, for a CI that shows it.
+    faults
+        Seeded faults to run through the whole pipeline: `fast` (seven), `all`, `none`, or names separated by commas.
+    witnesses
+        How many independent groups must confirm each blade. By default what its case says, where all codes take part; a run
+        with `--codes` requires none.
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or everything())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
@@ -62,13 +71,14 @@ def command(
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     about = Run(
         cells=(),
-        versions=matrix.versions({c.name: c.version() for c in known}, files),
+        versions=matrix.versions(known, files),
         command=shlex.join(["southwell", "verify", *case, *options]),
-        settings=tuple(s for c in chosen for s in settings(c)),
+        settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
     )
+    seeded = table.chosen(faults)
     path = _fresh(out)
     results.append(path, run=about)
-    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1)
+    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1, seeded)
     if run.cells:
         show(run, out)
         if junit:
@@ -80,6 +90,13 @@ def command(
         print(f"southwell: interrupted: {kept}", file=sys.stderr)
         return INTERRUPTED
     return summary.status(run)
+
+
+def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
+    """How many groups a run requires of a blade: as told, or as the case says if all codes take part."""
+    if witnesses is None and whole:
+        return setting
+    return replace(setting, groups=witnesses or 0, lacking="")
 
 
 def _added(text: str) -> Added:
@@ -96,6 +113,7 @@ def _solve(
     about: Run,
     path: Path,
     workers: int,
+    seeded: Sequence[str],
 ) -> tuple[Run, bool]:
     """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
     pool, watch = Pool(workers), console.Watch()
@@ -113,8 +131,10 @@ def _solve(
                 for v in c.variants
                 if v.name == lumping.CASE
             ]
+            tried = [pool.submit(table.run, part) for part in _shared_out(seeded, workers)]
             done = matrix.run(chosen, names, pool, keep, added=files)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
+            found = {control.control: control for future in tried for control in future.result()}
     except KeyboardInterrupt:
         return results.read(path), False
     except BrokenProcessPool:
@@ -125,12 +145,19 @@ def _solve(
         return results.read(path), False
     finally:
         pool.stop()
-    run = replace(about, cells=done.cells, levels=levels, controls=done.controls, shares=done.shares)
+    controls = tuple(found[name] for name in seeded)
+    run = replace(about, cells=done.cells, levels=levels, controls=controls, shares=done.shares, origins=done.origins)
     ordered = path.with_suffix(".part")
     ordered.unlink(missing_ok=True)
     results.append(ordered, run.cells, run.levels, run)
     ordered.replace(path)
     return run, True
+
+
+def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
+    """Faults for each worker: neighbours together, as their trials are the same case."""
+    size = -(-len(names) // workers)
+    return [names[k : k + size] for k in range(0, len(names), size)] if names else []
 
 
 def _chosen(name: str) -> Case | MechanismCase:

@@ -5,8 +5,7 @@ import re
 from dataclasses import asdict
 from typing import Any
 
-from ...cases.judge.results import Cell, Run
-from ...cases.verify.controls import Outcome, outcomes
+from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
 from ...references.protocol.registry import UnknownCodeError
 from ..shared import summary
@@ -66,26 +65,24 @@ def first(run: Run, name: str) -> dict[str, Any]:
             ]
             for c in run.cells
         ],
-        "controls": [_control(o) for o in outcomes(run.controls)],
+        "controls": [_control(c) for c in run.controls],
     }
 
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few lines, those of the report, without its markup."""
-    lines = [*evidence.first(run), witnesses.headline(run), controls.headline(run)]
+    lines = [*evidence.first(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
     return [line.replace("**", "") for line in lines if line]
 
 
-def _control(outcome: Outcome) -> dict[str, Any]:
-    rows = outcome.cases.values()
-    far = max(rows, key=lambda r: abs(r.change or 0.0), default=None)
+def _control(control: Control) -> dict[str, Any]:
     return {
-        "name": outcome.mistake.name,
-        "status": outcome.status,
-        "change": far.change if far else None,
-        "where": f"{far.case}, {far.mode}" if far else "",
-        "caught": list(dict.fromkeys(name for r in rows for name in r.caught)),
-        "cases": [r.case for r in rows if r.caught],
+        "name": control.control,
+        "status": "missed" if control.missed else "needs a code" if control.needs else "caught",
+        "change": control.change,
+        "where": control.what,
+        "caught": list(control.caught),
+        "cases": [control.case] if control.case else [],
     }
 
 

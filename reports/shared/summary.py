@@ -9,19 +9,31 @@ from typing import get_args
 
 from ...cases.judge.results import Cell, Run, Verdict
 from ...cases.judge.verdict import unsigned
-from ...cases.verify.controls import outcomes
+from ...cases.judge.witnesses import short
 
 SYMBOL: dict[Verdict, str] = {
     "pass": "✔",
     "fail": "✘",
     "inconclusive": "?",
     "known difference": "≈",
+    "estimate": "~",
     "not applicable": "–",
     "not run": "○",
 }
 """A sign beside each verdict's name; never instead of it."""
 
-GRAVEST_FIRST: tuple[Verdict, ...] = ("fail", "inconclusive", "known difference", "pass", "not run", "not applicable")
+GRAVEST_FIRST: tuple[Verdict, ...] = (
+    "fail",
+    "inconclusive",
+    "known difference",
+    "pass",
+    "estimate",
+    "not run",
+    "not applicable",
+)
+
+PAPER = 1e-3
+"""The usual target, relative: the paper's. A wider one is shown beside every number that is held to it."""
 
 TINY = 1e-6
 """Targets below this are those of the same discretisation, and percent is no unit for them."""
@@ -30,10 +42,18 @@ BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
 """Verdicts that make a run end with status 1."""
 
 
+def compared(cells: Iterable[Cell]) -> bool:
+    """Whether anything foreign was compared with core: a number that was judged, or an answer that is due and missing."""
+    return any(c.role != "discretisation" and c.verdict in (*BAD, "pass", "known difference") for c in cells)
+
+
 def status(run: Run) -> int:
-    """Exit status: 1 if any cell fails or is inconclusive, there is none at all, or a negative control is missed; else 0."""
-    blind = any(outcome.status == "missed" for outcome in outcomes(run.controls))
-    return int(not run.cells or blind or any(c.verdict in BAD for c in run.cells))
+    """Exit status: 0 if something was compared, nothing fails or is inconclusive, every blade is confirmed by as many groups
+    as required, and every seeded fault is detected; else 1.
+    """
+    blind = any(control.missed for control in run.controls)
+    bad = any(c.verdict in BAD for c in run.cells)
+    return int(not compared(run.cells) or blind or bad or bool(short(run)))
 
 
 def gravest(cells: Iterable[Cell]) -> Verdict:
@@ -137,6 +157,11 @@ def amount(value: float, target: float) -> str:
 def allowed(target: float) -> str:
     """A target, in percent, or as it is where it is tiny."""
     return f"{target:.0e}" if target < TINY else unsigned(target)
+
+
+def wide(cell: Cell) -> str:
+    """`` (target 2.00 %)`` of a cell that is held to a wider target than is usual; else empty."""
+    return f" (target {allowed(cell.target)})" if cell.target > PAPER else ""
 
 
 def plus_minus(cell: Cell) -> str:

@@ -29,7 +29,7 @@ def answer(run: Run) -> str:
     counts = summary.counts(run.cells)
     counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in counts.items() if n)
     cells = f"{len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
-    if not any(counts[v] for v in (*SAME, "known difference")):
+    if not summary.compared(run.cells):
         return f"**Nothing was compared.** {cells}"
     if counts["fail"]:
         return f"**No: {_number(counts['fail'])} core.** {cells}"

@@ -121,7 +121,13 @@ def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], 
     return handles
 
 
-FACES: dict[Verdict, str] = {"pass": "full", "known difference": "left", "inconclusive": "none", "fail": "full"}
+FACES: dict[Verdict, str] = {
+    "pass": "full",
+    "known difference": "left",
+    "estimate": "bottom",
+    "inconclusive": "none",
+    "fail": "full",
+}
 """How a marker is filled; a failure is a cross."""
 
 BELOW = 1e-5

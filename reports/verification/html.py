@@ -34,7 +34,7 @@ h3 { font-size: 1.08rem; } a { color: var(--link); }
 table { border-collapse: collapse; font-size: 12.5px; line-height: 1.35; font-variant-numeric: tabular-nums; }
 th, td { border: 1px solid var(--faint); padding: 3px 6px; text-align: left; vertical-align: top; }
 td.pass { background: #b7e3d3; } td.fail { background: #f3b08f; font-weight: 700; } td.inconclusive { background: #f9dd9a; }
-td.known-difference { background: #bfe0f7; } td.not-run, td.not-applicable { color: #6b6b6b; }
+td.known-difference { background: #bfe0f7; } td.not-run, td.not-applicable, td.estimate { color: #6b6b6b; }
 th { background: #f3f4f6; } td:first-child { font-weight: 500; }
 img { display: block; max-width: min(100%, 60rem); height: auto; margin: 1rem 0; }
 details { margin: 0.8rem 0; } summary { cursor: pointer; font-weight: 600; }

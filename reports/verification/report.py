@@ -25,7 +25,6 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
     "campbell": campbell,
     "differences": differences,
     "convergence": convergence,
-    "mistakes": controls.mistakes,
 }
 """Drawn for each blade; the key ends the file's name."""
 
@@ -91,7 +90,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         keep_trailing_newline=True,
     )
     environment.filters["plain"] = plain
-    found, borne_out = lumped.taken(run), witnesses.table(run)
+    found = lumped.taken(run)
     return environment.get_template("report.md.jinja").render(
         headline=first(run),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
@@ -100,8 +99,10 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         unasked=unasked(run),
         legend=LEGEND,
         cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
-        witnesses=table([{k: plain(v) for k, v in row.items()} for row in borne_out]) if borne_out else "",
-        controls=_controls(run),
+        witnesses=_plainly(witnesses.table(run)),
+        origins=_plainly(witnesses.origins(run)),
+        short=[plain(line) for line in witnesses.missing(run)],
+        controls=_plainly(controls.overview(run)),
         lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
@@ -113,14 +114,8 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     )
 
 
-def _controls(run: Run) -> dict[str, str]:
-    if not run.controls:
-        return {}
-    tables = (
-        table([{k: plain(v) for k, v in row.items()} for row in controls.overview(run)]),
-        table([{plain(k): v for k, v in row.items()} for row in controls.by_case(run)]),
-    )
-    return {"overview": tables[0], "by_case": tables[1], "sentence": controls.sentence(run)}
+def _plainly(rows: list[dict[str, str]]) -> str:
+    return table([{k: plain(v) for k, v in row.items()} for row in rows]) if rows else ""
 
 
 def headline(run: Run) -> list[str]:
@@ -129,7 +124,8 @@ def headline(run: Run) -> list[str]:
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
-    return lines + [told for told in (witnesses.headline(run), controls.headline(run)) if told]
+    remarks = [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    return lines + [plain(told) for told in remarks if told]
 
 
 def first(run: Run) -> list[str]:
@@ -177,7 +173,7 @@ def _heat(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    shown = f"<br>{amount(size, worst.target)}" if worst and size is not None else ""
+    shown = f"<br>{amount(size, worst.target)}{summary.wide(worst)}" if worst and size is not None else ""
     return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{shown}"
 
 
@@ -194,7 +190,6 @@ class Section:
     rest: list[tuple[str, str]]
     told: str
     figures: list[str]
-    mistakes: list[str]
     reasons: str
     count: int
     shares: str
@@ -220,8 +215,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         main=tables[focus] if focus is not None else "",
         rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
         told=told(cells),
-        figures=[f for f in figures if not f.endswith("-mistakes.svg")],
-        mistakes=[f for f in figures if f.endswith("-mistakes.svg")],
+        figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
         shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
@@ -264,7 +258,7 @@ def _entry(cell: Cell, unit: Units) -> str:
     frequency = ""
     if cell.role in ("discretisation", "table") and cell.frequency is not None:
         frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
-    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}".strip()
+    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}{summary.wide(cell)}".strip()
 
 
 def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from ...cases.campbell.sweep import Named
@@ -13,12 +14,13 @@ from ...core.solve import LARGE_STRAIN
 from ..shared import summary
 from ..shared.summary import SYMBOL, broad, columns
 from ..shared.units import Units
-from . import controls as mistakes
+from . import controls as faults
 from . import witnesses
 
 COLOUR: dict[Verdict, str] = {
     "pass": "green",
     "known difference": "cyan",
+    "estimate": "dim",
     "inconclusive": "yellow",
     "fail": "bold red",
     "not applicable": "dim",
@@ -64,18 +66,18 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
 def legend() -> str:
     """What the fields of ``matrix`` say."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    return f"largest difference from core in % (as 2e-14: relative); {signs}"
+    return f"largest difference from core in % (as 2e-14: relative; 1.4 of 2: held to a wider target); {signs}"
 
 
 def controls(run: Run) -> Table:
-    """What became of core made wrong on purpose: a line a mistake."""
+    """What became of seeded faults: a line each."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    for head in ("core made wrong on purpose", "outcome", "largest change", "caught by"):
+    for head in ("seeded fault", "in", "outcome", "largest difference", "noticed by"):
         out.add_column(head, overflow="fold")
-    for row in mistakes.overview(run):
-        names = row["caught by"].split(", ") if row["caught by"] else []
-        style = "bold red" if "missed" in row["outcome"] else ""
-        out.add_row(row["core made wrong"], row["outcome"], row["largest change"], str(len(names)), style=style)
+    for control, row in zip(run.controls, faults.overview(run), strict=True):
+        first = control.caught[0] if control.caught else ""
+        cells = (row["fault"], row["in"], row["outcome"], row["largest difference"], first)
+        out.add_row(*map(escape, cells), style="bold red" if control.missed else "")
     return out
 
 
@@ -84,8 +86,13 @@ def _field(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.gravest(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    number = f" {_short(size, worst.target)}" if worst and size is not None else ""
+    number = f" {_short(size, worst.target)}{_wide(worst)}" if worst and size is not None else ""
     return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"
+
+
+def _wide(cell: Cell) -> str:
+    """The target, where it is wider than is usual."""
+    return f" of {100 * cell.target:g}" if cell.target > summary.PAPER else ""
 
 
 def _short(size: float, target: float) -> str:

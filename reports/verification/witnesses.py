@@ -1,17 +1,11 @@
-"""Who bears each case out: a table of witnesses, and what each column of the matrix shares with core."""
+"""Who confirms each case: groups of independent witnesses, where each comes from, and what each column shares with core."""
 
 from collections.abc import Sequence
 
 from ...cases.judge.results import Cell, Run
 from ...cases.judge.verdict import unsigned
-from ...cases.judge.witnesses import FINE, Kind, Witness, independent, witnesses
+from ...cases.judge.witnesses import FINE, Witness, engines, groups, short, witnesses
 from ..shared import summary
-
-KINDS: dict[Kind, str] = {
-    "code": "codes with their own model",
-    "closed form": "closed forms",
-    "printed source": "printed sources",
-}
 
 
 def shared(cells: Sequence[Cell]) -> str:
@@ -20,41 +14,77 @@ def shared(cells: Sequence[Cell]) -> str:
 
 
 def table(run: Run) -> list[dict[str, str]]:
-    """A row a blade: independent witnesses that agree, by kind, counted; those within ``FINE``; those with core's model."""
+    """A row a blade: how many groups agree and are required, who is in each and within ``FINE``, and who counts for nothing."""
     rows = []
     for case in summary.cases(run):
-        found = witnesses(c for c in run.cells if c.case == case)
-        agreeing = independent(found)
-        ours = [w.name for w in found if w.kind == "core's model" and w.standing == "agrees"]
+        found = witnesses(run, case)
+        agreeing = groups(found)
+        setting = next((s for s in run.settings if s.case == case), None)
+        counted = [w for group in agreeing for w in group]
+        rest = [w for w in found if w not in counted]
         rows.append(
             {
                 "case": case,
-                "independent witnesses": str(len(agreeing)),
-                **{title: _names([w for w in agreeing if w.kind == kind]) for kind, title in KINDS.items()},
-                f"within {unsigned(FINE)} too": _names([w for w in agreeing if w.fine == "agrees"]),
-                "same model as core (one witness, of the implementation)": ", ".join(ours),
-                "no witness": _names([w for w in found if w.standing != "agrees"], with_standing=True),
+                "independent groups": str(len(agreeing)),
+                "required": _required(setting.groups, setting.lacking) if setting else "",
+                "who agrees, group by group": "; ".join(f"({_names(group)})" for group in agreeing),
+                f"within {unsigned(FINE)} too": _names([w for w in counted if w.fine == "agrees"]),
+                "confirms the implementation only": _names(
+                    [w for w in rest if w.kind == "core's model" and w.standing == "agrees"]
+                ),
+                "counts for nothing": ", ".join(
+                    f"{w.name} ({w.standing if w.standing != 'agrees' else w.kind}, to {unsigned(w.target)})"
+                    for w in rest
+                    if w.standing != "agrees" or w.kind in ("undeclared", "coarse source")
+                ),
             }
         )
     return rows if any(c.shares for c in run.cells) else []
 
 
-def _names(found: Sequence[Witness], with_standing: bool = False) -> str:
-    return ", ".join(f"{w.name} ({w.standing})" if with_standing else w.name for w in found)
+def _required(groups: int, lacking: str) -> str:
+    return f"{groups}: {lacking}" if lacking else str(groups)
+
+
+def _names(found: Sequence[Witness]) -> str:
+    """Names, with the target where it is wider than the paper's."""
+    return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in found)
+
+
+def origins(run: Run) -> list[dict[str, str]]:
+    """A row a column: engine, theory, rotation terms, sections and eigensolver, as declared."""
+    rows: dict[str, dict[str, str]] = {}
+    for o in run.origins:
+        rows[o.code] = {
+            "code": o.code,
+            "engine": o.engine,
+            "theory": o.theory,
+            "rotation terms": o.rotation,
+            "sections": o.sections,
+            "eigensolver": o.eigensolver,
+        }
+    return list(rows.values())
 
 
 def headline(run: Run) -> str:
-    """The least number of independent witnesses that any blade has; empty where no row says what is shared."""
+    """The least number of independent groups that confirm any blade; empty where no origin is declared."""
     counted = {
-        case: len(independent(witnesses(c for c in run.cells if c.case == case)))
+        case: groups(witnesses(run, case))
         for case in summary.cases(run)
-        if any(c.shares == "nothing" for c in run.cells if c.case == case)
+        if any(c.shares for c in run.cells if c.case == case)
     }
-    if not counted:
+    if not counted or not run.origins:
         return ""
-    least = min(counted, key=lambda case: counted[case])
-    many = max(counted.values())
-    span = f"{counted[least]} ({least})" if counted[least] == many else f"{counted[least]} ({least}) to {many}"
-    return (
-        f"Independent witnesses that agree, for each blade: {span}; codes that share core's model are not among them."
-    )
+    least = min(counted, key=lambda case: len(counted[case]))
+    low, many = len(counted[least]), max(len(found) for found in counted.values())
+    who = "; ".join(engines(group) for group in counted[least])
+    span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
+    return f"Independent groups that agree, for each blade: {span}; who shares an engine or a theory counts once."
+
+
+def missing(run: Run) -> list[str]:
+    """A line for every blade that fewer groups confirm than its case requires."""
+    return [
+        f"{s.case}: {s.groups} of {s.required} required independent groups agree: install or add codes, or lower --witnesses"
+        for s in short(run)
+    ]

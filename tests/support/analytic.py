@@ -46,6 +46,7 @@ class Analytic:
     shares: Shares = "nothing"
     model: Model = FULL
     hint: str = "pip install nothing"
+    motions: tuple[str, ...] = ("axial", "chordwise", "flapwise", "torsion")
 
     def version(self) -> str | None:
         return "1.0" if self.installed else None
@@ -85,7 +86,7 @@ ROUGH = Analytic("rough", error=5.0, true_order=2.5)
 SLOW = Analytic("slow", true_order=0.2)
 CRUDE = Analytic("crude", factor=1.03, bracket=0.04)
 LYING = Analytic("lying", factor=1.03, bracket=0.02)
-PLANAR = Analytic("planar", columns=(2,))
+PLANAR = Analytic("planar", columns=(2,), motions=("flapwise",))
 SIDEWAYS = Analytic("sideways", columns=(0, 3))
 BACKWARDS = Analytic("backwards", backwards=True)
 UNABLE = Analytic("unable", reason="blades only on Sundays")

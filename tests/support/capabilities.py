@@ -149,7 +149,7 @@ def allowed(can: Can, asks: Asks, omega: float) -> set[str]:
     """Verdicts that are right for a code that solves the blade; ``fail`` and ``inconclusive`` never are."""
     verdicts = {"pass"}
     if can.estimate and omega > 0:
-        verdicts.add("known difference")
+        verdicts.add("estimate")
     if can.lacks and omega > asks.gentle:
         verdicts.add("known difference")
     if asks.axial and not can.stretch:

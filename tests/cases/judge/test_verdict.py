@@ -51,27 +51,32 @@ def test_a_missing_effect_that_does_not_matter_is_a_plain_pass() -> None:
     assert known(-9e-4, TARGET, [Effect("prestretch", -9e-4)]) == ("pass", "")
 
 
-def test_a_mode_that_only_exists_without_the_effect_is_a_known_difference() -> None:
+def test_a_mode_that_only_exists_without_the_effect_has_a_cause_without_a_size() -> None:
     verdict, reason = known(None, TARGET, [Effect("geometric", -0.7)])
-    assert verdict == "known difference"
-    assert "no geometric" in reason
+    assert verdict == "inconclusive"
+    assert "no geometric: size unknown" in reason
 
 
-def test_a_wide_but_true_bracket_is_a_known_difference_and_a_wrong_one_fails() -> None:
-    inside = judge(0.010, 0.012, TARGET)
-    assert bracketed(0.010, 0.012, inside)[0] == "known difference"
-    assert "±" not in bracketed(0.010, 0.012, inside)[1]
-    assert "1.20 %" in bracketed(0.010, 0.012, inside)[1]
-    assert bracketed(0.013, 0.012, inside)[0] == "fail"
-    assert bracketed(1e-5, 1e-5, ("pass", "")) == ("pass", "")
+def test_a_wide_but_true_bracket_is_an_estimate_and_a_wrong_one_fails() -> None:
+    assert bracketed(0.010, 0.012, TARGET)[0] == "estimate"
+    assert "±" not in bracketed(0.010, 0.012, TARGET)[1]
+    assert "1.20 %" in bracketed(0.010, 0.012, TARGET)[1]
+    assert bracketed(0.013, 0.012, TARGET)[0] == "fail"
+    assert bracketed(1e-5, 1e-5, TARGET) == ("pass", "")
+    assert bracketed(1e-5, None, TARGET)[0] == "inconclusive"
 
 
 def test_a_coarse_discretisation_is_excused_only_by_its_own_refinement() -> None:
-    assert discretised(-1.3e-3, 1e-7, TARGET, 2e-7, "50 elements")[0] == "known difference"
-    assert "−0.13 %" in discretised(-1.3e-3, 1e-7, TARGET, 2e-7, "50 elements")[1]
-    assert discretised(-1.3e-3, 1e-7, TARGET, -1.2e-3, "50 elements")[0] == "fail"
-    assert discretised(-1.3e-3, 1e-7, TARGET, None, "50 elements")[0] == "fail"
-    assert discretised(-4e-4, 1e-7, TARGET, None, "50 elements") == ("pass", "")
+    def verdict(difference: float, limit: float | None, remainder: float = 0.0) -> tuple[str, str]:
+        return discretised(difference, 1e-7, TARGET, remainder, limit, "50 elements")
+
+    assert verdict(-1.3e-3, 2e-7)[0] == "known difference"
+    assert "−0.13 %" in verdict(-1.3e-3, 2e-7)[1]
+    assert verdict(-1.3e-3, -1.2e-3)[0] == "fail"
+    assert verdict(-1.3e-3, None)[0] == "fail"
+    assert verdict(-4e-4, None) == ("pass", "")
+    assert verdict(-1.3e-3, 2e-7, 9e-4)[0] == "known difference"  # a printed number, nearly core's so discretised
+    assert verdict(-1.3e-3, 2e-7, 1.1e-3)[0] == "fail"  # and one that is not
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Who counts as a witness: by what it shares with core, once for each model, and only if it agrees throughout."""
+"""Who counts as a witness: by what it shares with core, once for each group, and only if it agrees throughout."""
 
 import re
 from io import StringIO
@@ -6,8 +6,8 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from southwell.cases.judge.results import Cell, Run
-from southwell.cases.judge.witnesses import independent, witnesses
+from southwell.cases.judge.results import Cell, Origin, Run
+from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification import terminal
 from southwell.reports.verification import witnesses as told
@@ -19,6 +19,16 @@ def cell(code: str, shares: str = "nothing", **changes: object) -> Cell:
     return samples.cell(code=code, shares=shares, **changes)
 
 
+def run(*cells: Cell, declared: bool = True) -> Run:
+    """Each code with an origin of its own, printed tables with their source's."""
+    codes = dict.fromkeys((c.case, c.code) for c in cells if c.shares)
+    made = tuple(
+        Origin(case, code, *3 * (code.partition("/")[0],), sections="blade", eigensolver="its own")
+        for case, code in codes
+    )
+    return Run(cells, origins=made if declared else ())
+
+
 OURS = [
     cell("twin", "discretisation", role="same discretisation", target=1e-8, difference=1e-12, uncertainty=1e-12),
     cell("chain", "mechanical model"),
@@ -27,22 +37,26 @@ TABLES = [cell(f"author2000/{series}", role="table", version="") for series in (
 CLOSED = cell("exact", version="southwell 0.1.0")
 
 
-def test_two_codes_on_cores_model_are_one_witness_and_no_independent_one() -> None:
-    (one,) = witnesses(OURS)
-    assert (one.name, one.kind, one.standing, one.fine) == ("twin, chain", "core's model", "agrees", None)
-    assert independent([one]) == []
+def test_codes_on_cores_model_are_no_independent_witnesses() -> None:
+    found = witnesses(run(*OURS), "beam")
+    assert [(w.name, w.kind, w.standing, w.fine) for w in found] == [
+        (name, "core's model", "agrees", None) for name in ("twin", "chain")
+    ]
+    assert groups(found) == []
 
 
-def test_two_series_of_one_source_are_one_witness() -> None:
-    (one,) = witnesses(TABLES)
-    assert (one.name, one.kind, one.answers) == ("author2000", "printed source", 2)
-    assert one.fine is None
+def test_two_series_of_one_source_are_one_group() -> None:
+    found = witnesses(run(*TABLES), "beam")
+    assert [(w.kind, w.answers, w.fine) for w in found] == [("printed source", 1, None)] * 2
+    assert len(groups(found)) == 1
 
 
 def test_kinds_and_count() -> None:
-    found = witnesses([cell("alpha"), CLOSED, *TABLES, *OURS, cell("core", "", role="discretisation")])
-    assert [w.kind for w in found] == ["code", "closed form", "printed source", "core's model"]
-    assert len(independent(found)) == 3
+    found = witnesses(run(cell("alpha"), CLOSED, *TABLES, *OURS, cell("core", "", role="discretisation")), "beam")
+    assert [w.kind for w in found] == [
+        "code", "closed form", "printed source", "printed source", "core's model", "core's model",
+    ]  # fmt: skip
+    assert len(groups(found)) == 3
 
 
 @pytest.mark.parametrize(
@@ -53,40 +67,49 @@ def test_kinds_and_count() -> None:
         ({"difference": 5e-6, "uncertainty": 2e-4}, "agrees", "open"),
         ({"difference": 2e-3, "verdict": "fail"}, "disagrees", "disagrees"),
         ({"uncertainty": None, "verdict": "inconclusive"}, "open", "open"),
-        ({"difference": 3e-2, "uncertainty": 8e-2, "verdict": "known difference"}, "explained", "explained"),
+        ({"difference": 3e-2, "uncertainty": 8e-2, "verdict": "estimate"}, "explained", "explained"),
         ({"full": 11.8, "verdict": "known difference"}, "agrees", "agrees"),  # like with like it agrees
     ],
 )
 def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: str) -> None:
     """The gravest of a code's numbers: one that agrees beside it does not help."""
-    (one,) = witnesses([cell("alpha"), cell("alpha", mode=2, **changes)])
+    (one,) = witnesses(run(cell("alpha"), cell("alpha", mode=2, **changes)), "beam")
     assert (one.standing, one.fine) == (standing, fine)
 
 
 @pytest.mark.parametrize(("verdict", "standing"), [("fail", "disagrees"), ("inconclusive", "open")])
 def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str) -> None:
     """A mode without a partner, a crash, a time limit."""
-    (one,) = witnesses([cell("alpha"), samples.empty(verdict, "no partner", code="alpha", shares="nothing")])
-    assert (one.standing, one.fine, one.answers) == (standing, standing, 1)
-    assert independent([one]) == []
+    silent = samples.empty(verdict, "no partner", code="alpha", shares="nothing")
+    found = witnesses(run(cell("alpha"), silent), "beam")
+    assert [(w.standing, w.fine, w.answers) for w in found] == [(standing, standing, 1)]
+    assert groups(found) == []
 
 
 def test_who_gave_no_number_is_no_witness() -> None:
-    assert witnesses([samples.empty("not run", "not installed", code="delta", shares="nothing")]) == []
+    assert witnesses(run(samples.empty("not run", "not installed", code="delta", shares="nothing")), "beam") == []
 
 
-RUN = Run(
-    (cell("alpha"), CLOSED, *TABLES, *OURS, cell("beta", case="other"), cell("rough", difference=2e-3, case="other"))
+RUN = run(
+    cell("alpha"), CLOSED, *TABLES, *OURS, cell("beta", case="other"), cell("rough", difference=2e-3, case="other")
 )
 
 
 def test_the_report_counts_them() -> None:
     first, second = told.table(RUN)
-    assert first["independent witnesses"] == "3"
-    assert first["printed sources"] == "author2000"
-    assert "twin, chain" in first["same model as core (one witness, of the implementation)"]
-    assert (second["independent witnesses"], second["no witness"]) == ("1", "rough (disagrees)")
-    assert "for each blade: 1 (other) to 3" in told.headline(RUN)
+    assert first["independent groups"] == "3"
+    assert first["who agrees, group by group"] == "(alpha); (exact); (author2000/a, author2000/b)"
+    assert first["confirms the implementation only"] == "twin, chain"
+    assert second["independent groups"] == "1"
+    assert second["counts for nothing"].startswith("rough (disagrees")
+    assert "for each blade: 1 (other: beta) to 3" in told.headline(RUN)
+    assert [row["engine"] for row in told.origins(RUN)][:2] == ["alpha", "exact"]
+
+
+def test_without_declarations_nothing_is_counted() -> None:
+    bare = run(cell("alpha"), declared=False)
+    assert told.headline(bare) == ""
+    assert told.table(bare)[0]["independent groups"] == "0"
 
 
 def test_the_matrix_says_what_each_column_shares() -> None:

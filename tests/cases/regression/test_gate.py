@@ -44,7 +44,7 @@ def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, list
     assert found.passed(strict=True) is not listed
 
 
-VERDICTS = ("pass", "known difference", "inconclusive", "fail")
+VERDICTS = ("pass", "known difference", "estimate", "inconclusive", "fail")
 
 
 @pytest.mark.parametrize("before", VERDICTS)
@@ -60,7 +60,7 @@ def test_a_worse_verdict_counts_and_a_better_one_does_not(before, after) -> None
 def test_a_cell_that_was_not_there_counts_if_it_is_a_miss(verdict) -> None:
     new = replace(CELL, mode=4, verdict=verdict)
     found = compared(replace(BEFORE, cells=(*BEFORE.cells, new)))
-    assert found.passed() is (verdict in ("pass", "known difference"))
+    assert found.passed() is (verdict not in ("inconclusive", "fail"))
     assert [p.mode for p in found.new] == [4]
 
 
@@ -83,9 +83,9 @@ def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> N
 
 def test_a_control_that_nobody_catches_any_more_counts() -> None:
     (control,) = BEFORE.controls
-    other = replace(BEFORE, controls=(replace(control, caught=("another",), missed=("some-code",)),))
+    other = replace(BEFORE, controls=(replace(control, caught=("another",)),))
     assert compared(other).passed()  # somebody does
-    blind = replace(BEFORE, controls=(replace(control, caught=(), missed=("some-code",)),))
+    blind = replace(BEFORE, controls=(replace(control, caught=()),))
     assert [c.control for c in compared(blind).uncaught] == ["frozen frame"]
     assert not compared(blind).passed()
     assert not compared(replace(BEFORE, controls=())).passed()  # nor is it tried any more
@@ -95,7 +95,25 @@ def test_a_control_that_nobody_catches_any_more_counts() -> None:
 def test_a_blind_harness_counts_whatever_was_before() -> None:
     found = compared(BEFORE, missed=["frozen frame"])
     assert not found.passed()
-    assert "1 mistakes in core missed" in gate_text.verdict(found, strict=False)
+    assert "1 seeded faults missed" in gate_text.verdict(found, strict=False)
+
+
+def test_a_wider_target_counts_and_a_narrower_one_does_not() -> None:
+    wide = replace(BEFORE, cells=at(BEFORE.cells, 0, target=2e-3))
+    found = compared(wide)
+    assert [(c.after.mode, c.after.target) for c in found.loosened] == [(1, 2e-3)]
+    assert not found.passed()
+    assert "1 with a wider target" in gate_text.verdict(found, strict=False)
+    assert any(title.startswith("Held to a wider target") for title, _ in gate_text.sections(found))
+    assert compared(BEFORE, wide).passed()
+
+
+def test_faults_that_only_a_longer_run_tries_are_not_missed_in_a_shorter_one() -> None:
+    (control,) = BEFORE.controls
+    longer = replace(BEFORE, controls=(control, replace(control, control="one more")))
+    assert compared(BEFORE, longer).passed()
+    absent = replace(control, control="one more", caught=(), needs="some-code")
+    assert compared(replace(BEFORE, controls=(control, absent)), longer).passed()
 
 
 def slower(factor: float) -> Run:

@@ -36,7 +36,7 @@ CELL = Cell(
 RUN = Run(
     cells=(CELL, replace(CELL, mode=0, family="", frequency=None, verdict="not run")),
     versions={"some-code": "1.0"},
-    controls=(Control("frozen frame", "beam", 10.0, "chordwise 1", 11.7, 15.4, ("some-code",), ()),),
+    controls=(Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("some-code",), -0.24),),
 )
 MADE = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)
 
@@ -45,8 +45,8 @@ def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "abc", "a machine", MADE))
     (found,) = history.read(file).entries
-    beam = Point("beam", "some-code", 10.0, 1, "chordwise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25)
-    none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 0.25)
+    beam = Point("beam", "some-code", 10.0, 1, "chordwise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25, 1e-3)
+    none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 0.25, 1e-3)
     caught = Caught("frozen frame", "beam", 10.0, ("some-code",))
     assert found == Entry(
         "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (caught,)

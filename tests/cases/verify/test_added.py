@@ -11,6 +11,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.witnesses import witnesses
 from southwell.cases.verify import matrix, user_results
 from southwell.reports.cli import app as cli
 
@@ -100,10 +101,10 @@ def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> No
     assert cell.verdict == "pass"
 
 
-def test_what_is_added_is_a_witness_too(tmp_path: Path) -> None:
+def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> None:
     one = run(read(tmp_path, HEAD + "10, 11.710953, chordwise 1"))
-    caught = next(r for r in one.controls if (r.control, r.omega) == ("no hub radius", 10.0)).caught
-    assert "rig" in caught
+    (rig,) = (w for w in witnesses(one, "park-cantilever") if w.name == "rig")
+    assert (rig.kind, rig.standing) == ("undeclared", "agrees")
     assert one.versions["rig"] == "results in results.csv"
 
 

@@ -85,13 +85,17 @@ def test_links_lead_to_headings(folder: Path) -> None:
 
 
 def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path) -> None:
-    text = html.render(matrix_report.write(samples.run(), folder).read_text(encoding="utf-8"), folder)
+    run = samples.run()
+    rough = replace(run.cells[0], code="rough", verdict="estimate", reason="its own bracket")
+    text = html.render(
+        matrix_report.write(replace(run, cells=(*run.cells, rough)), folder).read_text(encoding="utf-8"), folder
+    )
     for verdict, sign in summary.SYMBOL.items():
         name = verdict.replace(" ", "-")
         cells = re.findall(rf'<td class="{name}">(.*?)</td>', text)
         assert cells
         assert all(re.match(rf"([\d.]+<br>)?{re.escape(sign)}( |&nbsp;)", cell) for cell in cells)
-        assert f"td.{name}" in html.STYLE
+        assert f"td.{name}" in html.STYLE, verdict
     plain = re.findall(r"<td>(.*?)</td>", text)
     below = rf"(^|<br>)[{re.escape(''.join(html.CLASSES))}]( |&nbsp;)"
     assert [cell for cell in plain if re.search(below, cell)] == [], "also where a frequency stands above the verdict"

@@ -1,0 +1,158 @@
+"""Faults in adapters: at the seam where the matrix asks a foreign code, of what it is given and of what comes back."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.modes import Modes
+from ...references.protocol.worker import Answer, Failure
+from ...references.theories.exact_beam import ExactBeam
+from ..verify import columns
+from .core import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
+from .seeding import Fault, Trial
+
+Asked = tuple[float, int, int]
+
+
+def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
+    """The code solves another blade than it is given."""
+
+    def make(right: Any) -> Any:
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
+            return right(name, alter(blade), runs, timeout)
+
+        return wrong
+
+    return make
+
+
+def told(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
+    """What comes back is altered."""
+
+    def make(right: Any) -> Any:
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
+            found = right(name, blade, runs, timeout)
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in found]
+
+        return wrong
+
+    return make
+
+
+def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
+    """Another question is asked; the answer says that it is to the one that was put."""
+
+    def make(right: Any) -> Any:
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
+            found = right(name, blade, [alter(run) for run in runs], timeout)
+            return [
+                answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])
+                for run, answer in zip(runs, found, strict=True)
+            ]
+
+        return wrong
+
+    return make
+
+
+def _without(column: int) -> Callable[[Modes], Modes]:
+    def alter(modes: Modes) -> Modes:
+        shapes = modes.shapes.copy()
+        shapes[:, :, column] = 0.0
+        return replace(modes, shapes=shapes)
+
+    return alter
+
+
+def _times(factor: float) -> Callable[[Modes], Modes]:
+    return lambda modes: replace(modes, frequencies=factor * modes.frequencies)
+
+
+def _shuffled(modes: Modes) -> Modes:
+    """Frequencies of the first two pairs of modes belong to each other's shapes."""
+    order = np.arange(len(modes.frequencies))
+    order[:4] = order[[2, 3, 0, 1]]
+    return replace(modes, shapes=modes.shapes[order])
+
+
+def _zero(modes: Modes) -> Modes:
+    return replace(modes, frequencies=np.concatenate([[0.0], modes.frequencies[1:]]))
+
+
+def _wide(modes: Modes) -> Modes:
+    """60 % off, and by its own account within 90 %."""
+    return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
+
+
+def _raises(message: str) -> Callable[[Any], Any]:
+    def make(_: Any) -> Any:
+        def wrong(*args: Any) -> Any:
+            raise RuntimeError(message)
+
+        return wrong
+
+    return make
+
+
+def _crashes(_: Any) -> Any:
+    return lambda name, blade, runs, timeout: (
+        [Failure("crashed", "the code's process ended with signal SIGSEGV")] * len(runs)
+    )
+
+
+def _adapter(name: str, what: str, size: str, make: Any, trial: Trial = PARK) -> Fault:
+    return Fault(name, "adapter", what, size, ((columns, "answers", make),), trial)
+
+
+REST = Trial("park-cantilever", (0.0,), ("exact-beam",))
+
+FAULTS = (
+    _adapter("frequencies in Hz", "the code's hertz are taken for rad/s", "factor 2π", told(_times(1 / (2 * np.pi)))),
+    _adapter("frequencies squared", "eigenvalues are taken for frequencies", "factors",
+             told(lambda m: replace(m, frequencies=m.frequencies**2))),
+    _adapter("frame turned", "y and z of the code are z and y here", "no frequency; no partner",
+             told(lambda m: replace(m, shapes=m.shapes[:, :, [0, 2, 1, 3]])), FAST),
+    _adapter("root and tip exchanged", "shapes are sampled from the tip", "no frequency; no partner",
+             told(lambda m: replace(m, shapes=m.shapes[:, ::-1]))),
+    _adapter("lost column", "the flapwise column of every shape is lost", "no frequency; no partner", told(_without(2))),
+    _adapter("swapped modes", "shapes belong to other frequencies", "factor 6", told(_shuffled)),
+    _adapter("too few modes", "the code returns two modes, whatever it is asked for", "no answer",
+             asked(lambda run: (run[0], run[1], 2))),
+    _adapter("coarse declared fine", "three terms, whatever refinement is asked for", "third modes by percents",
+             asked(lambda run: (run[0], 3, min(run[2], 4)))),
+    _adapter("no rotation", "the rotor speed does not reach the code", "flapwise −10 %",
+             asked(lambda run: (0.0, *run[1:]))),
+    _adapter("speed in rpm", "rpm are taken for rad/s", "first flapwise by tens of percents",
+             asked(lambda run: (run[0] * 30 / np.pi, *run[1:]))),
+    _adapter("hub radius dropped", "the code's blade begins on the rotor's axis", "first modes −3 %",
+             given(lambda b: replace(b, hub_radius=0.0))),
+    _adapter("tip mass dropped", "the code's blade has no tip mass", "first modes by tens of percents",
+             given(lambda b: replace(b, tip_mass=np.zeros((6, 6)))), TIP),
+    _adapter("twist in degrees", "degrees are taken for radians, turned round", "second modes by percents",
+             given(lambda b: replace(b, twist=np.degrees(b.twist))), TWISTED),
+    _adapter("twist turned round", "the code's twist has the other sense", "no frequency; no partner",
+             given(lambda b: replace(b, twist=-b.twist)), TWISTED),
+    _adapter("precone dropped", "the code's blade has no precone", "first flapwise by percents",
+             given(lambda b: replace(b, precone=0.0)), CONED),
+    _adapter("pitch dropped", "the code's blade has no pitch", "lowest modes by percents",
+             given(lambda b: replace(b, pitch=0.0)), PITCHED),
+    _adapter("taper dropped", "every element has the root's section", "first modes by tens of percents",
+             given(lambda b: replace(b, stiffness=b.stiffness[[0] * len(b.stations)], mass=b.mass[[0] * len(b.stations)])),
+             TAPERED),
+    _adapter("density", "mass half a percent too large", "all modes at rest −0.25 %",
+             given(lambda b: replace(b, mass=1.005 * b.mass)), REST),
+    _adapter("modulus", "stiffness a thousandth of what it is: kN for N", "all modes −97 % at rest",
+             given(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
+    _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", told(_zero)),
+    _adapter("wide bracket", "60 % wrong, and within 90 % by its own account", "+60 %", told(_wide)),
+    _adapter("crash", "the code's process dies", "no answer", _crashes),
+    _adapter("digits lost", "six digits of a code on core's own discretisation", "1e-6",
+             told(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
+    Fault("unsupported() raises", "adapter", "the adapter raises where it should refuse", "no answer",
+          ((ExactBeam, "unsupported", _raises("licence server not reached")),), PARK),
+    Fault("version() raises", "adapter", "the adapter raises where it should tell its version", "no answer",
+          ((ExactBeam, "version", _raises("no such binary")),), PARK),
+)  # fmt: skip

@@ -1,0 +1,137 @@
+"""Faults in history and gate, and the canaries that must notice them: changes between two runs, made on purpose.
+
+A canary is a pair of runs, written to a history and read again, and what the gate must say of it. In order, they say nothing.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from ..judge.results import Cell, Control, Run
+from ..regression import gate, history
+from ..regression.gate import Comparison
+from ..regression.history import Entry
+from .seeding import Area, Fault, Seam
+
+
+def _cell(mode: int, **changes: Any) -> Cell:
+    values: dict[str, Any] = {
+        "case": "canary", "omega": 10.0, "mode": mode, "family": "flapwise", "code": "bird", "version": "1", "role": "code",
+        "frequency": 10.0 * mode, "reference": 10.0 * mode, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3,
+        "verdict": "pass", "shares": "nothing", "seconds": 0.1,
+    }  # fmt: skip
+    return Cell(**{**values, **changes})
+
+
+def _fault(caught: tuple[str, ...]) -> Control:
+    return Control("cat", "core", "eats the bird", "all of it", "canary", 10.0, caught)
+
+
+BEFORE = Run((_cell(1), _cell(2), _cell(3)), controls=(_fault(("bird",)),))
+
+AFTER: dict[str, Run] = {
+    "a verdict that got worse": replace(BEFORE, cells=(_cell(1, verdict="fail", difference=2e-3), *BEFORE.cells[1:])),
+    "an answer that is gone": replace(BEFORE, cells=BEFORE.cells[:2]),
+    "a mode that is new and fails": replace(BEFORE, cells=(*BEFORE.cells, _cell(4, verdict="fail", difference=2e-3))),
+    "a target that was loosened": replace(BEFORE, cells=(_cell(1, target=2e-3), *BEFORE.cells[1:])),
+    "a fault that nobody catches any more": replace(BEFORE, controls=(_fault(()),)),
+    "a frequency that moved": replace(BEFORE, cells=(_cell(1, frequency=10.0 * (1 + 1e-6)), *BEFORE.cells[1:])),
+    "a code that was not run": replace(BEFORE, cells=(_cell(0, family="", frequency=None, verdict="not run"),)),
+}
+
+
+def canaries() -> list[str]:
+    """What history and gate should have said of the canaries and did not; empty where all is well."""
+    wrong = []
+    found = _compared(BEFORE, BEFORE)
+    if found is None or not found.passed(strict=True) or not found.after.cells:
+        wrong.append("gate: a run against itself does not pass")
+    for what, after in AFTER.items():
+        found = _compared(BEFORE, after)
+        if found is None or found.passed(strict=True):
+            wrong.append(f"gate: not listed: {what}")
+    return wrong
+
+
+def _compared(before: Run, after: Run) -> Comparison | None:
+    """The gate's comparison of two runs that went through a history; None where it does not come to one."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "history.jsonl"
+        try:
+            for name, run in (("before", before), ("after", after)):
+                history.append(path, history.entry(run, name, "canary"))
+            first, second = history.read(path).entries
+            return gate.compare(first, second)
+        except (ValueError, KeyError):
+            return None
+
+
+def _entry(**changes: Any) -> Any:
+    """Every point of an entry with these fields."""
+
+    def make(right: Any) -> Any:
+        def wrong(*args: Any) -> Entry:
+            found = right(*args)
+            return replace(found, cells=tuple(_point(p, **changes) for p in found.cells))
+
+        return wrong
+
+    return make
+
+
+def _point(point: Any, **changes: Any) -> Any:
+    values = {name: getattr(point, name) for name in point.__struct_fields__}
+    return type(point)(**{**values, **changes})
+
+
+def _rounded(right: Any) -> Any:
+    def wrong(*args: Any) -> Entry:
+        found = right(*args)
+        return replace(
+            found, cells=tuple(_point(p, frequency=p.frequency and round(p.frequency, 3)) for p in found.cells)
+        )
+
+    return wrong
+
+
+def _first_only(right: Any) -> Any:
+    return lambda *args: replace(found := right(*args), cells=found.cells[:1])
+
+
+def _never(right: Any) -> Any:
+    return lambda change: False
+
+
+def _none(right: Any) -> Any:
+    return lambda old, now: []
+
+
+def _gate(name: str, area: Area, what: str, size: str, seam: Seam) -> Fault:
+    return Fault(name, area, what, size, (seam,))
+
+
+FAULTS = (
+    _gate(
+        "verdicts forgotten",
+        "history",
+        "every verdict is kept as pass",
+        "one verdict",
+        (history, "entry", _entry(verdict="pass")),
+    ),
+    _gate(
+        "targets forgotten", "history", "no targets are kept", "a factor of 2", (history, "entry", _entry(target=None))
+    ),
+    _gate("frequencies rounded", "history", "frequencies have three decimals", "1e-6", (history, "entry", _rounded)),
+    _gate("cells lost", "history", "only the first cell is kept", "an answer", (history, "entry", _first_only)),
+    _gate(
+        "last run for the one before",
+        "gate",
+        "a run is compared with itself",
+        "everything",
+        (gate, "compare", lambda right: lambda before, after: right(after, after)),
+    ),
+    _gate("worse is better", "gate", "a worse verdict is not listed", "one verdict", (gate, "_worse", _never)),
+    _gate("gone is gone", "gate", "answers that are gone are not listed", "an answer", (gate, "_gone", _none)),
+    _gate("targets at will", "gate", "a loosened target is not listed", "a factor of 2", (gate, "_loosened", _never)),
+)

@@ -1,0 +1,178 @@
+"""Faults in pairing, uncertainty, verdicts and readers."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from ...core.modes import Modes
+from ..input import blades
+from ..judge import pairing, verdict
+from ..judge.pairing import Pair
+from ..judge.uncertainty import Estimate
+from ..verify import cells, published_tables, reference, refinement
+from .core import FAST, PARK
+from .seeding import Fault, Seam, Trial
+
+OPENFAST = Trial("nrel-5mw", (0.0,), ())
+BMODES = Trial("windpact-1.5/bmodes", (6.283185307179586,), ())
+
+
+def by_number(right: Any) -> Any:
+    """Modes are paired by their number."""
+
+    def wrong(reference: Modes, other: Modes, wanted: Sequence[int], weight: Any, least: float = 0.8) -> list[Pair]:
+        return [Pair(i if i < len(other.frequencies) else None, 1.0) for i, _ in enumerate(wanted)]
+
+    return wrong
+
+
+def next_one(right: Any) -> Any:
+    """The partner of a mode is the one after it."""
+
+    def wrong(reference: Modes, other: Modes, *args: Any) -> list[Pair]:
+        last = len(other.frequencies) - 1
+        return [p if p.mode is None else replace(p, mode=min(p.mode + 1, last)) for p in right(reference, other, *args)]
+
+    return wrong
+
+
+def anything_goes(right: Any) -> Any:
+    """No likeness is too small."""
+
+    def wrong(ours: Modes, other: Modes, wanted: Sequence[int], weight: Any, least: float = 0.0) -> list[Pair]:
+        return right(ours, other, wanted, weight, 0.0)
+
+    return wrong
+
+
+def inferred(right: Any) -> Any:
+    """What a code cannot do is inferred from what it did not do."""
+    return lambda reference, i, motions: "no mode of this code moves so"
+
+
+def _sure(uncertainty: float | None) -> Any:
+    def make(right: Any) -> Any:
+        def wrong(*args: Any) -> Estimate:
+            return replace(right(*args), uncertainty=uncertainty)
+
+        return wrong
+
+    return make
+
+
+def _extrapolated(right: Any) -> Any:
+    def wrong(estimate: Estimate, more: float) -> Estimate:
+        return right(replace(estimate, value=estimate.value * (1.002 if estimate.order else 1.0)), more)
+
+    return wrong
+
+
+def _passes(right: Any) -> Any:
+    return lambda difference, uncertainty, target: ("pass", "")
+
+
+def _signed(right: Any) -> Any:
+    return lambda difference, uncertainty, target: right(max(difference, 0.0), uncertainty, target)
+
+
+def _loose(right: Any) -> Any:
+    return lambda difference, uncertainty, target: right(difference, uncertainty, 100.0 * target)
+
+
+def _half(right: Any) -> Any:
+    return lambda difference, uncertainty, target: right(difference - 0.002, uncertainty, target)
+
+
+def _excuses(right: Any) -> Any:
+    def wrong(difference: float, uncertainty: float | None, target: float) -> Any:
+        verdict, reason = right(difference, uncertainty, target)
+        return ("known difference", "discretisation") if verdict == "fail" else (verdict, reason)
+
+    return wrong
+
+
+def _column(name: str, factor: float) -> Any:
+    def make(right: Any) -> Any:
+        def wrong(*args: Any) -> Any:
+            found = right(*args)
+            return {**found, name: factor * found[name]}
+
+        return wrong
+
+    return make
+
+
+def _exchanged(right: Any) -> Any:
+    def wrong(*args: Any) -> Any:
+        found = right(*args)
+        return {**found, "EI_flap [N m^2]": found["EI_edge [N m^2]"], "EI_edge [N m^2]": found["EI_flap [N m^2]"]}
+
+    return wrong
+
+
+def _backwards(right: Any) -> Any:
+    def wrong(*args: Any) -> Any:
+        found = right(*args)
+        return {name: column if name == "fraction [-]" else column[::-1] for name, column in found.items()}
+
+    return wrong
+
+
+def _digits(right: Any) -> Any:
+    return lambda text, unit=1.0: right(text[:-1] + ("0" if text[-1] != "0" else "9"), unit)
+
+
+def _numbers(right: Any) -> Any:
+    return lambda text, unit=1.0: right(text, unit * 1.05)
+
+
+def judge(make: Any) -> tuple[Seam, ...]:
+    """The judge is replaced wherever it is asked."""
+    return (cells, "judge", make), (verdict, "judge", make)
+
+
+def _judging(name: str, area: Any, what: str, size: str, seams: tuple[Seam, ...], blinds: str) -> Fault:
+    return Fault(name, area, what, size, seams, blinds=blinds)
+
+
+FAULTS = (
+    Fault("paired by number", "pairing", "modes are paired by their number among all", "other families' frequencies",
+          ((refinement, "pair", by_number),), FAST),
+    Fault("paired with the next", "pairing", "an index one too high", "next mode's frequency",
+          ((refinement, "pair", next_one),), PARK),
+    Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
+          ((pairing, "_norm", lambda right: lambda a, weight: 4.0 * right(a, weight)),), PARK),
+    _judging("any likeness", "pairing", "no likeness of shapes is too small", "a wrong mode counts",
+             ((refinement, "pair", anything_goes),), "twist turned round"),
+    _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
+             ((cells, "_still", inferred),), "lost column"),
+    Fault("never sure", "uncertainty", "no uncertainty is found", "all cells",
+          ((refinement, "from_refinement", _sure(None)),), PARK),
+    Fault("unsure by one percent", "uncertainty", "an uncertainty of 1 % whatever converges", "all cells",
+          ((refinement, "from_refinement", _sure(0.01)),), PARK),
+    Fault("limit off", "uncertainty", "extrapolated 0.2 % too far for a code of order above 0", "limits of core +0.2 %",
+          ((refinement, "widened", _extrapolated),), PARK),
+    _judging("every number passes", "verdict", "the judge says pass", "all cells", judge(_passes),
+             "no hub radius"),
+    _judging("target in percent", "verdict", "the target is a hundred times as large", "0.1 % is 10 %",
+             judge(_loose), "axis shifted"),
+    _judging("sign of the difference", "verdict", "only frequencies above core's count", "negative differences pass",
+             judge(_signed), "softening's sign"),
+    _judging("all is known", "verdict", "every failure is a known difference", "all failures",
+             judge(_excuses), "no Coriolis"),
+    Fault("judged with a bias", "verdict", "differences are 0.2 % too small", "−0.2 %", judge(_half), PARK),
+    Fault("model ignored", "verdict", "a code without effects is compared with core with all of them", "Coriolis at γ = 10",
+          ((reference, "felt", lambda right: lambda *_: reference.FULL),), replace(FAST, codes=("assumed-modes",))),
+    Fault("printed digit", "reader", "the last digit of a printed number is misread", "0.1 to 0.5 %",
+          ((published_tables, "from_print", _digits),), Trial("park-cantilever", (10.0,), ())),
+    Fault("printed unit", "reader", "a table's unit is 5 % off", "+5 %",
+          ((published_tables, "from_print", _numbers),), Trial("wright-flapwise", (12.0,), ())),
+    Fault("table: axes exchanged", "reader", "EI_flap is read as EI_edge", "flapwise +50 %",
+          ((blades, "read_table", _exchanged),), OPENFAST),
+    Fault("table: stiffness unit", "reader", "EI_flap in kN m²", "flapwise −97 %",
+          ((blades, "read_table", _column("EI_flap [N m^2]", 1e-3)),), BMODES),
+    Fault("table: mass", "reader", "mass per length 3 % too large", "−1.5 % at rest",
+          ((blades, "read_table", _column("mass [kg/m]", 1.06)),), OPENFAST),
+    Fault("table: tip first", "reader", "rows are read from the tip to the root", "factors",
+          ((blades, "read_table", _backwards),), OPENFAST),
+)  # fmt: skip

@@ -1,0 +1,205 @@
+"""Seeded faults: the harness with one faulty component in place, run through the whole pipeline, must say so.
+
+A fault replaces something by its name in a module (a *seam*) while a small case is run by the real matrix. It is detected by
+the cells that are bad with it and are not without. A fault in what judges may make cells better instead of worse; it is
+detected by another fault that must be caught and is not. Faults in history and gate are detected by their canaries.
+
+A fault acts in the thread that runs its trial and in no other, so that trials may share a process with real work. Compiled
+loops cannot be replaced from Python: seams of core are the functions that call them.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import lru_cache, wraps
+from threading import RLock, get_ident
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+
+from ...core.blade import Blade
+from ...references.protocol.registry import code, version_of
+from ..input import library
+from ..judge.results import Cell, Control
+from ..verify import matrix
+
+Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "history", "gate"]
+
+Seam = tuple[Any, str, Callable[[Any], Any]]
+"""A module or class, the name of a function or constant in it, and what makes the faulty one from the right one."""
+
+BAD = ("fail", "inconclusive")
+
+
+def _same(blade: Blade) -> Blade:
+    return blade
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A small case: one blade of the package's, at few speeds, by few codes.
+
+    Attributes:
+        case: ``case`` or ``case/blade``, as on the command line.
+        speeds: rad/s.
+        codes: names.
+        change: what makes the trial's blade from the package's.
+        modes: how many are compared; as many as the case says by default.
+        motions: those that are compared; likewise.
+    """
+
+    case: str
+    speeds: tuple[float, ...]
+    codes: tuple[str, ...]
+    change: Callable[[Blade], Blade] = _same
+    modes: int | None = None
+    motions: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One of them.
+
+    Attributes:
+        name: short, for a table and for ``verify --faults``.
+        area: what is faulty.
+        what: what such a program does, in a sentence.
+        size: of its effect on what the trial compares.
+        seams: what is replaced.
+        trial: what is run; None for history and gate, whose canaries are run.
+        blinds: name of a fault that must be caught and, with this one, no longer is.
+        fast: whether every run executes it.
+    """
+
+    name: str
+    area: Area
+    what: str
+    size: str
+    seams: tuple[Seam, ...]
+    trial: Trial | None = None
+    blinds: str = ""
+    fast: bool = False
+
+
+_LOCK = RLock()
+
+
+@contextmanager
+def seeded(seams: Sequence[Seam]) -> Iterator[None]:
+    """With the faulty things in place, for this thread.
+
+    Raises:
+        AttributeError: if a seam is not there any more.
+    """
+    here = get_ident()
+    with _LOCK:
+        right = [(owner, name, getattr(owner, name)) for owner, name, _ in seams]
+        try:
+            for (owner, name, make), (_, _, old) in zip(seams, right, strict=True):
+                new = make(old)
+                setattr(owner, name, _only(here, old, new) if callable(old) else new)
+            yield
+        finally:
+            for owner, name, old in reversed(right):
+                setattr(owner, name, old)
+
+
+def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(right)
+    def chosen(*args: Any, **kwargs: Any) -> Any:
+        return (wrong if get_ident() == thread else right)(*args, **kwargs)
+
+    return chosen
+
+
+class Serial(Executor):
+    """Runs what it is given at once, in this thread."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """See ``Executor``."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def cells(trial: Trial) -> tuple[Cell, ...]:
+    """What the real matrix makes of a trial."""
+    case = library.load(trial.case.partition("/")[0])
+    (variant,) = (v for v in case.variants if v.name == trial.case)
+    changed = replace(variant, blade=trial.change(variant.blade), speeds=np.array(trial.speeds))
+    told = case.text.compare
+    compare = msgspec.structs.replace(told, modes=trial.modes or told.modes, motions=trial.motions or told.motions)
+    one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
+    return matrix.run([one], trial.codes, Serial(), parts=False).cells
+
+
+@lru_cache
+def faultless(trial: Trial) -> tuple[Cell, ...]:
+    """What the real matrix makes of a trial without any fault; once in a process."""
+    return cells(trial)
+
+
+def execute(fault: Fault, known: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
+    """Run one fault's trial; ``known`` finds another fault by its name, ``canaries`` are those of history and gate."""
+    trial = fault.trial
+    if fault.blinds:
+        return _blinding(fault, known(fault.blinds))
+    if trial is None:
+        with seeded(fault.seams):
+            return _control(fault, tuple(canaries()))
+    if absent := [name for name in trial.codes if not version_of(code(name))[0]]:
+        return replace(_control(fault, ()), needs=", ".join(absent))
+    right = faultless(trial)
+    with seeded(fault.seams):
+        wrong = cells(trial)
+    return _judged(fault, right, wrong)
+
+
+def _blinding(fault: Fault, caught: Fault) -> Control:
+    """A fault in what judges: with it, another is caught no longer, or cells that are right are bad."""
+    assert caught.trial
+    if absent := [name for name in caught.trial.codes if not version_of(code(name))[0]]:
+        return replace(_control(fault, ()), needs=", ".join(absent))
+    right = faultless(caught.trial)
+    with seeded(fault.seams):
+        before = cells(caught.trial)
+        with seeded(caught.seams):
+            after = cells(caught.trial)
+    found = _judged(caught, before, after).caught
+    bad = _judged(fault, right, before).caught
+    return _control(fault, bad if found else (*bad, f"negative control not caught: {caught.name}"))
+
+
+def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:
+    """Which cells are bad with a fault and not without it."""
+    was_bad = {_key(c) for c in right if c.verdict in BAD}
+    bad = [c for c in wrong if c.verdict in BAD and _key(c) not in was_bad]
+    changes = [c.difference for c in bad if c.difference is not None]
+    return replace(_control(fault, tuple(map(_name, bad))), change=max(changes, key=abs, default=None))
+
+
+def _key(cell: Cell) -> tuple[str, str, float, int]:
+    return cell.case, cell.code, cell.omega, cell.mode
+
+
+def _name(cell: Cell) -> str:
+    mode = f", {cell.family} (mode {cell.mode})" if cell.mode else ""
+    return f"{cell.case}, {cell.code}{mode}, {cell.omega:g} rad/s: {cell.verdict}"
+
+
+def _control(fault: Fault, caught: tuple[str, ...]) -> Control:
+    trial = fault.trial
+    return Control(
+        control=fault.name,
+        area=fault.area,
+        what=fault.what,
+        size=fault.size,
+        case=trial.case if trial else "",
+        omega=max(trial.speeds) if trial else 0.0,
+        caught=caught,
+    )

@@ -1,0 +1,37 @@
+"""All seeded faults, by name; those that every run executes, and the task that executes some of them."""
+
+from collections.abc import Sequence
+
+from ..input.errors import CaseError, nearest
+from ..judge.results import Control
+from .adapters import FAULTS as ADAPTERS
+from .core import FAULTS as CORE
+from .gate import FAULTS as GATE
+from .gate import canaries
+from .judging import FAULTS as JUDGING
+from .seeding import Fault, execute
+
+ALL: tuple[Fault, ...] = (*CORE, *ADAPTERS, *JUDGING, *GATE)
+
+BY_NAME = {fault.name: fault for fault in ALL}
+
+FAST = tuple(fault.name for fault in ALL if fault.fast)
+
+
+def chosen(text: str) -> tuple[str, ...]:
+    """Names of faults: ``fast``, ``all``, ``none``, or names separated by commas.
+
+    Raises:
+        CaseError: if there is no such fault; the nearest is suggested.
+    """
+    sets = {"fast": FAST, "all": tuple(BY_NAME), "none": ()}
+    names = sets.get(text, tuple(dict.fromkeys(name.strip() for name in text.split(","))))
+    for name in names:
+        if name not in BY_NAME:
+            raise CaseError(f"--faults: {name!r} is no fault: {nearest(name, (*sets, *BY_NAME))}")
+    return names
+
+
+def run(names: Sequence[str]) -> list[Control]:
+    """Execute faults, one after the other; a task for any process."""
+    return [execute(BY_NAME[name], BY_NAME.__getitem__, canaries) for name in names]

@@ -1,0 +1,129 @@
+"""Seeded faults: at least forty, the fast ones detected in every run; a blind harness says so."""
+
+import threading
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from southwell.cases.faults import seeding, table
+from southwell.cases.faults.gate import canaries
+from southwell.cases.faults.table import ALL, BY_NAME, FAST
+from southwell.cases.input.errors import CaseError
+from southwell.cases.judge import results, verdict
+from southwell.cases.judge.results import Control, Run
+from southwell.cases.verify import cells
+from southwell.reports.shared import summary
+from southwell.reports.verification import controls as told
+
+from ...support import samples
+
+
+def test_the_table_is_large_and_names_are_unique() -> None:
+    assert len(ALL) == len(BY_NAME) >= 40
+    areas = Counter(f.area for f in ALL)
+    assert set(areas) == {"core", "adapter", "pairing", "uncertainty", "verdict", "reader", "history", "gate"}
+    assert len(FAST) == 7
+    assert all(f.what and f.size and f.seams for f in ALL)
+    assert all(f.trial or f.blinds or f.area in ("history", "gate") for f in ALL)
+    assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
+    (control,) = table.run([name])
+    assert control.caught, name
+    assert not control.needs
+    case = BY_NAME[name].trial
+    assert case
+    assert all(line.startswith(case.case) for line in control.caught)
+    assert all(line.endswith(("fail", "inconclusive")) for line in control.caught)
+
+
+@pytest.mark.parametrize("name", [f.name for f in ALL if f.area in ("history", "gate")])
+def test_a_fault_in_history_or_gate_is_detected(name: str) -> None:
+    assert canaries() == []
+    (control,) = table.run([name])
+    assert control.caught
+
+
+@pytest.mark.parametrize(
+    "name", ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known"]
+)
+def test_one_of_each_other_kind_is_detected(name: str) -> None:
+    (control,) = table.run([name])
+    assert control.caught
+
+
+def test_a_fault_that_does_nothing_is_missed() -> None:
+    harmless = replace(BY_NAME["no hub radius"], seams=())
+    assert seeding.execute(harmless, BY_NAME.__getitem__, canaries).missed
+
+
+def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cells, "judge", lambda *_: ("pass", ""))
+    monkeypatch.setattr(cells, "discretised", lambda *_: ("pass", ""))
+    seeding.faultless.cache_clear()
+    (control,) = table.run(["no hub radius"])
+    seeding.faultless.cache_clear()
+    assert control.missed
+
+
+def test_what_needs_a_code_that_is_absent_is_not_run_and_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(seeding, "version_of", lambda code: ("", ""))
+    (control,) = table.run(["no hub radius"])
+    assert (control.needs, control.missed) == ("exact-beam", False)
+
+
+def test_a_fault_acts_in_its_own_thread_only_and_is_gone_afterwards() -> None:
+    right = verdict.unsigned
+    with seeding.seeded(((verdict, "unsigned", lambda _: lambda value: "wrong"),)):
+        assert verdict.unsigned(0.1) == "wrong"
+        with ThreadPoolExecutor(1) as other:
+            assert other.submit(lambda: (threading.get_ident(), verdict.unsigned(0.1))).result()[1] == "10.00 %"
+    assert verdict.unsigned is right
+
+
+def test_a_seam_that_is_gone_is_an_error() -> None:
+    with pytest.raises(AttributeError), seeding.seeded(((verdict, "nothing_like_it", lambda right: right),)):
+        pass
+
+
+def test_faults_are_chosen_by_name() -> None:
+    assert table.chosen("fast") == FAST
+    assert table.chosen("all") == tuple(BY_NAME)
+    assert table.chosen("none") == ()
+    assert table.chosen("crash, no twist") == ("crash", "no twist")
+    with pytest.raises(CaseError, match="no hub radius"):
+        table.chosen("no hub radios")
+
+
+def control(**changes: object) -> Control:
+    fields: dict = {
+        "control": "no hub radius", "area": "core", "what": "it lies on the axis", "size": "−3 %", "case": "beam",
+        "omega": 10.0, "caught": ("beam, exact-beam: fail",), "change": 0.03,
+    }  # fmt: skip
+    return Control(**{**fields, **changes})
+
+
+def test_a_missed_fault_is_status_1_and_is_named() -> None:
+    good = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), needs="exudyn-tree")))
+    assert summary.status(good) == 0
+    headline = told.headline(good)
+    assert headline.startswith("Negative controls: 1 of 1 seeded faults")
+    assert headline.endswith("detected; 1 were not run, for want of a code.")
+    blind = replace(good, controls=(control(caught=()),))
+    assert summary.status(blind) == 1
+    assert "not noticed: no hub radius" in told.headline(blind)
+    assert [row["outcome"] for row in told.overview(replace(good, controls=(*good.controls, *blind.controls)))] == [
+        "✔ detected", "○ needs exudyn-tree", "✘ missed",
+    ]  # fmt: skip
+    assert told.headline(Run(())) == ""
+
+
+def test_rows_survive_the_disk(tmp_path: Path) -> None:
+    one = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), change=None)))
+    results.append(tmp_path / "results.jsonl", one.cells, (), one)
+    assert results.read(tmp_path / "results.jsonl") == one

@@ -1,0 +1,185 @@
+"""What once fooled the judge: each wrong answer ends in *fail* or *inconclusive*, or counts for nothing."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from southwell.cases.faults import seeding
+from southwell.cases.faults.table import BY_NAME
+from southwell.cases.input import library
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.verdict import bracketed, discretised, judge
+from southwell.cases.verify import core_solver, matrix
+from southwell.cases.verify.cells import rounding
+from southwell.core.element.discretize import Mass
+from southwell.core.element.measures import Measure
+from southwell.core.modes import Modes
+from southwell.references import published
+from southwell.references.protocol.worker import Failure
+from southwell.reports.shared import summary
+from southwell.reports.verification import evidence, terminal
+from southwell.reports.verification import report as matrix_report
+
+from ...reports.cli.test_cli import southwell
+from ...support import samples
+
+PARK = "park-cantilever"
+
+
+@cache
+def run(*codes: str) -> Run:
+    case = library.load(PARK)
+    one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
+    with ThreadPoolExecutor(1) as executor:
+        return matrix.run([one], [f"tests.fooling:{c}" for c in codes], executor, parts=False)
+
+
+def of(code: str, *codes: str) -> list[Cell]:
+    return [c for c in run(*(codes or (code.upper().replace("-", "_"),))).cells if c.code == code]
+
+
+def test_a_printed_number_is_not_excused_by_a_discretisation_that_leads_elsewhere() -> None:
+    """Core without geometric stiffness at 10 rad/s: with 50 elements it gives the printed number as long as those are right;
+    their refinements lead to 11.7 rad/s, and not to the 3.4 that is core's then."""
+    fault = BY_NAME["no geometric stiffness"]
+    right = core_solver.mesh_modes
+
+    def converged_only(*args, mass: Mass = "consistent", stiffness: Measure = "corotational", **kwargs) -> Modes:
+        with seeding.seeded(fault.seams if mass == "consistent" else ()):
+            return right(*args, mass=mass, stiffness=stiffness, **kwargs)
+
+    trial = seeding.Trial(PARK, (10.0,), ())
+    with seeding.seeded(((core_solver, "mesh_modes", lambda _: converged_only),)):
+        wrong = [c for c in seeding.cells(trial) if c.code == "park2010/present"]
+    assert wrong
+    assert {c.verdict for c in wrong} == {"fail"}
+    assert max(abs(c.difference or 0.0) for c in wrong) > 2.0
+    known = [c for c in seeding.cells(trial) if c.verdict == "known difference" and c.role == "table"]
+    assert len(known) == 1
+    assert "refined, its limit is" in known[0].reason
+
+
+def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
+    found = {c.family: c for c in of("lost")}
+    assert found["flapwise"].verdict == "fail"
+    assert found["flapwise"].reason.startswith("no partner")
+    assert found["chordwise"].verdict == "pass"
+    assert summary.status(run("LOST")) == 1
+
+
+@pytest.mark.parametrize("code", ["wide", "wide-once"])
+def test_a_code_cannot_declare_itself_unsure_and_be_believed(code: str) -> None:
+    assert {c.verdict for c in of(code)} == {"inconclusive"}
+
+
+def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
+    cells = of("bracket")
+    assert {c.verdict for c in cells} == {"estimate"}
+    assert not summary.compared(cells)
+    alone = Run(tuple(cells))
+    assert summary.status(alone) == 1
+    assert evidence.answer(alone).startswith("**Nothing was compared.**")
+
+
+def test_a_frequency_of_zero_is_a_failure() -> None:
+    assert of("zero")[0].verdict == "fail"
+
+
+@pytest.mark.parametrize(
+    ("code", "told"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
+)
+def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, told: str) -> None:
+    cells = of(code, "BLOWS", "NO_VERSION", "ZERO")
+    assert [c.verdict for c in cells] == ["fail"]
+    assert told in cells[0].reason
+    assert "\n" not in cells[0].reason
+    assert any(c.verdict == "pass" for c in run("BLOWS", "NO_VERSION", "ZERO").cells)
+
+
+def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
+    status, out, _ = southwell(asked, capsys)
+    assert status == 1
+    assert "Nothing was compared." in out
+
+
+def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:
+    text = (Path(published.__file__).parent / "openfast.toml").read_text(encoding="utf-8")
+    with pytest.raises(published.TableError, match=r"<= 0\.02"):
+        published.parse(text.replace("target = 0.02", "target = 0.03"), "x.toml")
+    wide = samples.cell(
+        role="table", code="author/one", difference=1.4e-2, frequency=11.86, target=2e-2, shares="nothing"
+    )
+    page = Run((wide,))
+    assert "1.40 % (target 2.00 %)" in matrix_report.heat(page)
+    assert "(target 2.00 %)" in matrix_report.comparison([wide], matrix_report.units(page, "beam"))
+    (table,) = terminal.matrix(page, 100)
+    assert "1.4 of 2" in str(list(table.columns[1].cells))
+
+
+def test_rounding_of_a_blade_that_cannot_stretch_is_measured() -> None:
+    """Precone bends a blade that is rigid along its axis: core then scatters by 1e-9 and more, which the uncertainty says."""
+    blade = library.load("nrel-5mw").variants[0].blade
+    rigid = blade.stiffness.copy()
+    rigid[:, 0, 0] = np.inf
+    coned = replace(blade, stiffness=rigid, precone=np.radians(-2.5))
+    (mine,), *scaled = (
+        core_solver.answers(b, [(0.3, 40, 6)], "half_end", "parent")
+        for b in (coned, *(core_solver.rescaled(coned, factor) for factor in (3.0, 7.0, 0.3, 11.0)))
+    )
+    first, second, *others = (answer for (answer,) in scaled)
+    noise = rounding(mine, [first, second])
+    for other in others:
+        assert not isinstance(other, Failure)
+        assert not isinstance(mine, Failure)
+        assert (np.abs(other.frequencies / mine.frequencies - 1.0) <= noise).all()
+    assert noise.max() < 1e-6
+    assert len(rounding(mine, [Failure("refused", "")])) == 0
+
+
+sizes = st.floats(0.0, 1.0)
+RANK = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 2, "fail": 2}
+"""As evidence: what neither agrees nor is explained is none."""
+FULL_RANK = {"pass": 0, "inconclusive": 1, "fail": 2}
+
+
+@settings(derandomize=True)
+@given(d=sizes, u=sizes, more=sizes, target=st.floats(1e-9, 1.0))
+def test_a_larger_difference_never_improves_a_verdict(d: float, u: float, more: float, target: float) -> None:
+    assert FULL_RANK[judge(d + more, u, target)[0]] >= FULL_RANK[judge(d, u, target)[0]]
+    assert judge(-d, u, target)[0] == judge(d, u, target)[0]
+
+
+@settings(derandomize=True)
+@given(d=st.floats(-0.9, 1.0), u=sizes, more=sizes, target=st.floats(1e-9, 0.5))
+def test_a_larger_uncertainty_never_makes_evidence(d: float, u: float, more: float, target: float) -> None:
+    for verdict in (judge, bracketed):
+        assert RANK[verdict(d, u + more, target)[0]] >= RANK[verdict(d, u, target)[0]]
+    assert judge(d, None, target)[0] == "inconclusive"
+
+
+@settings(derandomize=True)
+@given(d=sizes, u=sizes, more=sizes, rest=sizes, limit=st.none() | sizes, target=st.floats(1e-9, 1.0))
+def test_nor_does_either_of_an_answer_of_a_given_discretisation(d, u, more, rest, limit, target) -> None:
+    first = discretised(d, u, target, rest, limit, "x")[0]
+    for d2, u2, rest2, limit2 in (
+        (d + more, u, rest, limit),
+        (d, u + more, rest, limit),
+        (d, u, rest + more, limit),
+        (d, u, rest, None if limit is None else limit + more),
+    ):
+        assert RANK[discretised(d2, u2, target, rest2, limit2, "x")[0]] >= RANK[first]
+
+
+def test_a_target_in_a_history_line_of_an_earlier_version_is_unknown() -> None:
+    from southwell.cases.regression.history import Point
+
+    line = b'["beam","code",10.0,1,"flapwise",10.0,1e-5,1e-6,"pass",0.1]'
+    assert msgspec.json.decode(line, type=Point).target is None

@@ -1,0 +1,60 @@
+"""Codes that do wrong in ways that once were not judged as failures."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from southwell.core.blade import Blade
+from southwell.core.effects import Model
+from southwell.core.modes import Modes
+from southwell.references.protocol.interface import Shares
+from southwell.references.theories.exact_beam import CODE as EXACT
+
+
+@dataclass(frozen=True)
+class Fooling:
+    """The exact beam, with something done to its answer."""
+
+    name: str
+    alter: Callable[[Modes], Modes] = lambda modes: modes
+    levels: tuple[int, ...] = EXACT.levels
+    bracket: bool = False
+    raises: str = ""
+    order: int = EXACT.order
+    title: str = "Exact beam, altered"
+    shares: Shares = "nothing"
+    model: Model = EXACT.model
+    hint: str = ""
+
+    def version(self) -> str | None:
+        if self.raises == "version":
+            raise OSError("no such binary")
+        return "1.0"
+
+    def unsupported(self, blade: Blade) -> str | None:
+        if self.raises == "unsupported":
+            raise RuntimeError("licence server\nnot reached")
+        return EXACT.unsupported(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        return self.alter(EXACT.solve(blade, omega, elements, count))
+
+
+def _without_flap(modes: Modes) -> Modes:
+    shapes = modes.shapes.copy()
+    shapes[:, :, 2] = 0.0
+    return replace(modes, shapes=shapes)
+
+
+def _wide(modes: Modes) -> Modes:
+    return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
+
+
+LOST = Fooling("lost", _without_flap)
+WIDE = Fooling("wide", _wide)
+WIDE_ONCE = Fooling("wide-once", _wide, levels=(10,))
+BRACKET = Fooling("bracket", _wide, bracket=True)
+ZERO = Fooling("zero", lambda m: replace(m, frequencies=np.append(0.0, m.frequencies[1:])))
+BLOWS = Fooling("blows", raises="unsupported")
+NO_VERSION = Fooling("no-version", raises="version")
