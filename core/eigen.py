@@ -155,6 +155,6 @@ def _failed(error: Exception) -> EigenError:
 def unstable() -> UnstableError:
     """What to raise where a Cholesky factorisation of K fails."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: the centrifugal force outgrows it, or the blade is far "
-        "too soft: check units"
+        "the stiffness about the steady state is not positive definite: too few elements for a blade that soft (a cable), "
+        "or the centrifugal force outgrows the stiffness; check units"
     )

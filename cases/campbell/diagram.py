@@ -10,7 +10,7 @@ from ...core.blade import Blade
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
 from ...core.solve import NO_GRAVITY, sweep
-from ..input.errors import NO_STATE, CaseError, unsteady
+from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from ..judge.pairing import Array, weights
 from .encounters import Encounter, encounters
 from .margins import Margin, Range, Resonance, Southwell, line_of, margins, resonances, southwell
@@ -89,8 +89,13 @@ class Campbell:
         return " → ".join(dict.fromkeys((self.label_at(t, low), self.label_at(t, high))))
 
 
-def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda omega: None) -> Solver:
-    """Core at one speed after another; ``told`` hears of each speed when it is done.
+def solver(
+    blade: Blade,
+    wanted: Wanted,
+    told: Callable[[float], None] = lambda omega: None,
+    at: Callable[[float], str] = rad_s,
+) -> Solver:
+    """Core at one speed after another; ``told`` is called with each speed when it is done, ``at`` names one in an error.
 
     Raises (the solver):
         CaseError: if a speed has no stable steady state.
@@ -106,7 +111,7 @@ def solver(blade: Blade, wanted: Wanted, told: Callable[[float], None] = lambda 
         try:
             found = next(stream)
         except NO_STATE as error:
-            raise unsteady(blade.name, omega, error) from error
+            raise unsteady(blade.name, omega, error, at) from error
         told(omega)
         return found
 

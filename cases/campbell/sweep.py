@@ -2,7 +2,7 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,7 +11,7 @@ import numpy as np
 from ...core import solve, velocity_transformation
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ..input.errors import NO_STATE, unsteady
+from ..input.errors import NO_STATE, rad_s, unsteady
 from ..judge.pairing import aligned, families, weights
 
 Method = Literal["chain", "velocity-transformation"]
@@ -50,8 +50,11 @@ def sweep(
     accuracy: float = 1e-6,
     allow_large_strain: bool = False,
     method: Method = "chain",
+    at: Callable[[float], str] = rad_s,
 ) -> list[Named]:
     """The ``count`` lowest modes (fewer if there are fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
+
+    ``at`` names a speed in an error, in the unit in which it was given.
 
     Raises:
         CaseError: if a speed has no stable steady state, or one of large strain.
@@ -70,7 +73,7 @@ def sweep(
             try:
                 one = aligned(next(found), weight)
             except NO_STATE as error:
-                raise unsteady(blade.name, omega, error) from error
+                raise unsteady(blade.name, omega, error, at) from error
             seen: Counter[str] = Counter()
             known = zip(families(one, weight), one.frequencies, one.uncertainty, strict=True)
             for mode, (family, frequency, sure) in enumerate(known, 1):

@@ -1,6 +1,6 @@
 """The one error of bad input."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 
 import numpy as np
@@ -29,18 +29,26 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
 
 
-def unsteady(blade: str, omega: float, error: Exception) -> CaseError:
-    """What to raise where the solver finds no stable steady state of a blade at ``omega`` rad/s."""
+def rad_s(omega: float) -> str:
+    """A rotor speed in words, in rad/s."""
+    return f"{omega:g} rad/s"
+
+
+def unsteady(blade: str, omega: float, error: Exception, at: Callable[[float], str] = rad_s) -> CaseError:
+    """What to raise where the solver finds no stable steady state of a blade at ``omega`` rad/s; ``at`` says a speed in the
+    unit in which it was given."""
     if isinstance(error, np.linalg.LinAlgError):
         return CaseError(
-            f"{blade}: speed: {omega:g} rad/s: stiffness and mass are out of all proportion: check their units"
+            f"{blade}: speed: {at(omega)}: implausible stiffness-to-mass ratio: use more elements if the blade is a cable, "
+            "else check units"
         )
     what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
+    what = what.replace(f"{omega:.6g} rad/s", at(omega))
     if isinstance(error, (EigensolverError, MissedModesError, LargeStrainError)):
         remedy = " (--allow-large-strain)" if isinstance(error, LargeStrainError) else ""
-        return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}{remedy}")
+        return CaseError(f"{blade}: speed: {at(omega)}: {what}{remedy}")
     if not omega:
-        cause = "does nothing hold a hinge at rest? give speeds above 0; are values too far apart? check units"
+        cause = "free hinge at rest? give speeds above 0; else check units"
         return CaseError(f"{blade}: at rest: the stiffness is not positive definite: {cause}")
-    remedy = "hold the hinge, or give lower speeds" if "hinge" in what else "give lower speeds"
-    return CaseError(f"{blade}: speed: {omega:g} rad/s: {what}: {remedy}")
+    remedy = "hold the hinge" if "hinge" in what else "use more elements"
+    return CaseError(f"{blade}: speed: {at(omega)}: {what}: {remedy}, or give lower speeds")

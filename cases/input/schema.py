@@ -18,6 +18,7 @@ from ...core.effects import Model
 from ...references import published
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
+from .readers.source import Unused
 from .toml import convert, document, finite
 
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
@@ -29,7 +30,7 @@ Confirmations = Annotated[int, Meta(ge=0, le=20)]
 
 
 class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
-    """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends."""
+    """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends, or ``"0, 5, 10"``."""
 
     rad_s: Annotated[Values, Meta(description="rad/s")] | UnsetType = UNSET
     rpm: Annotated[Values, Meta(description="revolutions per minute")] | UnsetType = UNSET
@@ -105,11 +106,13 @@ class Variant:
         name: the case's name, and the variant's after a slash if it has several.
         blade: as every code is given it.
         speeds: (k,) rad/s, ascending.
+        unused: non-zero quantities of the blade's files that the blade does not hold.
     """
 
     name: str
     blade: Blade
     speeds: NDArray[np.float64]
+    unused: tuple[Unused, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -159,7 +162,8 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         changed = {**data, "blade": {**data["blade"], **changes}}
         blade = convert(changed, CaseFile, f"{path}: variants.{label}" if label else path).blade
         name = f"{text.name}/{label}" if label else text.name
-        variants.append(Variant(name, blade.blade(name, folder), speeds))
+        found, left = blade.read(name, folder)
+        variants.append(Variant(name, found, speeds, left))
     return Case(path, text, tuple(variants))
 
 
@@ -181,16 +185,24 @@ FASTEST, MOST_SPEEDS = 1e6, 10_000
 
 
 def speed_range(text: str) -> NDArray[np.float64]:
-    """Speeds from ``first:last:step``, both ends included (the last step is the shorter where it must be), or from one number.
+    """Speeds from ``first:last:step``, both ends included (the last step is the shorter where it must be), from a list
+    ``0,5,10``, or from one number.
 
     Raises:
         ValueError: saying what is wrong with it.
     """
+    if "," in text:
+        listed = np.concatenate([speed_range(part) for part in text.split(",")])
+        if (np.diff(listed) <= 0).any():
+            raise ValueError(f"{text!r}: not ascending: sort the speeds and drop duplicates")
+        return listed
     parts = text.split(":")
     try:
         first, last, step = (float(p) for p in (parts if len(parts) == 3 else [*parts, *parts, "1"]))
     except ValueError:
-        raise ValueError(f"{text!r} is neither a speed nor first:last:step, as in 0:30:5") from None
+        raise ValueError(
+            f"{text!r} is neither a speed nor first:last:step, as in 0:30:5, nor a list, as in 0,5,10"
+        ) from None
     if not (0 <= first <= last < math.inf and 0 < step < math.inf):
         raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
     if last > FASTEST:

@@ -13,6 +13,9 @@ from ..judge.results import Setting, Unit
 from ..judge.verdict import unsigned
 from .mechanism_case import MechanismCase, setting
 
+NOT_USED = "in its files, not used"
+"""The fact that lists what a blade's files hold and the blade does not."""
+
 
 def settings(case: Case | MechanismCase) -> tuple[Setting, ...]:
     """One for each blade of the case, or for its mechanism."""
@@ -35,6 +38,8 @@ def _setting(case: Case, variant: Variant) -> Setting:
         d = text.discretisation
         what = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
         facts["source's discretisation"] = what
+    if variant.unused:
+        facts[NOT_USED] = "; ".join(str(u).removeprefix("not used: ") for u in variant.unused)
     groups = text.compare.required(variant.name.partition("/")[2])
     return Setting(
         case=variant.name,

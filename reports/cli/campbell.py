@@ -21,11 +21,13 @@ from ...core.blade import Blade
 from ...core.modes import Modes
 from ..campbell import page
 from ..campbell import tables as tables
+from ..shared import not_used
 from ..shared.console import output
 from ..shared.units import Units
 from . import campbell_options as options
 from .arguments import Elements, Whole
 from .mounting import Mounting
+from .subjects import Subject
 from .subjects import subjects as find_subjects
 
 
@@ -58,7 +60,8 @@ def command(
         A blade's file: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV. Or a case by name
         (`southwell cases`), one of its blades as `case/blade`, or its TOML file.
     rpm
-        Rotor speeds in revolutions per minute, `first:last:step` with both ends; a case's own speeds by default.
+        Rotor speeds in revolutions per minute: `first:last:step` with both ends, or a list `0,5,10`; a case's own speeds by
+        default.
     omega
         The same in rad/s.
     out
@@ -70,7 +73,7 @@ def command(
     operating
         Speeds between which the rotor runs, as `6.9:12.1`, in the unit of the speeds; margins are judged over it.
     margin
-        How far modes should keep from n per revolution over it, in parts of n per revolution: `10%` or `0.1`.
+        How far modes should keep from n per revolution over it, in parts of n per revolution: `10%`, `10` or `0.1`.
     elements
         Beam elements along the blade.
     azimuth
@@ -102,10 +105,10 @@ def command(
         folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
         _check(out)
         diagram = solve(subject.blade, wanted, units, workers)
-        _show(diagram, units, subject.about)
+        _show(diagram, units, subject)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
-            written = page.write(diagram, folder, units, line, subject.about)
+            written = page.write(diagram, folder, units, line, (*subject.about, *not_used.lines(subject.unused)))
         except OSError as error:
             raise _unwritable(out, error.strerror) from error
         names = ", ".join(path.name for path in written)
@@ -135,12 +138,12 @@ def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campb
     told = Told(blade.name, wanted.speeds, units)
     with ExitStack() as stack:
         stack.enter_context(told.bar)
-        here = solver(blade, wanted, told)
+        here = solver(blade, wanted, told, units.at)
         if workers == 1:
             return campbell(blade, wanted, here)
         pool = Pool(min(workers, len(wanted.speeds)))
         stack.callback(pool.stop)
-        return campbell(blade, wanted, _shared(blade, wanted, pool, here, told))
+        return campbell(blade, wanted, _shared(blade, wanted, pool, here, told, units))
 
 
 class Told:
@@ -170,9 +173,9 @@ class Told:
             self.bar.update(self.task, description=f"modes meet: looking closer at {self.units.at(omega)}")
 
 
-def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told: Told) -> Solver:
+def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told: Told, units: Units) -> Solver:
     """A solver that has the speeds asked for solved by ``executor`` from the start, and others ``here`` as they come."""
-    ahead = {omega: executor.submit(_one, blade, wanted, omega) for omega in wanted.speeds}
+    ahead = {omega: executor.submit(_one, blade, wanted, omega, units) for omega in wanted.speeds}
 
     def answer(omega: float) -> Modes:
         if omega not in ahead:
@@ -184,14 +187,15 @@ def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told
     return answer
 
 
-def _one(blade: Blade, wanted: Wanted, omega: float) -> Modes:
-    return solver(blade, wanted)(omega)
+def _one(blade: Blade, wanted: Wanted, omega: float, units: Units) -> Modes:
+    return solver(blade, wanted, at=units.at)(omega)
 
 
-def _show(diagram: Campbell, units: Units, about: Sequence[str]) -> None:
+def _show(diagram: Campbell, units: Units, subject: Subject) -> None:
     console = output()
-    for line in about:
+    for line in subject.about:
         console.print(line, style="dim", markup=False)
+    not_used.show(subject.unused, console)
     console.print()
     for sheet in tables.sheets(diagram, units):
         console.print(tables.terminal(sheet))

@@ -72,11 +72,12 @@ def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, 
 
 
 def margin(text: str) -> float:
-    """``10%`` or ``0.1``."""
+    """``10%``, or ``10``: from 1 on a percentage; below 1 a fraction, ``0.1``."""
     try:
-        value = float(text.removesuffix("%")) * (0.01 if text.endswith("%") else 1.0)
+        value = float(text.removesuffix("%"))
     except ValueError:
         raise CaseError(f"--margin: {text!r} is neither a percentage nor a fraction, as in 10% or 0.1") from None
+    value *= 0.01 if text.endswith("%") or value >= 1 else 1.0
     if not 0 <= value < 1:
-        raise CaseError(f"--margin: {text!r}: needs 0 ≤ margin < 1 of n per revolution, as in 10% or 0.1")
+        raise CaseError(f"--margin: {text!r}: needs 0 to 100 % of n per revolution, as in 10% or 0.1")
     return value

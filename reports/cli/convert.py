@@ -1,5 +1,6 @@
 """``southwell convert``: a blade in any format that is read, written as TOML, for BeamDyn or for ElastoDyn."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -7,20 +8,43 @@ import numpy as np
 from rich.markup import escape
 
 from ...cases.input.errors import CaseError
-from ...cases.input.readers import Mount, beamdyn_write, elastodyn_write, southwell_toml
-from ...core.blade import Blade
+from ...cases.input.readers import Mount, Unused, southwell_toml
+from ...cases.writers import beamdyn, elastodyn
+from ..shared import not_used
 from ..shared.console import output
+from ..shared.units import RPM
 from .mounting import Mounting
+from .subjects import Subject
 from .subjects import subjects as find_subjects
 
 Format = Literal["toml", "beamdyn", "elastodyn"]
 
 
-def command(blade: str, out: Path, /, *, to: Format | None = None, mounting: Mounting | None = None) -> int:
-    """Write a blade in another format; what the format cannot hold is refused, never dropped.
+KEPT = 1e-7
+"""Of the length: stations that move less on BeamDyn's curve change no frequency by more than 1e-6."""
+
+CARRIED: dict[Format, tuple[str, ...]] = {
+    "toml": (),
+    "beamdyn": beamdyn.CARRIED,
+    "elastodyn": elastodyn.CARRIED,
+}
+"""Quantities that no blade holds and that a format keeps."""
+
+
+def command(
+    blade: str,
+    out: Path,
+    /,
+    *,
+    to: Format | None = None,
+    rpm: float = 0.0,
+    mounting: Mounting | None = None,
+) -> int:
+    """Write a blade in another format; what the format cannot hold is refused.
 
     TOML holds any blade. BeamDyn holds curved and coupled ones on a clamped root, without tip mass (two files are written);
-    ElastoDyn only straight, uncoupled ones without stretch, torsion and moments of inertia.
+    ElastoDyn only straight, uncoupled ones without stretch, torsion and moments of inertia. Quantities of the file that are
+    no property of a blade (damping, mode shapes, pitch axis) are carried over where the format has them, else listed.
 
     Parameters
     ----------
@@ -30,7 +54,11 @@ def command(blade: str, out: Path, /, *, to: Format | None = None, mounting: Mou
         File to write; there must be none.
     to
         Format; TOML if the file ends in .toml.
+    rpm
+        Rotor speed at which the mode shapes of an ElastoDyn file are computed; at rest by default.
     """
+    if not 0.0 <= rpm < 1e6:
+        raise CaseError(f"--rpm {rpm:g}: not a rotor speed: give 0 or more revolutions per minute, as in 12.1")
     chosen = to or ("toml" if out.suffix.lower() == ".toml" else None)
     if chosen is None:
         raise CaseError(f"{out}: ends in {out.suffix or 'nothing'}: say the format by --to toml, beamdyn or elastodyn")
@@ -42,33 +70,47 @@ def command(blade: str, out: Path, /, *, to: Format | None = None, mounting: Mou
         raise CaseError(f"{blade}: {len(subjects)} blades ({names}): say which")
     console = output()
     try:
-        written, left = _write(subjects[0].blade, out, chosen)
+        written, left = _write(subjects[0], out, chosen, rpm / RPM.speeds)
     except OSError as error:
         raise CaseError(f"{out}: cannot be written ({error.strerror}): give another name") from error
     console.print(", ".join(str(path) for path in written), markup=False, soft_wrap=True)
     if left is not None:
-        console.print(escape(_told(left)), soft_wrap=True)
+        console.print(escape(_main_file(left)), soft_wrap=True)
+    not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[chosen]), console)
+    if chosen == "beamdyn" and (moved := beamdyn.moved(subjects[0].blade)) > KEPT:
+        told = f"not held: the curve between stations; BeamDyn's spline moves stations by {moved:.2g} of the length"
+        console.print(f"{told}: give more stations where it bends", style="yellow", markup=False, soft_wrap=True)
+    for name in _unknown(subjects[0].unused, chosen):
+        console.print(f"not given or zero, written as 0: {name}", style="yellow", markup=False, soft_wrap=True)
     return 0
 
 
-def _write(blade: Blade, out: Path, to: Format) -> tuple[list[Path], Mount | None]:
+def _write(subject: Subject, out: Path, to: Format, omega: float) -> tuple[list[Path], Mount | None]:
     """The files, and what is left to a main file."""
+    blade, given = subject.blade, subject.unused
     if to == "toml":
         southwell_toml.write(blade, out)
         return [out], None
     if to == "beamdyn":
-        left = beamdyn_write.write(blade, out)
-        return [out, beamdyn_write.blade_file(out)], left
-    return [out], elastodyn_write.write(blade, out)
+        left = beamdyn.write(blade, out, given)
+        return [out, beamdyn.blade_file(out)], left
+    return [out], elastodyn.write(blade, out, omega, given)
 
 
-def _told(left: Mount) -> str:
-    """What ElastoDyn's main file must say, in its names, units and signs."""
-    values = {
-        "HubRad": left.hub_radius or 0.0,
-        "PreCone(1)": float(np.degrees(left.precone or 0.0)),
-        "BlPitch(1)": 0.0 - float(np.degrees(left.pitch or 0.0)),
-    }
+def _unknown(given: Sequence[Unused], to: Format) -> list[str]:
+    """What the format has and the blade's files do not say."""
+    return [name for name in CARRIED[to] if name not in {u.name for u in given}]
+
+
+def _main_file(left: Mount) -> str:
+    """What ElastoDyn's main file must say, in its names, units and signs, and how it is read again."""
+    values = {"HubRad": left.hub_radius or 0.0, "PreCone(1)": float(np.degrees(left.precone or 0.0))}
     if left.length is not None:
         values = {"TipRad": left.length + values["HubRad"], **values}
-    return "ElastoDyn's main file must say " + ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+    said = "ElastoDyn's main file must say " + ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+    if left.pitch:
+        theirs = 0.0 - float(np.degrees(left.pitch))
+        said += (
+            f"; the pitch is in none of the files: BlPitch(1) = {theirs:.10g} in OpenFAST, --pitch {-theirs:.10g} here"
+        )
+    return said

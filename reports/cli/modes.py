@@ -4,11 +4,13 @@ from collections.abc import Sequence
 
 import msgspec
 import numpy as np
+from rich.console import Console
 
 from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
 from ...cases.input import library
 from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
+from ..shared import not_used
 from ..shared.console import output
 from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
@@ -40,7 +42,8 @@ def modes(
         A case by name (`southwell cases`), one of its blades as `case/blade`, or its TOML file; or a blade's file: ElastoDyn,
         BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV.
     omega
-        Rotor speed in rad/s, or a range `first:last:step` with both ends; the case's own speeds by default.
+        Rotor speed in rad/s, a list `0,5,10`, or a range `first:last:step` with both ends; by default the case's own speeds,
+        or the one that a BModes file states.
     rpm
         The same in revolutions per minute.
     elements
@@ -69,8 +72,12 @@ def modes(
             raise UsageError(f"--rpm: missing: {case} says no speeds: give them, as in 0:15:5")
         blade = subject.blade
         at = subject.speeds if speeds is None else speeds
-        found = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method)
+        found = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method, (units or subject.units).at)
         rows += [_tidy(blade.name, row) for row in found]
+        console = Console(stderr=True, highlight=False) if json else output()
+        for note in subject.notes:
+            console.print(note, style="dim", markup=False, soft_wrap=True)
+        not_used.show(subject.unused, console)
         if not json:
             if elements is None and method != "chain":
                 elements = ELEMENTS
@@ -79,7 +86,6 @@ def modes(
                 f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}",
                 units or subject.units,
             )
-            console = output()
             console.print(terminal.frequencies(found, title, shown))
             for line in terminal.remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)

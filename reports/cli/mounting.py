@@ -1,8 +1,13 @@
-"""Options that say what a blade's file leaves to others: how long it is and how it sits on the hub."""
+"""Options that say what a blade's file leaves to others: how long it is and how it sits on the hub.
+
+Pitch has two signs. Southwell's turns y towards z: the leading edge downwind, towards stall of an upwind rotor. OpenFAST's
+BlPitch turns the leading edge upwind, to feather: the same angle with the other sign.
+"""
 
 from dataclasses import dataclass
 from math import isfinite, radians
 from pathlib import Path
+from typing import Literal
 
 from cyclopts import Parameter
 
@@ -27,11 +32,18 @@ class Mounting:
     precone
         Degrees, downwind, likewise.
     pitch
-        Degrees, leading edge downwind, likewise.
+        Degrees; positive turns the leading edge downwind, unless --pitch-convention says otherwise. 0 if not given: an
+        ElastoDyn main file's BlPitch is the initial pitch of a simulation, and is listed, not used.
+    pitch_convention
+        The sign of --pitch: `southwell`, positive with the leading edge downwind, or `openfast`, positive with the leading
+        edge upwind (to feather), as BlPitch.
     subset
         Set and subset of a HAWC2 structural file that has several, as `5:1`.
     multipliers
         Of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
+    offsets
+        Whether the offset columns of a FAST 7 table (PrecrvRef, PreswpRef, FlpcgOf, EdgcgOf, FlpEAOf, EdgEAOf) are used;
+        they are by default.
     """
 
     main: Path | None = None
@@ -39,8 +51,10 @@ class Mounting:
     hub_radius: float | None = None
     precone: float | None = None
     pitch: float | None = None
+    pitch_convention: Literal["southwell", "openfast"] = "southwell"
     subset: str | None = None
     multipliers: str | None = None
+    offsets: bool | None = None
 
     def mount(self) -> Mount:
         """The same for a reader, in radians.
@@ -51,14 +65,18 @@ class Mounting:
         for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
             if value is not None and not least <= value <= LONGEST:
                 raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
+        if self.pitch is None and self.pitch_convention != "southwell":
+            raise CaseError(f"--pitch-convention {self.pitch_convention}: no pitch is given: add --pitch")
+        pitch = angle("--pitch", self.pitch, most=180.0)
         return Mount(
             main=self.main,
             length=self.length,
             hub_radius=self.hub_radius,
             precone=angle("--precone", self.precone, most=89.0),
-            pitch=angle("--pitch", self.pitch, most=180.0),
+            pitch=-pitch if pitch and self.pitch_convention == "openfast" else pitch,
             subset=None if self.subset is None else _subset(self.subset),
             multipliers=None if self.multipliers is None else _multipliers(self.multipliers),
+            offsets=self.offsets,
         )
 
 

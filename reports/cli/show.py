@@ -15,6 +15,7 @@ from rich.table import Table
 from ...cases.input.errors import CaseError
 from ...cases.input.properties import Mass, Sections, about_hub, about_root, sections, tip
 from ...core.blade import Blade, straight
+from ..shared import not_used
 from ..shared.console import output
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
@@ -60,6 +61,7 @@ def command(
     console = output()
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))
+        not_used.show(subject.unused, console)
         console.print(stations(subject.blade, None if all else ROWS))
         if out is not None:
             folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
@@ -78,7 +80,7 @@ def facts(blade: Blade) -> dict[str, str]:
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
     loose = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
     bends = f"prebend {_farthest(blade.curve[:, 2]):.5g} m, sweep {_farthest(blade.curve[:, 1]):.5g} m (largest)"
-    end = tip(blade)
+    end, pitch = tip(blade), float(np.degrees(blade.pitch))
     return {
         "mass": f"{hub.mass:.6g} kg" + (f", of which {end.mass:.6g} kg at the tip" if end else ""),
         "tip mass": _body(end) if end else "",
@@ -92,7 +94,7 @@ def facts(blade: Blade) -> dict[str, str]:
         "length": f"{blade.length:.6g} m along the reference axis",
         "hub radius": f"{blade.hub_radius:.6g} m",
         "precone": f"{np.degrees(blade.precone):.5g}° (positive downwind)",
-        "pitch": f"{np.degrees(blade.pitch):.5g}° (positive with the leading edge downwind)",
+        "pitch": f"{pitch:.5g}° (positive with the leading edge downwind; as OpenFAST's BlPitch: {0.0 - pitch:.5g}°)",
         "root": "clamped" if not loose else f"{', '.join(loose)}; the rest held",
         "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,

@@ -1,4 +1,4 @@
-"""Which blades a Campbell diagram is asked of: a blade's file in any format that is read, or a case's blades."""
+"""Which blades a command is asked for: a blade's file in any format that is read, or a case's blades."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from ...cases.input import library, readers
 from ...cases.input.errors import CaseError
 from ...cases.input.library import select
-from ...cases.input.readers import Mount, southwell_toml
+from ...cases.input.readers import Mount, Unused, southwell_toml
 from ...cases.verify.settings import settings
 from ...core.blade import Blade
 from ..shared.units import BY_KEY, RPM, Units
@@ -17,12 +17,23 @@ FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", 
 
 @dataclass(frozen=True)
 class Subject:
-    """A blade: its own speeds (rad/s; none of a blade's file) and their unit, and where it is from, a line a fact."""
+    """A blade to be solved.
+
+    Attributes:
+        blade: the blade.
+        speeds: its own, rad/s: a case's, or the one a blade's file states for the analysis; may be empty.
+        units: of the speeds.
+        about: where it is from, one fact per line.
+        notes: what its file leaves open and how that was settled.
+        unused: non-zero quantities of its files that it does not hold.
+    """
 
     blade: Blade
     speeds: tuple[float, ...]
     units: Units
     about: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    unused: tuple[Unused, ...] = ()
 
 
 def subjects(name: str, mount: Mount) -> list[Subject]:
@@ -35,7 +46,8 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
         found = readers.reading(Path(name), mount)
         files = ", ".join(path.name for path in found.source.files)
         about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
-        return [Subject(found.blade, (), RPM, about)]
+        speeds = () if found.speed is None else (found.speed,)
+        return [Subject(found.blade, speeds, RPM, about, found.source.notes, found.source.unused)]
     case = select(name)
     if mount != Mount():
         raise CaseError(
@@ -45,7 +57,9 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
     for variant, setting in zip(case.variants, settings(case), strict=True):
         facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)
         about = (setting.title, setting.description, f"source: {setting.source}", *facts)
-        out.append(Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about))
+        out.append(
+            Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about, unused=variant.unused)
+        )
     return out
 
 

@@ -17,7 +17,7 @@ from ...cases.judge.results import Run, Setting
 from ...cases.verify import lumping, matrix, mechanism_case, user_results
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
-from ...cases.verify.settings import settings
+from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
 from ..ci import junit as xml
@@ -76,6 +76,9 @@ def command(
         settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
     )
     seeded = table.chosen(faults)
+    for setting in about.settings:
+        if NOT_USED in setting.facts:
+            print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
     path = _fresh(out)
     results.append(path, run=about)
     run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1, seeded)

@@ -1,7 +1,7 @@
 """Blades from the files they come in: the format is known by what the file says, the axes are converted at the door.
 
 ``reading(path)`` gives the blade with its source, ``read(path)`` the blade alone; a format's own module has its own
-``read``, and ``own.write``, ``elastodyn_write.write``, ``beamdyn_write.write`` write files that are read as the same blade.
+``read`` reads any of them; ``southwell_toml.write`` and ``cases.writers`` write files that are read as the same blade.
 
 The text formats are parsed here, since no library tells the line of a fault: weio 2.0.0 reads a column that is missing as
 zeros, NaN and negative stiffness as they stand, and no ``1.0D+03``; openfast_io 5.0.0 does not read BeamDyn's old header.
@@ -16,11 +16,11 @@ import numpy as np
 
 from ....core.blade import Blade
 from ..errors import CaseError
-from .source import Mount, Reading, Source
+from .source import Mount, Reading, Source, Unused
 
-__all__ = ["FORMATS", "Mount", "Reading", "Source", "read", "reading", "recognise"]
+__all__ = ["FORMATS", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
 
-FORMATS = ("ElastoDyn", "BeamDyn", "BModes", "HAWC2", "windIO", "Southwell TOML and CSV")
+FORMATS = ("ElastoDyn", "BeamDyn", "OpenFAST .fst", "BModes", "HAWC2", "windIO", "Southwell TOML and CSV")
 
 
 def read(path: Path, mount: Mount | None = None) -> Blade:
@@ -47,6 +47,7 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         for option, given, format in (
             ("multipliers", mount.multipliers, "ElastoDyn"),
             ("subset", mount.subset, "HAWC2"),
+            ("offsets", mount.offsets, "ElastoDyn"),
         ):
             if given is not None and found.source.format != format:
                 raise CaseError(f"{path}: {option}: {found.source.format} has none, {format} has: leave it out")
@@ -69,12 +70,13 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
         path.suffix.lower()
     )
     if module is None:
-        from . import beamdyn, bmodes, elastodyn, hawc2, text
+        from . import beamdyn, bmodes, elastodyn, fst, hawc2, text
 
         lines = text.load(path)
         signs = (
             ("elastodyn", elastodyn.is_blade),
             ("elastodyn", elastodyn.is_main),
+            ("fst", fst.is_one),
             ("beamdyn", beamdyn.is_blade),
             ("beamdyn", beamdyn.is_main),
             ("bmodes", bmodes.is_one),

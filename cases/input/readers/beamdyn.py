@@ -18,11 +18,11 @@ from scipy.interpolate import CubicSpline
 from ....core.blade import Blade, BladeError
 from ....core.blade_checks import follows
 from ..errors import CaseError
-from . import elastodyn
+from . import elastodyn, elastodyn_unused
 from .beamdyn_axis import Axis, line, measured, resolved, roll
 from .matrices import BEAMDYN, fault, in_axes, mass_fault
-from .source import OPENFAST_AXES, Mount, Reading, Source
-from .text import Table, Text, fractions, keys, leading, load, row, table, whole, word
+from .source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
+from .text import ROUNDING, Table, Text, fractions, keys, leading, load, row, table, tokens, value, whole, word
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         main, text = text, load(_named(text))
     else:
         main = _main(path, mount)
-    told = elastodyn.hub(load(mount.main)) if mount.main and is_elastodyn(mount.main) else None
+    hub = load(mount.main) if mount.main and is_elastodyn(mount.main) else None
+    told = elastodyn.hub(hub) if hub else None
     settled = elastodyn.settle(mount, told.mount if told else None)
     if main is None and settled.length is None:
         raise CaseError(
@@ -74,7 +75,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if told and told.tip_mass:
         blade = replace(blade, tip_mass=np.diag([told.tip_mass] * 3 + [0.0] * 3))
     notes = [
-        "matrices made symmetric; structural damping not used",
+        "matrices made symmetric",
         "twist between key points: a cubic spline, sampled at key points and stations",
     ]
     if main is None:
@@ -83,7 +84,33 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
         notes += [f"no ElastoDyn main file: {', '.join(open_)} taken as 0"] if open_ else []
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
-    return Reading(blade, Source(NAME, files, axes, tuple(notes)))
+    left = (*_damping(text), *(_actuator(main) if main else ()), *(elastodyn_unused.of_main(hub) if hub else ()))
+    return Reading(blade, Source(NAME, files, axes, tuple(notes), left))
+
+
+DAMPING = "mu1 … mu6"
+
+
+def _damping(text: Text) -> tuple[Unused, ...]:
+    """The stiffness-proportional damping of a blade file: the six numbers below the row that names them."""
+    heads = [k for k, line in enumerate(text.lines) if [w.lower() for w in tokens(line)[:2]] == ["mu1", "mu2"]]
+    below = next((leading(line) for line in text.lines[heads[0] + 1 :] if leading(line)), []) if heads else []
+    named = keys(text)
+    on = "damp_type" not in named or value(text, named, "damp_type") != 0
+    return unused(DAMPING, below[:6], "s", text.path, "modes are undamped") if on else ()
+
+
+def _actuator(main: Text) -> tuple[Unused, ...]:
+    named = keys(main)
+    if word(main, {"usepitchact": (0, "false"), **named}, "UsePitchAct").lower().strip(".") not in ("true", "t"):
+        return ()
+    why = "the pitch bearing is treated as clamped"
+    return tuple(
+        u
+        for name, unit in (("PitchJ", "kg m^2"), ("PitchK", "kg m^2/s^2"), ("PitchC", "kg m^2/s"))
+        if name.lower() in named
+        for u in unused(name, [value(main, named, name)], unit, main.path, why)
+    )
 
 
 def is_elastodyn(path: Path) -> bool:
@@ -113,6 +140,8 @@ def _points(main: Text) -> Table:
     found = table(main, first, count, KEY_POINTS)
     z = found["kp_zr"]
     for name in ("kp_xr", "kp_yr", "kp_zr"):
+        if abs(found[name][0]) <= ROUNDING * np.abs(z).max():
+            found[name][0] = 0.0
         found.need(
             np.arange(count) > 0 if found[name][0] else np.ones(count, bool),
             name,

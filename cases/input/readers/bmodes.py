@@ -99,7 +99,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
     axes = f"{OPENFAST_AXES}; mass and tension centres off the axis along the section's y"
-    return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)))
+    speed = value(main, named, "rot_rpm") * value(main, {"rpm_mult": (0, "1"), **named}, "rpm_mult") * np.pi / 30
+    return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)), speed)
 
 
 def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:

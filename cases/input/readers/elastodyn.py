@@ -3,8 +3,9 @@
 The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes turned by the
 structural twist. OpenFAST turns a positive twist, and pitch, with the leading edge upwind: about −x here. There is neither
 stretch nor torsion nor rotary inertia in the format: those strains are rigid, and the sections have no moments of inertia;
-FAST 7's further columns (GJStff, EAStff, FlpIner, EdgIner) are used where they are there. AdjBlMs, AdjFlSt and AdjEdSt
-multiply the table (on FlStTunr see ``_notes``). Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
+FAST 7's further columns (GJStff, EAStff, FlpIner, EdgIner, and the offsets, see ``fast7_offsets``) are used where they are
+there. AdjBlMs, AdjFlSt and AdjEdSt multiply the table. A main file's BlPitch is the initial pitch of a simulation, not an
+operating point: it is listed, not used. Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
 """
 
 from collections.abc import Callable
@@ -16,6 +17,8 @@ from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ..errors import CaseError
+from . import elastodyn_unused, fast7_offsets
+from .matrices import about
 from .source import OPENFAST_AXES, Mount, Reading, Source
 from .text import Text, fractions, keys, leading, load, table, tokens, value, whole, word
 
@@ -25,6 +28,7 @@ NAME = "ElastoDyn"
 COLUMNS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
+USED = (*NEEDED, "GJStff", "EAStff", "FlpIner", "EdgIner")
 MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
 LARGEST = 1_000_000
 """Bytes of a main file, at most: larger files beside a blade are not looked into."""
@@ -79,7 +83,11 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
     """
     found = []
     for other in sorted(path.parent.glob("*")):
-        fits = other.suffix.lower() in {".dat", ".inp", ".txt"} and other.is_file() and other.stat().st_size < LARGEST
+        fits = (
+            other.suffix.lower() in {".dat", ".inp", ".txt", ".fst"}
+            and other.is_file()
+            and other.stat().st_size < LARGEST
+        )
         if not fits or other == path:
             continue
         try:
@@ -95,7 +103,7 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
 
 
 def hub(text: Text) -> Hub:
-    """The hub of a main file; OpenFAST's coning is positive downwind, as ours, its pitch the other way round.
+    """The hub of a main file; OpenFAST's coning is positive downwind, as ours.
 
     Raises:
         CaseError: if a value is missing or none.
@@ -110,7 +118,6 @@ def hub(text: Text) -> Hub:
         length=tip - root,
         hub_radius=root,
         precone=np.radians(value(text, named, "PreCone1", "PreCone")),
-        pitch=-np.radians(value(text, named, "BlPitch1", "BlPitch")),
     )
     mass = value(text, named, "TipMass1", "TipMass")
     return Hub(mount, mass, blade_file(text))
@@ -160,18 +167,24 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Rea
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
     flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
     tip = np.diag([told.tip_mass] * 3 + [0.0] * 3) if told else np.zeros((6, 6))
+    twist = -np.radians(found["StrcTwst"])
+    offsets = mount.offsets is not False
+    there = {name: found[name] for name in fast7_offsets.COLUMNS if offsets and name in found.columns}
+    axis = fast7_offsets.line(eta * settled.length, there, twist)
+    mass = section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia)
     try:
         blade = Blade(
             name=text.path.stem,
-            stations=eta * settled.length,
+            stations=axis.s,
             stiffness=section_stiffness(
                 found.columns.get("EAStff", np.full(count, np.inf)),
                 found.columns.get("GJStff", np.full(count, np.inf)),
                 by_flap * found["FlpStff"],
                 by_edge * found["EdgStff"],
             ),
-            mass=section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia),
-            twist=-np.radians(found["StrcTwst"]),
+            mass=about(mass, *axis.mass_centre.T) if axis.mass_centre.any() else mass,
+            twist=twist,
+            curve=axis.curve,
             hub_radius=settled.hub_radius or 0.0,
             precone=settled.precone or 0.0,
             pitch=settled.pitch or 0.0,
@@ -179,34 +192,40 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Rea
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
+    used = [name for name, values in there.items() if values.any()]
+    axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used else 'all centres on the pitch axis'}"
+    left = (
+        *elastodyn_unused.of_table(found, USED, offsets),
+        *elastodyn_unused.of_blade(text),
+        *(elastodyn_unused.of_main(load(main)) if main else ()),
+    )
     files = (text.path,) if main is None else (text.path, main)
-    axes = f"{OPENFAST_AXES}; all centres on the pitch axis"
-    return Reading(blade, Source(NAME, files, axes, _notes(text, named, factors, main, settled, columns)))
+    notes = _notes(factors, main, settled, columns)
+    if used:
+        largest = ", ".join(f"{name} {max(there[name], key=abs):g} m" for name in used)
+        notes += (
+            f"offsets used (largest): {largest}; turned by the structural twist; `offsets = false` or --no-offsets leaves "
+            "them out, as FAST itself does",
+        )
+    return Reading(blade, Source(NAME, files, axes, notes, left))
 
 
 def _columns(names: list[str]) -> tuple[str, ...]:
-    known = {name.lower(): name for name in (*COLUMNS, *POSITIVE, "FlpIner", "EdgIner")}
+    known = {n.lower(): n for n in (*COLUMNS, *USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS)}
     return tuple(known.get(name.lower(), name) for name in names)
 
 
-def _notes(
-    text: Text,
-    named: dict[str, tuple[int, str]],
-    factors: dict[str, float],
-    main: Path | None,
-    settled: Mount,
-    columns: tuple[str, ...],
-) -> tuple[str, ...]:
+def _notes(factors: dict[str, float], main: Path | None, settled: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:
     said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
     given = settled.multipliers
     out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
-    if any(name in named and value(text, named, name) != 1 for name in ("flsttunr1", "flsttunr2")):
-        out.append("FlStTunr multiply ElastoDyn's modal stiffness, which sections do not have: not applied")
     rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]
     if rigid:
         out.append(f"the format has no {' and no '.join(rigid)}: rigid; shear is rigid")
     if "FlpIner" not in columns:
         out.append("the format has no sectional moments of inertia: none")
+    if main is not None:
+        out.append("tower, nacelle, hub and drive train of the main file are no part of a blade")
     if main is None:
         given = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
         out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))

@@ -22,7 +22,7 @@ from . import hawc2_htc
 from .elastodyn import settle
 from .matrices import HAWC2, about, bending, fault, in_axes, shearing, turned
 from .source import Mount, Reading, Source
-from .text import Table, Text, leading, load, table
+from .text import ROUNDING, Table, Text, leading, load, table
 
 Array = NDArray[np.float64]
 
@@ -72,6 +72,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     assert text is not None
     found = _subset(text, wanted)
     r = found["r"]
+    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
     found.need(
         np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
     )
@@ -104,7 +105,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    return Reading(blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes)))
+    left = hawc2_htc.left(body) if body is not None else ()
+    return Reading(blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), left))
 
 
 def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:

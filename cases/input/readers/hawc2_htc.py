@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
 from ..errors import CaseError
-from .text import Text, believable, load, number
+from .source import Unused, unused
+from .text import ROUNDING, Text, believable, load, number
 
 Array = NDArray[np.float64]
 
@@ -100,6 +101,27 @@ def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
     return _near(htc.path, file), subset
 
 
+UNUSED = {
+    "damping": ("s", "modes are undamped"),
+    "damping_posdef": ("s", "modes are undamped"),
+    "damping_aniso": ("s", "modes are undamped"),
+    "concentrated_mass": ("kg", "a lumped mass on the blade is not held: spread it into the structural file's m"),
+}
+"""Commands of a main_body that bear on its modes and are not used: unit and reason."""
+
+
+def left(body: Body) -> tuple[Unused, ...]:
+    """The non-zero quantities of a body that are not used; of a concentrated mass (node, x, y, z, mass, …) the mass."""
+    out: list[Unused] = []
+    for command in body:
+        if command.words[0] in UNUSED:
+            unit, why = UNUSED[command.words[0]]
+            numbers = [n for n in map(number, command.words[1:]) if n is not None and np.isfinite(n)]
+            values = numbers[4:5] if command.words[0] == "concentrated_mass" else numbers
+            out += unused(command.words[0], values, unit, command.text.path, why)
+    return tuple(out)
+
+
 def half_chords(body: Body, r: Array) -> HalfChords:
     """The half-chord line at stations ``r`` (n,) m of a structural file.
 
@@ -115,6 +137,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
             )
     if len(c2) < 2:
         raise CaseError(f"{sections[0].at}: 1 section: c2_def needs at least a root and a tip")
+    c2[0, 2] = 0.0 if abs(c2[0, 2]) <= ROUNDING * abs(c2[-1, 2]) else c2[0, 2]
     if c2[0, 2] != 0:
         raise CaseError(f"{sections[0].at}: sec: z = {c2[0, 2]:g} m: the first section is the root; begin at z = 0")
     falls = np.flatnonzero(np.diff(c2[:, 2]) <= 0) + 1

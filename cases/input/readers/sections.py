@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError
 from ..errors import CaseError, FilesMissingError
-from .source import LONGEST
+from .source import LONGEST, Unused
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -61,13 +61,28 @@ class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
 class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How a blade sits on its hub and what is at its tip; what is not given is as its file says, else 0 and clamped."""
 
-    precone_deg: Annotated[float | None, Meta(description="towards +z, degrees")] = None
-    pitch_deg: Annotated[float | None, Meta(description="y towards z, degrees")] = None
+    precone_deg: Annotated[float | None, Meta(description="towards +z (downwind), degrees")] = None
+    pitch_deg: Annotated[
+        float | None,
+        Meta(description="y towards z (leading edge downwind): OpenFAST's BlPitch has the other sign; degrees"),
+    ] = None
     root: Annotated[
         Literal["clamped", "flap hinge", "lag hinge", "both hinges"] | Springs | None,
         Meta(description="the root's joint"),
     ] = None
     tip_mass: Annotated[TipMass | None, Meta(description="a rigid body at the tip")] = None
+
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
+        """The blade and what its file holds beyond it; ``folder`` is where files are looked for.
+
+        Raises:
+            CaseError: what cannot be read.
+        """
+        return self.blade(name, folder), ()
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade; each kind has its own."""
+        raise NotImplementedError
 
     def mounted(self, blade: Blade) -> Blade:
         """The blade so mounted.
@@ -162,9 +177,12 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         tuple[Positive, Positive, Positive] | None,
         Meta(description="of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt"),
     ] = None
+    offsets: Annotated[bool | None, Meta(description="whether a FAST 7 table's offset columns are used; they are")] = (
+        None
+    )
 
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade, its file found from ``folder``.
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
+        """The blade and what its file holds beyond it; the file is found from ``folder``.
 
         Raises:
             FilesMissingError: the variable of ``files`` is not set, or its folder has no such file.
@@ -180,8 +198,14 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
             hub_radius=self.hub_radius,
             subset=self.subset,
             multipliers=self.multipliers,
+            offsets=self.offsets,
         )
-        return self.mounted(replace(reading(self._path(name, folder), mount).blade, name=name))
+        found = reading(self._path(name, folder), mount)
+        return self.mounted(replace(found.blade, name=name)), found.source.unused
+
+    def blade(self, name: str, folder: Path) -> Blade:
+        """The blade alone, as ``read``."""
+        return self.read(name, folder)[0]
 
     def _path(self, name: str, folder: Path) -> Path:
         if self.files is None:

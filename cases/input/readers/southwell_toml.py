@@ -61,11 +61,11 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             f"{path}: blade.kind: 'dimensionless': it has no metres or seconds: make it a case with gamma speeds"
         )
     try:
-        blade = text.blade.blade(text.name, path.parent)
+        blade, left = text.blade.read(text.name, path.parent)
     except CaseError as error:
         raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
     notes = tuple(note for note in (text.title, text.source) if note)
-    return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes))
+    return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, left))
 
 
 def _mounted(blade: Blade, mount: Mount) -> Blade:

@@ -19,6 +19,9 @@ from ..toml import LARGEST
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-9
+"""Of the blade's length: a root or tip this near to its place is taken to be there, as computed files are rounded."""
+
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf(inity)?)(\(\w*\))?", re.IGNORECASE)
 _KEYED = re.compile(r"""\s*("[^"]*"|'[^']*'|[^\s,]+)[\s,]+([A-Za-z]\w*)(?:\((\d+)\))?""")
@@ -171,6 +174,8 @@ def fractions(found: Table, name: str) -> Array:
     eta = found[name]
     if len(eta) < 2:
         raise CaseError(f"{found.text.at(found.lines[0])}: {len(eta)} station: a blade needs at least a root and a tip")
+    for k in (0, -1):
+        eta[k] = round(eta[k]) if abs(eta[k] - round(eta[k])) <= ROUNDING else eta[k]
     ends = np.ones(len(eta), bool)
     ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
     found.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")

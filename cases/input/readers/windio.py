@@ -32,7 +32,7 @@ from . import beamdyn
 from .beamdyn_axis import Axis, measured
 from .elastodyn import settle
 from .matrices import fault, mass_fault, rigid
-from .source import OPENFAST_AXES, Mount, Reading, Source
+from .source import OPENFAST_AXES, Mount, Reading, Source, unused
 from .text import load
 from .yaml_fields import Field, fields
 
@@ -42,7 +42,7 @@ NAME = "windIO"
 UPPER = np.triu_indices(6)
 ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
 STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
-"""Entries that a file may leave out, and the strain that is then rigid, in our order."""
+"""Entries that a file may leave out or give as zero, and the strain that is then rigid, in our order."""
 
 FAR = 1.0
 """No blade is twisted by more, in radians: files of windIO 1 that say so have it in degrees, as windIO 2."""
@@ -86,9 +86,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if told.version == 1 and told.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
     if loose:
-        notes.append(f"{', '.join(key for key, i in STRAINS.items() if i in loose)} not given: rigid")
+        keys = ", ".join(key for key, i in STRAINS.items() if i in loose)
+        notes.append(f"{keys} zero or not given: those strains are rigid")
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
-    return Reading(blade, Source(f"{NAME} {told.version}", (path,), axes, tuple(notes)))
+    mu = told.elastic.find("structural_damping", "mu") if told.elastic.find("structural_damping") else None
+    left = unused("structural_damping.mu", mu.numbers(), "s", path, "modes are undamped") if mu else ()
+    return Reading(blade, Source(f"{NAME} {told.version}", (path,), axes, tuple(notes), left))
 
 
 def _told(top: Field) -> Told:
@@ -172,14 +175,17 @@ Sections = tuple[Array, Array, Array, tuple[int, ...]]
 
 
 def _rows(elastic: Field) -> Sections:
-    """windIO 1: stations, stiffness and mass in its axes, and rigid strains (none)."""
+    """windIO 1: stations, stiffness and mass in its axes, and which of our strains are rigid."""
     grids, matrices = [], []
-    for key, wrong in (("stiff_matrix", fault), ("inertia_matrix", mass_fault)):
+    for key in ("stiff_matrix", "inertia_matrix"):
         found = elastic.get(key)
         grids.append(_grid(found))
         field = found.get("values")
-        matrices.append(_checked(_full(_paired(field.rows(21), field, found)), wrong, field))
-    return *_together(grids, matrices), ()
+        matrices.append(_full(_paired(field.rows(21), field, found)))
+    at = elastic.get("stiff_matrix", "values")
+    stiffness, loose = _loose(matrices[0], at)
+    mass = _checked(matrices[1], mass_fault, elastic.get("inertia_matrix", "values"))
+    return *_together(grids, [_checked(stiffness, fault, at), mass]), loose
 
 
 def _lists(elastic: Field) -> Sections:
@@ -187,25 +193,36 @@ def _lists(elastic: Field) -> Sections:
     found = elastic.get("stiffness_matrix")
     grids = [_grid(found)]
     entries = np.zeros((len(grids[0]), 21))
-    loose = []
     for k, key in enumerate(ENTRIES):
         field = found.find(key)
-        if field is not None and field.numbers().any():
+        if field is not None:
             entries[:, k] = _paired(field.numbers(), field, found)
-        elif key in STRAINS:
-            loose.append(STRAINS[key])
-            entries[:, k] = 1.0
-        elif key[1] == key[2]:
+        elif key[1] == key[2] and key not in STRAINS:
             raise CaseError(f"{found.at}: no {key}: a blade must resist bending; add it")
-    stiffness = _full(entries)
-    for i in (int(key[1]) - 1 for key, strain in STRAINS.items() if strain in loose):
-        if np.abs(stiffness[:, i]).sum(1).max() != 1.0:
-            raise CaseError(f"{found.at}: K{i + 1}{i + 1} is not given but couplings with it are: add it")
+    stiffness, loose = _loose(_full(entries), found)
     stiffness = _checked(stiffness, fault, found.get("grid"))
     inertia = elastic.get("inertia_matrix")
     grids.append(_grid(inertia))
     mass = _checked(_mass(inertia), mass_fault, inertia.get("mass"))
-    return *_together(grids, [stiffness, mass]), tuple(loose)
+    return *_together(grids, [stiffness, mass]), loose
+
+
+def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
+    """Strains whose stiffness is zero at every station are rigid: their diagonal is 1 until they are made so.
+
+    Raises:
+        CaseError: if such a strain is coupled with others.
+    """
+    loose = []
+    for key, strain in STRAINS.items():
+        i = int(key[1]) - 1
+        if stiffness[:, i, i].any():
+            continue
+        if stiffness[:, i].any():
+            raise CaseError(f"{field.at}: {key} is not given but couplings with it are: add it")
+        stiffness[:, i, i] = 1.0
+        loose.append(strain)
+    return stiffness, tuple(loose)
 
 
 def _mass(inertia: Field) -> Array:

@@ -1,11 +1,12 @@
 """Fields of a YAML file that know the line they are on."""
 
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
+from yaml.composer import ComposerError
 
 from ..errors import CaseError, nearest
 from .text import Text, believable, number
@@ -116,9 +117,14 @@ def fields(text: Text) -> Field:
     Raises:
         CaseError: if it is not YAML.
     """
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where there is one: twenty times faster
+    whole = "\n".join(text.lines)
     try:
-        node = yaml.compose("\n".join(text.lines), Loader=loader)
+        try:
+            node = yaml.compose(
+                whole, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+            )  # libyaml: twenty times faster
+        except ComposerError:
+            node = yaml.compose(whole, Loader=_Reusing)
     except yaml.MarkedYAMLError as error:
         line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise CaseError(f"{text.path}{line}: not YAML: {error.problem}: correct it") from error
@@ -127,6 +133,16 @@ def fields(text: Text) -> Field:
     if node is None:
         raise CaseError(f"{text.path}: nothing but comments: give the blade's file")
     return Field(text, "", cast(yaml.Node, node))
+
+
+class _Reusing(yaml.SafeLoader):
+    """Lets an anchor be defined again, as YAML 1.2 does (§ 6.9.2); an alias means the last one before it."""
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """The next node, its anchor free again."""
+        if not self.check_event(yaml.AliasEvent):
+            self.anchors.pop(self.peek_event().anchor, None)  # pyright: ignore[reportAttributeAccessIssue]
+        return super().compose_node(parent, index)
 
 
 def _number(text: Text, node: yaml.Node, name: str) -> float:

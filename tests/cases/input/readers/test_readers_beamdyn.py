@@ -9,7 +9,8 @@ from scipy.interpolate import CubicSpline
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, beamdyn, beamdyn_write, elastodyn
+from southwell.cases.input.readers import Mount, beamdyn, elastodyn
+from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
 from southwell.tests.cases.input.readers.test_readers_elastodyn import real, same

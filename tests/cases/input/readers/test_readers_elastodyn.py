@@ -9,7 +9,8 @@ import pytest
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, elastodyn, elastodyn_write
+from southwell.cases.input.readers import Mount, elastodyn
+from southwell.cases.writers import elastodyn as elastodyn_write
 from southwell.core.blade import Blade, mass_at, uniform_blade
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
@@ -67,7 +68,10 @@ def test_the_hub_is_the_main_files_whichever_is_named(path: Path) -> None:
     """The blade file alone is found to be named by the main file beside it."""
     found = readers.reading(path)
     assert (found.blade.length, found.blade.hub_radius) == (50.0, 2.0)
-    np.testing.assert_allclose(np.degrees([found.blade.precone, found.blade.pitch]), [-2.5, -3.0])  # upwind; to feather
+    assert np.degrees(found.blade.precone) == pytest.approx(-2.5)  # upwind
+    assert found.blade.pitch == 0.0  # BlPitch is the initial pitch of a simulation: listed, not used
+    (pitch,) = [u for u in found.source.unused if u.name == "BlPitch"]
+    assert (pitch.largest, pitch.unit) == (3.0, "deg")
     np.testing.assert_allclose(np.diag(found.blade.tip_mass), [40, 40, 40, 0, 0, 0])
     assert {p.name for p in found.source.files} == {BLADE.name, MAIN.name}
 

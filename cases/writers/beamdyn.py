@@ -1,25 +1,32 @@
 """BeamDyn's main and blade file, written."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ....core.blade import Blade
-from ..errors import CaseError
-from .beamdyn_axis import measured, roll
-from .matrices import BEAMDYN, in_axes
-from .source import Mount
-from .text import fortran
+from ...core.blade import Blade
+from ..input.errors import CaseError
+from ..input.readers.beamdyn import DAMPING
+from ..input.readers.beamdyn_axis import Axis, measured, roll
+from ..input.readers.matrices import BEAMDYN, in_axes
+from ..input.readers.source import Mount, Unused
+from ..input.readers.text import fortran
 
 Array = NDArray[np.float64]
 
 
-def write(blade: Blade, path: Path) -> Mount:
+CARRIED = (DAMPING,)
+"""Names of the unused quantities that are written again."""
+
+
+def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
     """Write the main file at ``path`` and, beside it, the blade file; returns what ElastoDyn's main file must say.
 
-    A twist and a curve between stations are as BeamDyn makes them, a natural spline in z.
+    A twist and a curve between stations are as BeamDyn makes them, a natural spline in z. ``given`` is what the blade's own
+    file holds beyond it; of that, what ``CARRIED`` names is written.
 
     Raises:
         CaseError: naming what the format cannot hold: rigid strains, root joints, tip masses, kinks, curves that turn back.
@@ -35,15 +42,26 @@ def write(blade: Blade, path: Path) -> Mount:
     for what, here in lacks.items():
         if here:
             raise CaseError(f"{path}: BeamDyn cannot hold {what}: write TOML, which holds any blade")
-    z, y, x = blade.curve[:, 0], -blade.curve[:, 1], blade.curve[:, 2]
-    flat = np.zeros_like(z)
-    axis = measured(CubicSpline(z, np.stack([x, y, flat], axis=1), bc_type="natural"), z)
+    axis = _axis(blade)
+    z = axis.z
     degrees = np.degrees(roll(axis, z) - blade.twist)
     sections = blade_file(path)
-    points = np.stack([x, y, z, degrees], axis=1)
+    points = np.stack([blade.curve[:, 2], -blade.curve[:, 1], z, degrees], axis=1)
     path.write_text(_main_text(blade.name, points, sections.name), encoding="utf-8")
-    sections.write_text(_blade_text(blade), encoding="utf-8")
+    sections.write_text(_blade_text(blade, axis.arc / axis.arc[-1], given), encoding="utf-8")
     return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
+
+
+def moved(blade: Blade) -> float:
+    """How far BeamDyn's spline through the stations moves them along the axis, at most, of the length."""
+    return float(np.abs(_axis(blade).arc - blade.stations).max() / blade.length)
+
+
+def _axis(blade: Blade) -> Axis:
+    """BeamDyn's curve with key points at the stations."""
+    z = blade.curve[:, 0]
+    values = np.stack([blade.curve[:, 2], -blade.curve[:, 1], np.zeros_like(z)], axis=1)
+    return measured(CubicSpline(z, values, bc_type="natural"), z)
 
 
 def blade_file(path: Path) -> Path:
@@ -101,22 +119,23 @@ def _main_text(name: str, points: Array, sections: str) -> str:
     return _MAIN.format(name=name, count=len(points), points=lines, sections=sections)
 
 
-def _blade_text(blade: Blade) -> str:
+def _blade_text(blade: Blade, eta: Array, given: Sequence[Unused]) -> str:
+    damping = next((u.values for u in given if u.name == DAMPING and len(u.values) == 6), (0.0,) * 6)
     lines = [
         "------- BEAMDYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
         blade.name,
         "---------------------- BLADE PARAMETERS --------------------------------------",
         f"{len(blade.stations)}  station_total - Number of blade input stations (-)",
-        "0  damp_type - Damping type: 0: no damping; 1: damped",
+        f"{int(any(damping))}  damp_type - Damping type: 0: no damping; 1: damped",
         "---------------------- DAMPING COEFFICIENT------------------------------------",
         "mu1  mu2  mu3  mu4  mu5  mu6",
         "(-)  (-)  (-)  (-)  (-)  (-)",
-        "0.0  0.0  0.0  0.0  0.0  0.0",
+        "  ".join(fortran(mu) for mu in damping),
         "---------------------- DISTRIBUTED PROPERTIES---------------------------------",
     ]
     theirs = [in_axes(m, BEAMDYN.T) for m in (blade.stiffness, blade.mass)]
-    for k, eta in enumerate(blade.stations / blade.length):
-        lines.append(fortran(eta))
+    for k, fraction in enumerate(eta):
+        lines.append(fortran(fraction))
         for matrix in theirs:
             lines += ["  ".join(fortran(x) for x in line) for line in matrix[k]] + [""]
     return "\n".join(lines) + "\n"

@@ -1,29 +1,40 @@
-"""ElastoDyn's blade file, written."""
+"""ElastoDyn's blade file, written: sections, and the mode shapes that are computed from them.
 
+Damping and PitchAxis are no properties of a blade here; they are written as the blade's own ElastoDyn file has them, else 0.
+"""
+
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
-from ..errors import CaseError
-from .elastodyn import COLUMNS, MULTIPLIERS
-from .source import Mount
-from .text import fortran
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
+from ..campbell.elastodyn_shapes import polynomials
+from ..input.errors import CaseError
+from ..input.readers.elastodyn import COLUMNS, MULTIPLIERS
+from ..input.readers.elastodyn_unused import DAMPING
+from ..input.readers.source import Mount, Unused
+from ..input.readers.text import fortran
 
 Array = NDArray[np.float64]
 
 
-def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
+CARRIED = (DAMPING, "PitchAxis")
+"""Names of the unused quantities that are written again."""
+
+
+def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] = ()) -> Mount:
     """Write the blade file, and return what the main file must say for it to be read again.
 
     Args:
         blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia: what the format can hold.
         path: of the file.
-        shapes: (3, 5) coefficients of x² … x⁶ for flap 1, flap 2, edge 1; without, x² stands for all, which is no mode.
+        omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.elastodyn_shapes``).
+        given: what the blade's own file holds beyond it; of that, what ``CARRIED`` names is written.
 
     Raises:
-        CaseError: naming what the format cannot hold.
+        CaseError: naming what the format cannot hold, or a mode that is not found.
     """
     diagonal = np.diagonal(blade.stiffness, axis1=1, axis2=2)
     off = ~np.eye(6, dtype=bool)
@@ -40,10 +51,13 @@ def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
     for what, here in lacks.items():
         if here:
             raise CaseError(f"{path}: ElastoDyn cannot hold {what}: write TOML or BeamDyn, or take it out first")
+    n = len(blade.stations)
+    damping, pitch_axis = (_given(given, name, count) for name, count in zip(CARRIED, (3, n), strict=True))
+    shapes = [shape.coefficients.tolist() for shape in polynomials(blade, omega)]
     rows = np.column_stack(
         [
             blade.stations / blade.length,
-            np.zeros(len(blade.stations)),
+            pitch_axis,
             -np.degrees(blade.twist),
             blade.mass[:, 0, 0],
             diagonal[:, BEND_Y],
@@ -52,14 +66,15 @@ def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
     )
     columns = [*COLUMNS]
     units = ["(-)", "(-)", "(deg)", "(kg/m)", "(Nm^2)", "(Nm^2)"]
-    polynomials = np.tile([1.0, 0, 0, 0, 0], (3, 1)) if shapes is None else np.asarray(shapes, float)
-    what = "x^2, not a mode: replace" if shapes is None else "mode shape"
     lines = [
         "------- ELASTODYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
         f"{blade.name}: {blade.length!r} m long",
         "---------------------- BLADE PARAMETERS ----------------------------------------",
         f"{len(rows)}  NBlInpSt - Number of blade input stations (-)",
-        *(f"0.0  {name} - Structural damping in percent of critical (%)" for name in _DAMPING),
+        *(
+            f"{x!r}  {name} - Structural damping in percent of critical (%)"
+            for x, name in zip(damping, DAMPING.split(", "), strict=True)
+        ),
         "---------------------- BLADE ADJUSTMENT FACTORS --------------------------------",
         *(f"1.0  {name} - Multiplier (-)" for name in ("FlStTunr(1)", "FlStTunr(2)", *MULTIPLIERS)),
         "---------------------- DISTRIBUTED BLADE PROPERTIES ----------------------------",
@@ -68,8 +83,8 @@ def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
         *("  ".join(f"{fortran(x):>23}" for x in row) for row in rows),
         "---------------------- BLADE MODE SHAPES ---------------------------------------",
         *(
-            f"{x!r}  {name}({power}) - {what}, coefficient of x^{power}"
-            for name, row in zip(("BldFl1Sh", "BldFl2Sh", "BldEdgSh"), polynomials.tolist(), strict=True)
+            f"{x!r}  {name}({power}) - mode shape at {omega * 30 / np.pi:.6g} rpm, coefficient of x^{power}"
+            for name, row in zip(("BldFl1Sh", "BldFl2Sh", "BldEdgSh"), shapes, strict=True)
             for power, x in enumerate(row, 2)
         ),
     ]
@@ -77,4 +92,7 @@ def write(blade: Blade, path: Path, shapes: Array | None = None) -> Mount:
     return Mount(length=blade.length, hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 
-_DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
+def _given(given: Sequence[Unused], name: str, count: int) -> tuple[float, ...]:
+    """The values of a quantity that is carried over; zeros if it is not given, or not for these stations."""
+    found = [u.values for u in given if u.name == name and len(u.values) == count]
+    return found[0] if found else (0.0,) * count

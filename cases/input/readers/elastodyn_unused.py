@@ -1,0 +1,101 @@
+"""Quantities in ElastoDyn's files that a blade's modes do not use: damping, shapes, aerodynamics, teeter, initial state."""
+
+import math
+
+from .fast7_offsets import COLUMNS as OFFSETS
+from .source import Unused, unused
+from .text import Table, Text, keys, number
+
+DAMPING = "BldFlDmp(1), BldFlDmp(2), BldEdDmp(1)"
+SHAPES = tuple(f"{name}{power}" for name in ("BldFl1Sh", "BldFl2Sh", "BldEdgSh") for power in range(2, 7))
+
+AERODYNAMIC = "aerodynamics only"
+COLUMNS = {
+    "PitchAxis": ("", AERODYNAMIC),
+    "AeroCent": ("", AERODYNAMIC),
+    "Alpha": ("", "its coupling of bending and torsion is not modelled"),
+}
+"""Columns of a blade table that are known and not used: unit and reason."""
+
+TEETER = {
+    "UndSling": "m",
+    "Delta3": "deg",
+    "TeetDefl": "deg",
+    "TeetMod": "",
+    "TeetDmpP": "deg",
+    "TeetDmp": "N m s/rad",
+    "TeetCDmp": "N m",
+    "TeetSStP": "deg",
+    "TeetHStP": "deg",
+    "TeetSSSp": "N m/rad",
+    "TeetHSSp": "N m/rad",
+}
+CLAMPED = "the teeter hinge is treated as clamped: modes in which the rotor teeters are not those of this blade"
+
+
+def of_table(found: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
+    """The non-zero columns of a blade table that are not among ``used``; ``offsets``: whether the offset columns are."""
+    out: list[Unused] = []
+    for name, values in found.columns.items():
+        if name in used or (name in OFFSETS and offsets):
+            continue
+        unit, why = COLUMNS.get(name, ("", "not a column that is known here"))
+        if name in OFFSETS:
+            unit, why = "m", "switched off by `offsets`"
+        out += unused(name, values, unit, found.text.path, why)
+    return tuple(out)
+
+
+def of_blade(text: Text) -> tuple[Unused, ...]:
+    """The non-zero values of a blade file outside its table that are not used."""
+    dampings, tuned = ("BldFlDmp1", "BldFlDmp2", "BldEdDmp1"), ("FlStTunr1", "FlStTunr2")
+    damping, shapes, tuners = (_values(text, names) for names in (dampings, SHAPES, tuned))
+    scaled = "they scale ElastoDyn's modal stiffness, which sections do not have"
+    return (
+        *unused(DAMPING, damping, "% of critical", text.path, "modes are undamped"),
+        *unused(
+            "BldFl1Sh, BldFl2Sh, BldEdgSh", shapes, "", text.path, "ElastoDyn's own mode shapes; they are computed"
+        ),
+        *(unused("FlStTunr(1), FlStTunr(2)", tuners, "", text.path, scaled) if {*tuners} != {1.0} else ()),
+    )
+
+
+def of_main(text: Text) -> tuple[Unused, ...]:
+    """The non-zero values of a main file about the rotor that are not used."""
+    out: list[Unused] = []
+    pitch = _each(text, "BlPitch")
+    how = f"use it by --pitch {pitch[0]:g} --pitch-convention openfast" if pitch else ""
+    for name, values, unit, why in (
+        ("BlPitch", pitch, "deg", f"the initial pitch of a simulation, taken as 0 here; {how}"),
+        ("RotSpeed", _values(text, ("RotSpeed",)), "rpm", "the initial rotor speed; speeds are given by --rpm"),
+    ):
+        out += unused(name, values, unit, text.path, why)
+    for name, unit in (("PreCone", "deg"), ("TipMass", "kg")):
+        values = _each(text, name)
+        if len({*values}) > 1:
+            out += unused(
+                f"{name}(2), …", values[1:], unit, text.path, "only the first blade is read, and the others differ"
+            )
+    if _flag(text, "TeetDOF") and 2.0 in _values(text, ("NumBl",)):
+        out += unused("TeetDOF", (1.0,), "", text.path, CLAMPED)
+        for name, unit in TEETER.items():
+            out += unused(name, _values(text, (name,)), unit, text.path, "the teeter hinge is treated as clamped")
+    return tuple(out)
+
+
+def _each(text: Text, name: str) -> tuple[float, ...]:
+    """The values for all blades."""
+    (count,) = _values(text, ("NumBl",)) or (3.0,)
+    return _values(text, (*(f"{name}{k}" for k in (1, 2, 3) if k <= count), name))
+
+
+def _values(text: Text, names: tuple[str, ...]) -> tuple[float, ...]:
+    """The finite numbers of those names that are there."""
+    named = keys(text)
+    found = (number(named[name.lower()][1]) for name in names if name.lower() in named)
+    return tuple(value for value in found if value is not None and math.isfinite(value))
+
+
+def _flag(text: Text, name: str) -> bool:
+    found = keys(text).get(name.lower())
+    return found is not None and found[1].lower().strip(".") in ("true", "t")

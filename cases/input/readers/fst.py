@@ -1,0 +1,55 @@
+"""OpenFAST's primary file (.fst): names the files of the blade, which are read by their own readers.
+
+``CompElast`` says whose blade it is: 1 ElastoDyn's (``EDFile``), 2 BeamDyn's (``BDBldFile(1)``) on the hub of ``EDFile``;
+files of FAST 8.00 to 8.02 do not have it and mean 1.
+FAST 7's .fst holds the turbine itself and is an ElastoDyn main file here.
+Source: OpenFAST documentation, *glue code input files*.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+from ..errors import CaseError
+from . import beamdyn, elastodyn
+from .source import Mount, Reading
+from .text import Text, keys, load, whole, word
+
+
+def is_one(text: Text) -> bool:
+    """Whether these are lines of a primary file."""
+    return "edfile" in keys(text)
+
+
+def read(path: Path, mount: Mount | None = None) -> Reading:
+    """The first blade of the turbine in a primary file.
+
+    Args:
+        path: of the file.
+        mount: what is to be different; ``main`` is refused, as the file names it.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    text, mount = load(path), mount or Mount()
+    named = keys(text)
+    if mount.main is not None:
+        raise CaseError(f"{path}: --main {mount.main}: the .fst file names its main file itself: leave out --main")
+    kind = whole(text, named, "CompElast") if "compelast" in named else 1
+    if kind not in (1, 2):
+        raise CaseError(
+            f"{text.at(named['compelast'][0])}: CompElast: {kind}: only blades of ElastoDyn (1) and BeamDyn (2) are read"
+        )
+    hub = _file(text, "EDFile")
+    found = (
+        elastodyn.read(hub, mount) if kind == 1 else beamdyn.read(_file(text, "BDBldFile1"), replace(mount, main=hub))
+    )
+    return replace(found, source=replace(found.source, files=(path, *found.source.files)))
+
+
+def _file(text: Text, name: str) -> Path:
+    named = keys(text)
+    path = text.path.parent / word(text, named, name, name.rstrip("1")).replace("\\", "/")
+    if not path.is_file():
+        line = named[name.lower() if name.lower() in named else name.rstrip("1").lower()][0]
+        raise CaseError(f"{text.at(line)}: {name}: {path}: no such file: correct the name, or put the file there")
+    return path
