@@ -115,12 +115,13 @@ def sweep(
     """
     if not accuracy > 0:
         raise ValueError(f"accuracy: {accuracy}: give a positive relative number, as in 1e-6")
-    speeds = _checked(omegas, count)
     body = blade if model.rotary_inertia else without_rotary_inertia(blade)
-    meshes = _Meshes(body, count, mass, stiffness, load, model, gravity)
-    fastest = max(map(abs, speeds), default=0.0)
-    for omega in speeds:
+    meshes, fastest = _Meshes(body, count, mass, stiffness, load, model, gravity), 0.0
+    for omega in _checked(omegas, count):
         begun = time.perf_counter()
+        if abs(omega) > fastest:  # the graded mesh is made for a range of speeds, up to a power of two
+            fastest = 2.0 ** np.ceil(np.log2(abs(omega)))
+            meshes = _Meshes(body, count, mass, stiffness, load, model, gravity)
         found = (
             _refined(meshes, omega, fastest, accuracy)
             if elements is None
@@ -168,21 +169,21 @@ def mesh_sweep(
     return (one.at(omega).modes for omega in speeds)
 
 
-def _checked(omegas: Iterable[float], count: int) -> list[float]:
+def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
+    """The speeds, each checked when its turn comes: the caller may choose it by the answers before."""
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
-    speeds = [float(omega) for omega in omegas]
-    for omega in speeds:
+    for omega in omegas:
         if not np.isfinite(omega):
             raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
-    return speeds
+        yield float(omega)
 
 
 def chain_modes(
     body: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain; arguments and errors as for ``modes``."""
-    return _Mesh(body, count, model, gravity).at(_checked([omega], count)[0]).modes
+    return _Mesh(body, count, model, gravity).at(next(_checked([omega], count))).modes
 
 
 @dataclass(frozen=True)

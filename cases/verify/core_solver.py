@@ -58,13 +58,13 @@ def answers(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     model: Model = FULL,
-    by: Solver = mesh_modes,
+    by: Solver | None = None,
 ) -> list[Answer]:
     """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         try:
-            out.append(by(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+            out.append((by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
         except NO_STATE as error:
             out.append(Failure("refused", str(error)))
     return out

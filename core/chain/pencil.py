@@ -204,5 +204,6 @@ def loose(p: Linear) -> bool:
     force = np.empty_like(rows)
     strained.times(p.strained, rows, force)
     K = rows @ force.T
-    rounding = _CANCELLED * np.abs(rows * force).sum() + _STRAINLESS * np.abs(p.spring).max() * (rows**2).sum()
+    cancelled = np.einsum("mki,kij,mkj->", np.abs(x), np.abs(p.rest.diagonal), np.abs(x))
+    rounding = _CANCELLED * cancelled + _STRAINLESS * np.abs(p.spring).max() * (rows**2).sum()
     return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= rounding)

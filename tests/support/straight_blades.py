@@ -30,7 +30,7 @@ def kinked(twist: float = 0.0, inertia: float = 1.0, stations: int = 3, tip: flo
         mass=section_mass(m, 0.02 * inertia * m, 0.05 * inertia * m),
         twist=twist * np.interp(s, [0.0, 0.4, 1.0], [1.0, 0.3, 0.0]),
         hub_radius=0.2,
-        tip_mass=tip * np.diag([0.3, 0.3, 0.3, 0.02, 0.004, 0.01]),
+        tip_mass=tip * np.diag([0.3, 0.3, 0.3, 0.012, 0.004, 0.01]),
     )
 
 

@@ -179,7 +179,7 @@ BAD = [
     ("moments = 0.5", "moments = [0.5, 1.0]", ["bodies.top.moments: [0.5, 1.0]", "neither 3 numbers nor 3 rows of 3"]),
     ("moments = 0.5", "moments = [0.1, 0.2, 5.0]", ["bodies.top.moments: 5 is more than 0.1 and 0.2 together"]),
     ("moments = 0.5", 'moments = "big"', ["bodies.top.moments: 'big'"]),
-    ("moments = 0.5", "moments = -5.0", ["body 'top'", "not positive"]),
+    ("moments = 0.5", "moments = -5.0", ["body 'top'", "must be positive"]),
     ("centre = [0.5, 0, 0]", "centre = [0.5, 0]", ["bodies.leg.centre: [0.5, 0]"]),
     ('kind = "prismatic"', 'kind = "hinge"', ["joints.lift.kind: 'hinge'"]),
     ('kind = "prismatic"\n', "", ["joints.lift.kind: missing: add it"]),

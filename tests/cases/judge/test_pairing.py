@@ -37,7 +37,7 @@ def test_weights_add_up_to_the_blades_mass_and_inertia() -> None:
 
 
 def test_weights_integrate_a_tapered_blade_and_its_tip_mass() -> None:
-    tip = np.diag([2.0, 2.0, 2.0, 0.1, 0.0, 0.0])
+    tip = np.diag([2.0, 2.0, 2.0, 0.1, 0.05, 0.05])
     blade = Blade(
         "tapered",
         stations=np.array([0.0, 4.0]),
@@ -53,7 +53,8 @@ def test_weights_turn_an_offset_mass_with_the_twist() -> None:
     """Mass 1 kg/m, its centre at y = 0.5 m in section axes: rotation about x moves it along z; twisted by 90°, along −y."""
     mass = section_mass([1.0, 1.0])
     mass[:, 2, 3] = mass[:, 3, 2] = 0.5
-    mass[:, 3, 3] = 0.25
+    mass[:, 0, 5] = mass[:, 5, 0] = -0.5
+    mass[:, 3, 3] = mass[:, 5, 5] = 0.25
     blade = replace(BLADE, mass=mass, twist=np.full(2, np.pi / 2))
     total = weights(blade).sum(0)
     np.testing.assert_allclose(total[3], [0.0, -3.0, 0.0, 1.5], atol=1e-12)

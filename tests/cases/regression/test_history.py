@@ -58,7 +58,7 @@ WRITER = """
 import sys
 from dataclasses import replace
 from pathlib import Path
-from southwell.cases import history
+from southwell.cases.regression import history
 source, file, writer, times = sys.argv[1:]
 (entry,) = history.read(Path(source)).entries
 for k in range(int(times)):

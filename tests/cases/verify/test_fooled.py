@@ -38,7 +38,7 @@ def run(*codes: str) -> Run:
     case = library.load(PARK)
     one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([one], [f"tests.fooling:{c}" for c in codes], executor, parts=False)
+        return matrix.run([one], [f"southwell.tests.support.fooling:{c}" for c in codes], executor, parts=False)
 
 
 def of(code: str, *codes: str) -> list[Cell]:

@@ -170,17 +170,17 @@ TORSO = Torso()
 
 def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
     with pytest.raises(registry.UnknownCodeError, match="lacks name, model, version, unsupported_mechanism"):
-        registry.code("southwell.tests.test_mechanism_matrix:TORSO")
+        registry.code("southwell.tests.cases.verify.test_mechanism_matrix:TORSO")
 
 
 def test_a_code_that_raises_is_one_cells_outcome() -> None:
     m = library.mechanism("pitch-link").mechanism
-    (answer,) = mechanism_worker.answers("southwell.tests.test_mechanism_matrix:CODE", [m], {}, 60.0)
+    (answer,) = mechanism_worker.answers("southwell.tests.cases.verify.test_mechanism_matrix:CODE", [m], {}, 60.0)
     assert answer == Failure("nonsense", "RuntimeError: out of cheese")
 
 
 def write(folder: Path, name: str, *changes: tuple[str, str]) -> Path:
-    text = Path(library.__file__).with_name("data").joinpath("mechanisms", f"{name}.toml").read_text(encoding="utf-8")
+    text = Path(library.__file__).parents[1].joinpath("data", "mechanisms", f"{name}.toml").read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text
         text = text.replace(old, new, 1)
