@@ -23,10 +23,7 @@ from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_CANCELLED, _STRAINLESS = (
-    1e-10,
-    1e-28,
-)  # of a rigid motion's stiffness, what rounding leaves: of forces, of strain energy
+_CANCELLED, _STRAINLESS = 1e-13, 1e-28  # what rounding leaves of a rigid motion's stiffness: of forces, of strain energy
 
 
 @dataclass(frozen=True)

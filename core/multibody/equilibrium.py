@@ -27,6 +27,7 @@ _STEPS = 60
 _FAR = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
 _FIRST, _LEAST = 0.25, 1e-3  # of the path
 _SHORTEST = 1e-3  # of a step
+_NEAR = 0.05  # rad, or of the length: corrections so small need not contract at once
 
 
 @dataclass(frozen=True)
@@ -283,7 +284,8 @@ def _newton(
             following, contraction = _tried(tree, q, part * step, dead, names, tangent, length)
             if done and contraction > 0.5:  # rounding is all that is left
                 return _Found(here.state, here, tangent)
-            if contraction <= (1.0 - 0.25 * part if damped else 0.5) or length < 1e-9:
+            near = max(length, length * contraction) < _NEAR  # of the guess: a first correction may grow
+            if contraction <= (1.0 - 0.25 * part if damped else 0.5) or near or length < 1e-9:
                 break
             part *= 0.5
             if not damped or part < _SHORTEST:

@@ -45,7 +45,7 @@ def build(kinds: list[Kind], parents: list[int], rng: np.random.Generator):
     native = {**prismatic, "rx": pin.JointModelRX, "ry": pin.JointModelRY, "rz": pin.JointModelRZ}
     for i, (kind, parent) in enumerate(zip(kinds, parents, strict=True)):
         mass, centre, a = rng.uniform(0.5, 2), rng.normal(size=3) * 0.3, rng.normal(size=(3, 3))
-        moments = a @ a.T + 0.1 * np.eye(3)
+        moments = (np.trace(a @ a.T) + 0.1) * np.eye(3) - a @ a.T  # of points at the rows of a
         bodies.append(Body(f"b{i}", inertia(mass, moments, centre)))
         at = sp.exp(rng.normal(size=6)), sp.exp(rng.normal(size=6))
         joints.append(Joint(f"j{i}", kind, "ground" if parent < 0 else f"b{parent}", f"b{i}", at[0], at[1]))
