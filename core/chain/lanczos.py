@@ -57,7 +57,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
     if not lost < _ILL:
         raise EigensolverError(
             f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
-            "fewer elements"
+            "fewer elements, or check units"
         )
     if not factor.positive:
         raise eigen.unstable()

@@ -23,7 +23,10 @@ from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_CANCELLED, _STRAINLESS = 1e-13, 1e-28  # what rounding leaves of a rigid motion's stiffness: of forces, of strain energy
+_CANCELLED, _STRAINLESS = (
+    1e-13,
+    1e-28,
+)  # what rounding leaves of a rigid motion's stiffness: of forces, of strain energy
 
 
 @dataclass(frozen=True)

@@ -169,7 +169,12 @@ def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: li
     for i, (kind, reverse) in enumerate(zip(kinds, turned, strict=False)):
         a = rng.normal(size=(3, 3)) * 0.3
         bodies.append(
-            mb.Body(f"b{i}", mb.inertia(rng.uniform(0.5, 2), (np.trace(a @ a.T) + 0.1) * np.eye(3) - a @ a.T, rng.normal(size=3) * 0.2))
+            mb.Body(
+                f"b{i}",
+                mb.inertia(
+                    rng.uniform(0.5, 2), (np.trace(a @ a.T) + 0.1) * np.eye(3) - a @ a.T, rng.normal(size=3) * 0.2
+                ),
+            )
         )
         ends = ("hub" if i == 0 else f"b{i - 1}", f"b{i}")
         frames = sp.exp(rng.normal(size=(2, 6)) * 0.6)

@@ -162,7 +162,7 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
         told = step(job, "Earlier runs")
         assert ("no history yet" if k == 1 else "1 earlier runs") in told
         (job / "reports" / "out").mkdir(parents=True)
-        shutil.copy(ROOT / "reports" / "readme.jsonl", job / "reports" / "out" / "results.jsonl")
+        shutil.copy(ROOT / "reports" / "site" / "readme.jsonl", job / "reports" / "out" / "results.jsonl")
         step(job, "Add the run to the history", GITHUB_SHA=commit)
     assert git(origin, "ls-tree", "--name-only", "history").split() == ["history.jsonl"]
     kept = tmp_path / "kept.jsonl"

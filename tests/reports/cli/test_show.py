@@ -144,8 +144,9 @@ def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str])
         cli.main(["modes", blade, "--rpm", "10", "--modes", "2", "--elements", "10"])
     assert not left.value.code
     assert "bmodes: 3 stations, 10 elements" in " ".join(capsys.readouterr().out.split())
+    table = str(DATA / "elastodyn_blade.dat")  # the .bmi states a speed
     for command in ("modes", "campbell"):
         with pytest.raises(SystemExit) as left:
-            cli.main([command, blade])
+            cli.main([command, table, "--length", "40"])
         assert left.value.code == 2
         assert "says no speeds: give them" in capsys.readouterr().err
