@@ -123,7 +123,7 @@ def test_a_code_keeps_the_laws(code) -> None:
     assert len(first.uncertainty) == (7 if code is SOUTHWELL else 0)
 
 
-BENT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.1]])
+BENT = np.array([[0.0, 0.0, 0.0], [np.sqrt(0.99), 0.0, 0.1]])
 OFFSET = np.array(slender().mass)
 OFFSET[:, 1, 3] = OFFSET[:, 3, 1] = 0.01
 OFFSET[:, 0, 4] = OFFSET[:, 4, 0] = -0.01
