@@ -61,7 +61,7 @@ def differences(form: ClosedForm, omega: float) -> tuple[Complex, Array]:
 def oscillating(mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> Complex:
     """Core's λ: of a pair the one with Im λ ≥ 0, of a real pair the one that grows."""
     found = mb.solve(mechanism, guess).values
-    tiny = 1e-9 * np.abs(found).max(initial=0.0)
+    tiny = 1e-9 * np.abs(found)  # each by its own size: massless directions have values without bound
     return found[(found.imag > tiny) | (found.real > tiny)]
 
 
