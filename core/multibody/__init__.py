@@ -20,24 +20,11 @@ Lengths in m, angles in rad, SI throughout. A joint's axis is the z axis of its 
 ``joint.rz`` and so on (see ``joints.SCREWS``). Joints that close loops are found by themselves, or named by ``cut=True``.
 """
 
-from .solution import (
-    Beam,
-    Body,
-    CoordinateSpring,
-    Harmonic,
-    Joint,
-    Mechanism,
-    MechanismError,
-    Motion,
-    Solution,
-    Spring,
-    Sum,
-    at,
-    bushing,
-    inertia,
-    solve,
-    straight_beam,
-)
+from ..element.beams import bushing
+from .joints import Joint, at
+from .mechanism import Beam, Body, CoordinateSpring, Mechanism, MechanismError, Motion, Spring, inertia
+from .motion import Harmonic, Sum
+from .solution import Solution, solve, straight_beam
 
 __all__ = [
     "Beam",

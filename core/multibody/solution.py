@@ -9,31 +9,10 @@ from numpy.typing import NDArray
 
 from ..blade import uniform_blade
 from ..eigen import Damped
-from ..element.beams import Beams, bushing
+from ..element.beams import Beams
 from ..element.discretize import discretize
-from .joints import Joint, at
 from .linearize import Linear, linearize, modes
-from .mechanism import Beam, Body, CoordinateSpring, Mechanism, MechanismError, Motion, Spring, inertia
-from .motion import Harmonic, Sum
-
-__all__ = [
-    "Beam",
-    "Body",
-    "CoordinateSpring",
-    "Harmonic",
-    "Joint",
-    "Mechanism",
-    "MechanismError",
-    "Motion",
-    "Solution",
-    "Spring",
-    "Sum",
-    "at",
-    "bushing",
-    "inertia",
-    "solve",
-    "straight_beam",
-]
+from .mechanism import Mechanism
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
