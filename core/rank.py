@@ -52,7 +52,10 @@ def ranked(A: Array) -> Ranked:
     m, n = A.shape
     if not A.size:
         return Ranked(np.zeros((m, 0)), np.zeros(0), np.zeros((0, n)), np.eye(n), np.eye(m))
-    u, s, vt = scipy.linalg.svd(A, lapack_driver="gesvd")
+    try:
+        u, s, vt = scipy.linalg.svd(A)
+    except np.linalg.LinAlgError:  # divide and conquer, six times as fast, may fail to converge
+        u, s, vt = scipy.linalg.svd(A, lapack_driver="gesvd")
     r = int((s > TOLERANCE * s[0]).sum())
     return Ranked(u[:, :r], s[:r], vt[:r], vt[r:].T, u[:, r:])
 

@@ -52,7 +52,7 @@ class Variation:
 @cache
 def data() -> dict[str, Any]:
     """The numbers of ``sandia34.toml``."""
-    return tomllib.loads((files(__package__) / "sandia34.toml").read_text(encoding="utf-8"))
+    return tomllib.loads((files(str(__package__)) / "sandia34.toml").read_text(encoding="utf-8"))
 
 
 def section(name: str, how: Variation) -> tuple[Array, Array]:
@@ -106,7 +106,7 @@ def members(how: Variation) -> tuple[Member, ...]:
     out = [Member("tower", np.outer(z, [0.0, 0.0, 1.0]), ("tower",) * (len(z) - 1), y)]
 
     def radius(z: Array) -> Array:
-        return np.asarray(Akima1DInterpolator(d["blade"]["z"], d["blade"]["x"])(z), float)
+        return Akima1DInterpolator(d["blade"]["z"], d["blade"]["x"])(z).real
 
     a, b, c, e, f = d["blade"]["elements"]
     ends = [0.0, low, *d["changes"], high, top]
@@ -149,7 +149,7 @@ def mechanism(omega: float, how: Variation | None = None) -> mb.Mechanism:
             step = member.nodes[k + 1] - member.nodes[k]
             length = float(np.linalg.norm(step))
             first = step / length
-            R = np.stack([first, member.second, np.cross(first, member.second)], axis=1)
+            R = np.stack([first, member.second, np.cross(first, member.second)], axis=1).astype(float)
             frame = sp.pose(R, np.zeros(3))
             parent, child = node(member, k), node(member, k + 1)
             bodies.append(mb.Body(child))
