@@ -7,8 +7,9 @@ rest. Loops close where the blades and struts meet the tower, and where the bear
 **The mass centre.** The source's mass matrices put it 0.17 to 0.20 m from the axis *across* the chord, which is more than half
 the profile's thickness, while their moments of inertia put the chord along axis 2. Stiffness over mass is the same for
 stretch and for both bendings, E/ρ = 2.55e7 m²/s²: the section is of one material, so its mass centre is its tension centre,
-on axis 2. That is ``Centre = "tension"``, and the choice for S. The two readings of the printed number, across the chord and
-along it, serve the uncertainty of the inputs.
+on axis 2. That is ``Centre = "tension"``, and the choice for S. The printed number read as across the chord or as along it
+serves the uncertainty of the inputs. Both take the printed moments of inertia about the mass centre: about the axis, those
+about axis 2 would be smaller than m z², which no section has.
 """
 
 import tomllib
@@ -61,17 +62,17 @@ def section(name: str, how: Variation) -> tuple[Array, Array]:
     K = np.diag(s["stiffness"])
     K[0, 5] = K[5, 0] = s["coupling"]
     M = np.diag([s["mass"]] * 3 + s["inertia"])
+    m = s["mass"]
     y = z = 0.0  # mass centre along axes 2 and 3
     if how.centre == "tension":
         y = -s["coupling"] / s["stiffness"][0]  # N = EA (ε − y κ₃)
-    elif how.centre == "across the chord":
-        z = s["printed"] / s["mass"]
     else:
-        y = s["printed"] / s["mass"]
-    M[0, 4] = M[4, 0] = s["mass"] * z
-    M[1, 3] = M[3, 1] = -s["mass"] * z
-    M[0, 5] = M[5, 0] = -s["mass"] * y
-    M[2, 3] = M[3, 2] = s["mass"] * y
+        y, z = (0.0, s["printed"] / m) if how.centre == "across the chord" else (s["printed"] / m, 0.0)
+        M[3:, 3:] += m * np.diag([y * y + z * z, z * z, y * y])  # moments of inertia about the mass centre
+    M[0, 4] = M[4, 0] = m * z
+    M[1, 3] = M[3, 1] = -m * z
+    M[0, 5] = M[5, 0] = -m * y
+    M[2, 3] = M[3, 2] = m * y
     return how.stiffness * K, how.mass * M
 
 

@@ -1,0 +1,57 @@
+"""A simulation against a measurement: the comparison error and what it says of the model (ASME V&V 20-2009, sec. 1-5).
+
+``E = S − D`` holds the model's error δ, and errors of the numerical solution, of the inputs and of the data that are known
+only by their standard uncertainties: ``u_val² = u_num² + u_input² + u_D²``. So δ lies within ``E ± k u_val``. A measurement
+is no code: nothing here contradicts anything.
+"""
+
+from dataclasses import dataclass
+from math import hypot, isfinite
+
+COVERAGE = 2.0
+"""k: about 95 % where the errors are normally distributed."""
+
+
+@dataclass(frozen=True)
+class Validation:
+    """One frequency, simulated and measured; all in one unit.
+
+    Attributes:
+        simulated: S.
+        measured: D.
+        numerical, inputs, data: standard uncertainties u_num, u_input and u_D, not negative.
+    """
+
+    simulated: float
+    measured: float
+    numerical: float
+    inputs: float
+    data: float
+
+    def __post_init__(self) -> None:
+        for name in ("numerical", "inputs", "data"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value >= 0.0):
+                raise ValueError(f"{name}: {value}: an uncertainty is finite and not negative")
+
+    @property
+    def error(self) -> float:
+        """E = S − D."""
+        return self.simulated - self.measured
+
+    @property
+    def uncertainty(self) -> float:
+        """u_val, of the comparison error."""
+        return hypot(self.numerical, self.inputs, self.data)
+
+    @property
+    def visible(self) -> float:
+        """The least size that the model's error has: what of E exceeds k u_val, 0 if nothing does."""
+        return max(abs(self.error) - COVERAGE * self.uncertainty, 0.0)
+
+
+def statement(v: Validation) -> str:
+    """What the comparison says of the model, relative to the measured value."""
+    if v.visible > 0.0:
+        return f"model error visible (at least {100 * v.visible / v.measured:.1f} %)"
+    return f"model error not visible at u_val = {100 * v.uncertainty / v.measured:.1f} %"

@@ -1,0 +1,41 @@
+"""E = S − D against u_val: what may be said of a model that is compared with a measurement."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from southwell.cases.judge.measured import COVERAGE, Validation, statement
+
+SIZE = st.floats(0.0, 10.0)
+
+
+def test_the_uncertainties_add_as_squares() -> None:
+    v = Validation(simulated=1.10, measured=1.00, numerical=0.02, inputs=0.03, data=0.06)
+    assert v.uncertainty == pytest.approx(0.07)
+    assert v.error == pytest.approx(0.10)
+    assert v.visible == 0.0
+    assert statement(v) == "model error not visible at u_val = 7.0 %"
+
+
+def test_an_error_beyond_the_uncertainty_is_said_with_its_least_size() -> None:
+    v = Validation(simulated=0.93, measured=1.00, numerical=0.0, inputs=0.01, data=0.0)
+    assert statement(v) == "model error visible (at least 5.0 %)"
+
+
+@given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), SIZE, SIZE, SIZE, SIZE)
+def test_more_uncertainty_shows_less(s: float, d: float, n: float, i: float, u: float, more: float) -> None:
+    plain = Validation(s, d, n, i, u)
+    for vaguer in (
+        Validation(s, d, n + more, i, u),
+        Validation(s, d, n, i + more, u),
+        Validation(s, d, n, i, u + more),
+    ):
+        assert vaguer.visible <= plain.visible
+    assert plain.visible <= abs(s - d)
+    assert plain.visible >= abs(s - d) - COVERAGE * (n + i + u) - 1e-12
+
+
+@pytest.mark.parametrize("bad", [-0.1, float("nan"), float("inf")])
+def test_an_uncertainty_is_finite_and_not_negative(bad: float) -> None:
+    with pytest.raises(ValueError, match=r"data: .* finite and not negative"):
+        Validation(1.0, 1.0, 0.0, 0.0, bad)
