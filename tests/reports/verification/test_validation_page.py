@@ -1,0 +1,45 @@
+"""The page of a measured rotor: every measured point is on it, and no measurement is called a contradiction."""
+
+import pytest
+
+from southwell.cases.validation import comparison
+from southwell.cases.validation.comparison import SPEEDS, VARIED_AT, Simulated, points
+from southwell.reports.verification import validation_page
+
+NAMES = {"FS 1": 1.0, "FA 1": 1.02, "EA 1": 1.7, "FA 2": 2.1, "FS 2": 2.14, "EA 2": 3.5, "FS 3": 3.3, "FA 3": 3.35}
+
+
+def model(u: float) -> Simulated:
+    """f² = f₀² + 2 Ω² for every mode, so that interpolation is exact."""
+    base = tuple({n: (f * f + 2.0 * (rpm / 60.0) ** 2) ** 0.5 for n, f in NAMES.items()} for rpm in SPEEDS)
+    return Simulated(base, tuple(dict.fromkeys(NAMES, u) for _ in VARIED_AT), dict.fromkeys(NAMES, 0.0))
+
+
+def test_a_point_between_the_speeds_is_where_southwells_law_puts_it() -> None:
+    (first, *_), *_ = [[p for p in points(model(0.0)) if p.line == line] for line in ("1BE", "2FA")]
+    assert first.rpm == 0.0
+    assert first.validation.simulated == pytest.approx(1.7)
+    late = [p for p in points(model(0.0)) if p.line == "1BE"][-1]
+    assert late.validation.simulated == pytest.approx((1.7**2 + 2.0 * (35.1685 / 60.0) ** 2) ** 0.5, rel=1e-9)
+
+
+def test_a_line_of_two_modes_is_their_mean_and_their_distance_is_uncertain() -> None:
+    at_rest = next(p for p in points(model(0.0)) if p.line == "2FS")
+    assert at_rest.validation.numerical == 0.0
+    pair = next(p for p in points(model(0.0)) if p.line == "1F")
+    assert pair.validation.simulated == pytest.approx(1.01, abs=1e-4)
+    assert pair.validation.numerical == pytest.approx(0.01, abs=1e-4)
+
+
+def test_every_measured_point_is_on_the_page() -> None:
+    found = points(model(0.02))
+    assert len(found) == sum(len(line["points"]) for line in comparison.data()["lines"])
+    page, figure = validation_page.pages(model(0.02), found).values()
+    assert page.count("model error") >= len(found)
+    assert "contradicts" not in page.replace("does not confirm or contradict core", "")
+    assert figure.startswith("<?xml")
+
+
+def test_more_input_uncertainty_shows_no_more_of_the_models_error() -> None:
+    for sure, vague in zip(points(model(0.0)), points(model(0.1)), strict=True):
+        assert vague.validation.visible <= sure.validation.visible
