@@ -132,8 +132,8 @@ _ASSUMED = sandia34.data()["uncertainty"]
 _MODEL = f"""## What the model assumes
 
 - The guys are rigid: the tower's top is free only in yaw. The tower's modes are therefore too high.
-- The inputs' uncertainty is not published. Assumed, as one standard uncertainty: {100 * _ASSUMED["stiffness"]:g} % of all stiffness,
-  {100 * _ASSUMED["mass"]:g} % of all mass.
+- The inputs' uncertainty is not published. Assumed, as one standard uncertainty:
+  {100 * _ASSUMED["stiffness"]:g} % of all stiffness, {100 * _ASSUMED["mass"]:g} % of all mass.
 - The source's mass matrices put the mass centre across the chord, where the profile is not thick enough for it. Stiffness and
   mass are those of one material, so the model has the mass centre at the tension centre. The change to either reading
   of the printed number enters u_input.
