@@ -207,12 +207,12 @@ def test_a_summary_s_tables_are_cut_and_say_so() -> None:
 def folders(tmp_path: Path) -> Callable[[str], str]:
     for name, run in {"before": BEFORE, "after": BAD}.items():
         (tmp_path / name).mkdir()
-        results.append(tmp_path / name / "results.jsonl", run.cells, run=run)
+        results.write(tmp_path / name / "results.jsonl", run)
     moved = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
-    results.append(tmp_path / "moved.jsonl", moved.cells, run=moved)
+    results.write(tmp_path / "moved.jsonl", moved)
     more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
-    results.append(tmp_path / "two.jsonl", more.cells, run=more)
-    results.append(tmp_path / "one.jsonl", BEAM, run=BEFORE)
+    results.write(tmp_path / "two.jsonl", more)
+    results.write(tmp_path / "one.jsonl", replace(BEFORE, cells=BEAM))
     for commit in ("good1", "bad2"):
         run = BEFORE if commit == "good1" else BAD
         history.append(tmp_path / "history.jsonl", history.entry(run, commit))

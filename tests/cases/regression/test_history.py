@@ -127,7 +127,7 @@ def test_another_file_is_refused(tmp_path: Path, text: str, told: str) -> None:
 
 
 def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.append(tmp_path / "results.jsonl", RUN.cells, run=RUN)
+    results.write(tmp_path / "results.jsonl", RUN)
     file = tmp_path / "history.jsonl"
     for where in (tmp_path, tmp_path / "results.jsonl"):  # the folder, or the file in it
         line = f"history add {where} --history {file} --commit abc --machine quiet"
@@ -144,7 +144,7 @@ def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch) -> None:
-    results.append(tmp_path / "results.jsonl", RUN.cells, run=RUN)
+    results.write(tmp_path / "results.jsonl", RUN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     status, _, err = southwell("history add . --history history.jsonl", capsys)
@@ -164,7 +164,7 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
 )
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
     (tmp_path / "empty").write_bytes(b"")
-    results.append(tmp_path / "good", RUN.cells, run=RUN)
+    results.write(tmp_path / "good", RUN)
     status, _, err = southwell(line.format(tmp_path), capsys)
     assert status == 2
     assert err.count("\n") == 1
