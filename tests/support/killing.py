@@ -39,13 +39,22 @@ length = 2.5
 CODES = "counted:FIRST,counted:SECOND,exact-beam"
 
 
-def start(folder: Path, *options: str) -> subprocess.Popen[str]:
-    """Begin ``verify`` of ``case.toml`` in ``folder`` with codes that write down every question they are asked."""
+def command() -> list[str]:
+    """``verify`` of ``case.toml`` with codes that write down every question they are asked."""
+    options = ["--codes", CODES, "--out", "out", "--faults", "none", "--workers", "1"]
+    return [sys.executable, "-m", "southwell", "verify", "case.toml", *options]
+
+
+def write(folder: Path) -> None:
+    """Put the case into a folder."""
     (folder / "case.toml").write_text(CASE)
-    command = [sys.executable, "-m", "southwell", "verify", "case.toml", "--codes", CODES, "--out", "out"]
-    command += ["--faults", "none", "--workers", "1", *options]
+
+
+def start(folder: Path) -> subprocess.Popen[str]:
+    """Begin ``command`` in a folder."""
+    write(folder)
     return subprocess.Popen(
-        command,
+        command(),
         cwd=folder,
         env=environment(folder),
         stdout=subprocess.PIPE,
@@ -120,7 +129,11 @@ def stored(journal: Path) -> list[str]:
     for line in journal.read_bytes().split(b"\n")[:-1] if journal.exists() else []:
         value = json.loads(line).get("value")
         if isinstance(value, list) and value[0] == "tuple" and value[1][1:] and value[1][1][0] == "Cell":
-            _, case, *_, = value[1][1]
+            (
+                _,
+                case,
+                *_,
+            ) = value[1][1]
             found.append(f"{value[1][1][5]} {case}")
     return [name for name in found if name.startswith(("first", "second"))]
 

@@ -8,7 +8,7 @@ import pytest
 
 from southwell.cases.input import atomic
 from southwell.cases.judge import results
-from southwell.cases.judge.results import Planned, Run
+from southwell.cases.judge.results import Planned
 
 from ...support.samples import SPEEDS, empty
 from ...support.samples import run as sample
