@@ -162,6 +162,8 @@ def _solve(
         controls = tuple(found[name] for name in seeded)
         run = replace(done, levels=levels, controls=controls)
         run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
+        if missing := results.gaps(run):
+            return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
         results.write(out / RESULTS, run)
         return run, None
     except KeyboardInterrupt:
