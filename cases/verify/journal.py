@@ -66,7 +66,7 @@ class Journal:
         """Say what is being run: plan, settings, versions and command. Answers from here on are of this run."""
         started = _about(run)
         before = [line for line in self.lines if line["kind"] == "run"]
-        if before[-1:] == [started]:
+        if before and msgspec.json.encode(before[-1]) == msgspec.json.encode(started):
             self.current = set(_current(self.lines))
         else:
             self._append(started)

@@ -26,7 +26,8 @@ def unique(cases: Sequence[Case | MechanismCase], codes: Mapping[str, Any], adde
     _once("case", ((v.name, _path(case)) for case in cases for v in case.variants), "leave one out, or rename it")
     tables = [name for case in cases if isinstance(case, Case) for name in case.text.compare.tables]
     columns = [(name, "this package") for name in OURS]
-    columns += [(f"{t}/{series.name}", f"table {t}") for t in dict.fromkeys(tables) for series in load(t).series]
+    for table in dict.fromkeys(tables):
+        columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
     columns += [(code.name, f"--codes {asked}") for asked, code in codes.items()]
     columns += [(one.name, f"--add {one.path}") for one in added]
     _once("code", columns, "leave one out, or give it another name")
