@@ -4,18 +4,23 @@ import io
 import os
 import sys
 from contextlib import suppress
+from typing import Any
 
 
 class _Output(io.FileIO):
     """A stream's file. A reader of a pipe that has seen enough is no error: what is written from then on is dropped."""
 
-    def write(self, data: "io.ReadableBuffer") -> int | None:  # type: ignore[name-defined]
+    def write(self, data: Any) -> int | None:
         try:
             return super().write(data)
         except BrokenPipeError:
-            with open(os.devnull, "wb") as nowhere:
-                os.dup2(nowhere.fileno(), self.fileno())
+            _nowhere(self.fileno())
             return super().write(data)
+
+
+def _nowhere(number: int) -> None:
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), number)
 
 
 def prepare() -> None:
@@ -48,7 +53,11 @@ def _open(number: int, stream: io.TextIOWrapper | None) -> io.TextIOWrapper:
 
 
 def finish() -> None:
-    """Write what is left; nothing more can be said if that fails."""
+    """Write what is left, or drop it where that fails: Python would end with a status of its own."""
     for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, ValueError):
+        try:
             stream.flush()
+        except OSError:
+            _nowhere(stream.fileno())
+            with suppress(OSError):
+                stream.flush()
