@@ -19,7 +19,7 @@ import numpy as np
 from ...core.solve import mesh_modes, mesh_sweep
 from ...references.protocol import registry as registry
 from ...references.protocol.interface import CodeError
-from ..input import library
+from ..input import atomic, library
 from ..verify.pool import Pool
 
 CASE = "park-cantilever"
@@ -98,7 +98,7 @@ def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
 
 def write(path: Path, found: Bench) -> None:
     """Keep what was measured, as JSON."""
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(found)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Bench:

@@ -11,6 +11,7 @@ from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
+from ..input import atomic
 from ..input.errors import NO_STATE, CaseError, unsteady
 
 Array = NDArray[np.float64]
@@ -73,7 +74,7 @@ def write(path: Path, blade: Condensed) -> None:
     """Keep a compressed model as JSON, matrices row by row, SI."""
     pieces = [{key: value.tolist() for key, value in vars(s).items()} for s in blade.segments]
     told = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(told)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(told)) + b"\n")
 
 
 class _Piece(msgspec.Struct, forbid_unknown_fields=True):

@@ -19,6 +19,7 @@ from ...core.modes import Modes
 from ...references.protocol.interface import CodeError
 from ...references.solid import calculix, hexahedra, timoshenko
 from ...references.solid.mesh import Bricks, clamped
+from ..input import atomic
 from ..input.errors import CaseError
 from . import solid_blades as solids
 from .condensed import names
@@ -165,7 +166,7 @@ def differences(values: Sequence[float], of: Sequence[float] | NDArray[np.float6
 
 def write(path: Path, found: Example) -> None:
     """Keep what was computed, as JSON."""
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(found)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Example:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
-from typing import Any
+from typing import Any, Literal
 
 from ...core import velocity_transformation
 from ...core.blade import Blade, straight
@@ -50,6 +50,8 @@ class Column:
         head: what its cells have in common.
         work: rows from core's references.
         origin: where its answers come from, as declared; None if nothing is.
+        due: where it owes cells: at every speed for every mode, at the highest speed, or only where it has numbers.
+        adapter: digest of the source of the code that answers; empty if it is this package's.
     """
 
     name: str
@@ -57,6 +59,8 @@ class Column:
     head: Head
     work: Callable[[Any], Rows]
     origin: Independence | None = None
+    due: Literal["everywhere", "highest speed", "somewhere"] = "everywhere"
+    adapter: str = ""
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds; without a reference there is nothing to compare with."""
@@ -83,14 +87,14 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
     head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
-    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade)))
+    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade), due="highest speed"))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         theory = CORE if computed else table.series.theory or table.source
         origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
-        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin))
+        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin, due="somewhere"))
     takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
     if codes and not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]

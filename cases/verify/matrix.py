@@ -14,10 +14,12 @@ from typing import Any
 
 from ...references.protocol.registry import code, version_of
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Level, Origin, Run, Share
+from ..judge.results import Cell, Level, Origin, Planned, Run, Share
 from . import error_budget, mechanism_columns
 from .columns import Column, Rows, columns
+from .identity import adapter
 from .mechanism_case import MechanismCase, Turning
+from .names import unique
 from .reference import references
 from .settings import settings
 from .user_results import Added, check
@@ -53,6 +55,7 @@ class _Task:
     variant: Variant | Turning
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
+    modes: int
     column: Column | None = None
     shares: Callable[[], list[Share]] | None = None
 
@@ -69,6 +72,7 @@ def run(
     timeout: float = TIMEOUT,
     added: Sequence[Added] = (),
     parts: bool = True,
+    on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
 ) -> Run:
     """Every blade of ``cases`` through every one of ``codes``, judged.
 
@@ -80,15 +84,19 @@ def run(
         timeout: seconds for one worker.
         added: results without a code, each a column more.
         parts: whether to say what core's differences are made of.
+        on_plan: told every column, before anything is solved.
 
     Raises:
-        CaseError: if core itself cannot solve a case, or results are added that are not of these cases.
+        CaseError: if core itself cannot solve a case, results are added that are not of these cases, or a name is given twice.
         UnknownCodeError: if a code is not known.
     """
     known = {name: code(name) for name in codes}
+    unique(cases, known, added)
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
     check(added, blades, [c.name for c in known.values()])
     plans = [task for case in cases for task in _tasks(case, known, timeout, added)]
+    plan = tuple(_planned(task, column) for task in plans for column in task.columns)
+    on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
@@ -126,22 +134,35 @@ def run(
             for column in task.columns
             if column.origin
         ),
+        plan=plan,
     )
+
+
+def _planned(task: _Task, column: Column) -> Planned:
+    speeds = {"everywhere": len(task.variant.speeds), "highest speed": 1, "somewhere": 0}[column.due]
+    return Planned(task.variant.name, column.head.code, speeds, task.modes if speeds else 0)
 
 
 def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float, added: Sequence[Added]) -> list[_Task]:
     """One for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         (turning,) = case.variants
-        made = tuple(mechanism_columns.columns(case, codes, timeout))
-        return [_Task(turning, made, partial(mechanism_columns.references, turning))]
+        made = _dated(mechanism_columns.columns(case, codes, timeout), codes)
+        return [_Task(turning, made, partial(mechanism_columns.references, turning), turning.count)]
     out = []
     for v in case.variants:
-        made = (*columns(case, v, codes, timeout), *added_columns(v, added, case.text.compare.target))
+        made = _dated(columns(case, v, codes, timeout), codes)
+        made += tuple(added_columns(v, added, case.text.compare.target))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        out.append(_Task(v, made, question, shares=partial(error_budget.solve, case, v)))
+        out.append(_Task(v, made, question, case.text.compare.modes, shares=partial(error_budget.solve, case, v)))
     return out
+
+
+def _dated(made: Sequence[Column], codes: dict[str, Any]) -> tuple[Column, ...]:
+    """The columns with the digests of their codes' sources."""
+    sources = {one.name: adapter(name) for name, one in codes.items()}
+    return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)
 
 
 def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:

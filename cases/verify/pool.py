@@ -5,10 +5,12 @@ They do when told to, and when the process that started them is gone, however it
 
 import os
 import signal
+import tempfile
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import suppress
 from multiprocessing import active_children, get_context, parent_process
+from pathlib import Path
 from threading import Thread, main_thread
 from time import sleep
 from types import FrameType
@@ -24,11 +26,12 @@ _orphaned = False
 
 
 class Pool(ProcessPoolExecutor):
-    """``workers`` processes, one thread of linear algebra each."""
+    """``workers`` processes, one thread of linear algebra each; their temporary files, and those of the codes they run, are
+    in ``scratch`` if it is given: who removes that folder has removed all that a killed process left."""
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, scratch: Path | None = None) -> None:
         os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
-        super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin)
+        super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(scratch,))
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """As any executor's; a task that was handed over but not begun when the stop came is not begun."""
@@ -43,7 +46,9 @@ class Pool(ProcessPoolExecutor):
         self.shutdown(wait=True, cancel_futures=True)
 
 
-def _begin() -> None:
+def _begin(scratch: Path | None) -> None:
+    if scratch:
+        os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
     Thread(target=_follow_parent, daemon=True).start()

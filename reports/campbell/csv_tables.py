@@ -2,11 +2,13 @@
 
 import csv
 from collections.abc import Iterable, Sequence
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from ...cases.campbell.diagram import Campbell
+from ...cases.input import atomic
 from ...core.participation import FAMILIES
 
 
@@ -70,9 +72,10 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
     out = []
     for name, (heads, rows) in files.items():
         path = folder / name
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(heads)
-            writer.writerows(rows)
+        text = StringIO(newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(heads)
+        writer.writerows(rows)
+        atomic.write(path, text.getvalue())
         out.append(path)
     return tuple(out)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..shared.style import house, save
 from ..shared.units import Units
@@ -38,7 +39,7 @@ def write(diagram: Campbell, folder: Path, units: Units, command: str, about: Se
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
-    page.write_text(_page(diagram, k, units, command, about), encoding="utf-8")
+    atomic.write(page, _page(diagram, k, units, command, about))
     return (page, *written)
 
 
@@ -54,7 +55,9 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
     save(figure, vector)
     with house():
-        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
     return vector, raster
 
 

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Sequence
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import POWERS, WANTED, Polynomial
+from ...cases.input import atomic
 from ...core.modes import STATIONS
 from ...core.participation import gyration, in_blade_axes, spoken
 from ..shared.style import FAINT, MUTED, WIDTH, house, key, spread, title
@@ -155,12 +157,13 @@ def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
     order, shapes = scaled(diagram, k)
     path = folder / "shapes.csv"
     parts = [f"{what}_{part}" for what in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["name", "frequency_rad_s", "omega_rad_s", "fraction", "span_m", *parts])
-        for t, shape in zip(order, shapes, strict=True):
-            about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), float(diagram.tracks.omega[k]))
-            for x, motion in zip(STATIONS, shape, strict=True):
-                numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
-                writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    text = StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["name", "frequency_rad_s", "omega_rad_s", "fraction", "span_m", *parts])
+    for t, shape in zip(order, shapes, strict=True):
+        about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), float(diagram.tracks.omega[k]))
+        for x, motion in zip(STATIONS, shape, strict=True):
+            numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
+            writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    atomic.write(path, text.getvalue())
     return path

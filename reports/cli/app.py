@@ -1,7 +1,7 @@
 """The command line: bad input is one line on standard error and status 2, never a traceback."""
 
-import os
 import sys
+import traceback
 from collections.abc import Sequence
 from importlib.metadata import version
 
@@ -11,15 +11,17 @@ from threadpoolctl import threadpool_limits
 
 from ...cases.input.errors import CaseError
 from ...references.protocol.registry import UnknownCodeError
-from .arguments import BAD_INPUT, INTERRUPTED, PASSED, UsageError
+from ..shared import streams
+from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASSED, listed
+from .arguments import IncompleteError, UsageError
 
 app = App(
     name="southwell",
-    help="""Are these natural frequencies of a rotating blade right?
+    help=f"""Are these natural frequencies of a rotating blade right?
 
     One blade through many independent codes, every difference with its uncertainty and its cause.
 
-    Exit status: 0 all within target or explained, 1 something fails or is inconclusive, 2 bad input, 130 interrupted.
+    Exit status: {listed()}.
     """,
     version=lambda: version("southwell"),
     suppress_keyboard_interrupt=False,
@@ -59,29 +61,43 @@ class _FirstUse(event.Listener):
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """The entry point; ends the process with the command's status."""
+    """The entry point; ends the process with the command's status, see ``statuses``."""
+    streams.prepare()
     if "" not in sys.path:
         sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
     event.register("numba:compile", _FirstUse())
     try:
-        if (sys.argv[1:] if arguments is None else list(arguments)) in ([], *([flag] for flag in app.help_flags)):
-            app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
-        with threadpool_limits(1):  # matrices are small: threads would wait for each other
-            status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+        status = _run(sys.argv[1:] if arguments is None else list(arguments))
         sys.stdout.flush()
     except UnusedCliTokensError as error:
         words = " ".join(error.unused_tokens or ())
-        print(
-            f"southwell: {words}: not understood here: more words than the command takes; see --help", file=sys.stderr
-        )
-        status = BAD_INPUT
+        status = _told(f"{words}: not understood here: more words than the command takes; see --help", BAD_INPUT)
     except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
-        print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
-        status = BAD_INPUT
+        status = _told(error, BAD_INPUT)
+    except IncompleteError as error:
+        status = _told(error, INCOMPLETE)
     except KeyboardInterrupt:
-        print("southwell: interrupted", file=sys.stderr)
-        status = INTERRUPTED
-    except BrokenPipeError:  # the reader of a pipe has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = PASSED
+        status = _told("interrupted", INTERRUPTED)
+    except OSError as error:
+        what = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
+        status = _told(what, BAD_INPUT)
+    except Exception as error:
+        traceback.print_exc()
+        status = _told(
+            f"internal error: {type(error).__name__}: {error}: please report it, with the lines above", INTERNAL
+        )
+    streams.finish()
     sys.exit(status)
+
+
+def _run(arguments: Sequence[str]) -> int:
+    if list(arguments) in ([], *([flag] for flag in app.help_flags)):
+        app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
+    with threadpool_limits(1):  # matrices are small: threads would wait for each other
+        return app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+
+
+def _told(what: object, status: int) -> int:
+    """Say in one line why there is no more; the status."""
+    print(f"southwell: {' '.join(str(what).split())}", file=sys.stderr)
+    return status

@@ -1,6 +1,7 @@
 """What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -10,8 +11,7 @@ from cyclopts.validators import Number
 from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
-
-PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
+from ...cases.verify import journal
 
 RESULTS = "results.jsonl"
 
@@ -35,24 +35,67 @@ Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 Flag = Annotated[bool, Parameter(negative=())]
 
 
+CONTINUE = "run the same `southwell verify` again, which continues where it was stopped"
+"""What to do about an incomplete run."""
+
+
 class UsageError(ValueError):
     """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
 
 
+@contextmanager
+def writing(out: Path) -> Iterator[None]:
+    """While a command writes in the folder ``out``, which is made if there is none and locked.
+
+    Raises:
+        UsageError: if it cannot be made or written.
+        CaseError: if another process is writing in it.
+    """
+    with ExitStack() as stack:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(journal.locked(out))
+        except OSError as error:
+            raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+        yield
+
+
+class IncompleteError(ValueError):
+    """A run that is not complete, where only a complete one will do: names it, says what is missing."""
+
+
 def finished(path: Path) -> Run:
-    """The run in a report's folder, or in its results file.
+    """The complete run in a report's folder, or in its results file.
 
     Raises:
         CaseError: if there is none.
+        IncompleteError: if it is not complete.
     """
-    file = path / RESULTS if path.is_dir() else path
+    run = found(path)
+    if run.unfinished:
+        raise IncompleteError(f"{path}: incomplete: {run.unfinished}: {CONTINUE}")
+    return run
+
+
+def found(path: Path) -> Run:
+    """The run in a report's folder, or in its results file; of a folder, the one that was begun last, complete or not.
+
+    Raises:
+        CaseError: if there is none.
+        IncompleteError: if not a single cell of it is there.
+    """
+    file = path
+    if path.is_dir():
+        file = path / journal.NAME if (path / journal.NAME).exists() else path / RESULTS
     try:
-        run = results.read(file)
+        run = journal.read(file) if file.name == journal.NAME else results.read(file)
     except OSError as error:
         told = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
         raise CaseError(f"{file}: {told}") from error
     except ValueError as error:
         raise CaseError(str(error)) from error
+    if not run.cells and run.unfinished:
+        raise IncompleteError(f"{file}: incomplete: there are no cells in it: {CONTINUE}")
     if not run.cells:
-        raise CaseError(f"{file}: no results in it: the run was cut short before its first; run `southwell verify`")
+        raise CaseError(f"{file}: no results in it: run `southwell verify`")
     return run

@@ -13,6 +13,7 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from ...cases.condense import condensed, condensing, example
 from ...cases.condense.condensed import Condensed
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..condense import page
 from ..shared.console import output
@@ -114,7 +115,7 @@ def _folder(out: Path) -> Path:
 def _write(folder: Path, text: str, blade: Condensed) -> None:
     try:
         condensed.write(folder / SEGMENTS, blade)
-        (folder / FILE).write_text(text, encoding="utf-8")
+        atomic.write(folder / FILE, text)
     except OSError as error:
         raise _unwritable(folder, error) from error
 

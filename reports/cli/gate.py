@@ -9,6 +9,7 @@ import msgspec
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError, nearest
 from ...cases.judge.results import Run
 from ...cases.regression import history
@@ -16,8 +17,10 @@ from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
 from ...cases.regression.history import Entry
 from ..ci import gate_text, junit
 from ..shared.console import output
+from ..shared.statuses import FAILED, INCOMPLETE, PASSED
+from ..shared.summary import incomplete
 from ..verification import report as matrix_report
-from .arguments import RESULTS, finished
+from .arguments import RESULTS, finished, found
 from .history import load
 
 Flag = Annotated[bool, Parameter(negative=())]
@@ -38,7 +41,8 @@ def command(
 ) -> int:
     """Compare a run with an earlier one; status 1 if anything got worse, is gone, or is no longer caught.
 
-    Frequencies that moved are listed, from and to. Times are shown with their noise, and never decide.
+    A run that is incomplete does not pass: status 3. Frequencies that moved are listed, from and to. Times are shown with
+    their noise, and never decide.
 
     Parameters
     ----------
@@ -62,7 +66,7 @@ def command(
     annotations
         Print GitHub's workflow commands, which mark the files of cases that got worse, beneath the current folder.
     """
-    run = finished(folder)
+    run = found(folder)
     after = history.entry(run, str(folder))
     if commit and not against:
         raise CaseError(f"--commit {commit}: of which history? Give it by --against")
@@ -70,19 +74,23 @@ def command(
     if partial:
         before = within(before, after)
     missed = [c.control for c in run.controls if c.missed]
-    found = compare(before, after, earlier, tolerance, missed)
+    gate = compare(before, after, earlier, tolerance, missed)
     console = output()
-    for shown in gate_text.tables(found):
+    if told := incomplete(run):
+        console.print(told, markup=False, soft_wrap=True)
+    for shown in gate_text.tables(gate):
         console.print(shown)
-    console.print(gate_text.verdict(found, strict), markup=False, soft_wrap=True)
+    console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
     if annotations:
-        for line in gate_text.annotations(found, Path()):
+        for line in gate_text.annotations(gate, Path()):
             print(line)
     if junit_file:
-        _write("--junit", junit_file, lambda: junit_file.write_bytes(junit.render(run, found, strict)))
+        _write("--junit", junit_file, lambda: atomic.write(junit_file, junit.render(run, gate, strict)))
     if summary:
-        _write("--summary", summary, lambda: _append(summary, _page(run, found, strict)))
-    return 0 if found.passed(strict) else 1
+        _write("--summary", summary, lambda: _append(summary, _page(run, gate, strict)))
+    if run.unfinished:
+        return INCOMPLETE
+    return PASSED if gate.passed(strict) else FAILED
 
 
 def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
@@ -112,9 +120,9 @@ def _is_run(path: Path) -> bool:
     return isinstance(first, dict) and "kind" in first
 
 
-def _page(run: Run, found: Comparison, strict: bool) -> str:
+def _page(run: Run, gate: Comparison, strict: bool) -> str:
     """What the run found, and what the gate did."""
-    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(found, strict), matrix_report.heat(run)]
+    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(gate, strict), matrix_report.heat(run)]
     return "\n\n".join(parts) + "\n"
 
 

@@ -15,7 +15,8 @@ from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import registry as registry
 from ..shared import console
-from .arguments import PASSED, RESULTS, UsageError, finished
+from ..shared.statuses import PASSED
+from .arguments import RESULTS, UsageError, finished
 
 
 def cases() -> int:

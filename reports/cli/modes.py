@@ -12,11 +12,12 @@ from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
 from ..shared import not_used
 from ..shared.console import output
+from ..shared.statuses import PASSED
 from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import PASSED, Accuracy, Elements, Flag, UsageError, Whole
+from .arguments import Accuracy, Elements, Flag, UsageError, Whole
 from .mounting import Mounting
 
 

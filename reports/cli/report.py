@@ -3,13 +3,17 @@
 from pathlib import Path
 
 from ...cases.judge.results import Run
+from ...cases.verify import journal
 from ..shared.console import output
+from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
-from .arguments import PASSED, RESULTS, Flag, UsageError, finished
+from .arguments import RESULTS, Flag, UsageError, found, writing
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     """Write report.md and figures anew from the results.jsonl in a folder.
+
+    Of a run that was stopped, what there is of it is shown, with status 3; the report of an earlier complete run is kept.
 
     Parameters
     ----------
@@ -20,7 +24,11 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     pdf
         Also report.pdf; needs the extra `pdf` (WeasyPrint).
     """
-    written = show(finished(folder / RESULTS), folder)
+    run = found(folder if folder.is_dir() else folder / RESULTS)
+    with writing(folder):
+        written = show(run, folder)
+    if written is None:
+        return INCOMPLETE
     if html or pdf:
         from ..verification import html as page
 
@@ -31,23 +39,29 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
                 print(page.pdf(written))
             except page.PdfError as error:
                 raise UsageError(str(error)) from error
-    return PASSED
+    return INCOMPLETE if run.unfinished else PASSED
 
 
-def show(run: Run, folder: Path) -> Path:
-    """Write the report, print what it says first; the report's path."""
+def show(run: Run, folder: Path) -> Path | None:
+    """Print what the report says first, and write it; the report's path.
+
+    None, and nothing is written, if the run is unfinished and the report there is of a complete one.
+    """
     from ..verification import (
         report as matrix_report,  # with its figures half of a command's time to start, and of every worker's
     )
 
-    report = matrix_report.write(run, folder)
+    keep = bool(run.unfinished) and (folder / RESULTS).exists()
+    report = None if keep else matrix_report.write(run, folder)
     console = output()
     for line in matrix_report.headline(run):
-        console.print(line.replace("**", ""), markup=False)
+        console.print(line.replace("**", ""), markup=False, soft_wrap=True)
     for table in terminal.matrix(run, console.width):
         console.print(table)
     console.print(terminal.legend(), style="dim", markup=False)
     if run.controls:
         console.print(terminal.controls(run))
-    console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
+    kept = f"{folder / RESULTS}: of an earlier run, unchanged"
+    told = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
+    console.print(told, markup=False, soft_wrap=True)
     return report

@@ -12,6 +12,7 @@ from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.input.properties import Mass, Sections, about_hub, about_root, sections, tip
 from ...core.blade import Blade, straight
@@ -162,5 +163,5 @@ def write(blade: Blade, folder: Path) -> list[Path]:
     values = np.column_stack([rows(blade, found), angles, blade.curve])
     written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
     lines = [",".join(COLUMNS + MORE), *written]
-    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    atomic.write(table, "\n".join(lines) + "\n")
     return [*span.write(blade, folder), table]

@@ -3,18 +3,22 @@
 import os
 import re
 import shlex
+import shutil
 import sys
 from collections.abc import Sequence
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...cases.faults import table
-from ...cases.input import library, mechanisms
+from ...cases.input import atomic, library, mechanisms
 from ...cases.input.schema import Case
 from ...cases.judge import results
-from ...cases.judge.results import Run, Setting
-from ...cases.verify import lumping, matrix, mechanism_case, user_results
+from ...cases.judge.results import Control, Level, Planned, Run, Setting
+from ...cases.verify import journal, lumping, matrix, mechanism_case, user_results
+from ...cases.verify import names as names_of
+from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
@@ -22,8 +26,12 @@ from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
 from ..ci import junit as xml
 from ..shared import console, summary
-from .arguments import INTERRUPTED, RESULTS, Count, UsageError, Whole
+from ..shared.statuses import INCOMPLETE, INTERRUPTED
+from .arguments import CONTINUE, RESULTS, Count, UsageError, Whole, writing
 from .report import show
+
+SCRATCH = "results.partial.tmp"
+"""Folder in ``--out`` for temporary files of this run and of the codes it runs."""
 
 
 def command(
@@ -39,8 +47,10 @@ def command(
     """Solve cases with every code, compare, judge, and write a report.
 
     Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive, if nothing was
-    compared, if a blade is confirmed by fewer independent groups than its case requires, or if a seeded fault is not detected;
-    interrupted, it keeps and reports what is there, status 130.
+    compared, if a blade is confirmed by fewer independent groups than its case requires, or if a seeded fault is not detected.
+
+    Answers are kept as they come: interrupted (status 130), killed or short of disk space (status 3), the same command
+    continues. Earlier results are replaced once the new ones are complete.
 
     Parameters
     ----------
@@ -49,7 +59,7 @@ def command(
     codes
         Names separated by commas (`southwell codes`), or import paths `module:attribute`; all codes by default.
     out
-        Folder for the report; results of an earlier run in it are replaced.
+        Folder for the report; only one run at a time may write in it.
     workers
         Processes to use; one a processor by default.
     add
@@ -79,20 +89,30 @@ def command(
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    path = _fresh(out)
-    results.append(path, run=about)
-    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1, seeded)
-    if run.cells:
-        show(run, out)
-        if junit:
-            _junit(run, junit)
-    if not complete:
-        kept = (
-            f"the report has the {len(run.cells)} cells that were finished" if run.cells else "nothing was finished yet"
-        )
-        print(f"southwell: interrupted: {kept}", file=sys.stderr)
-        return INTERRUPTED
-    return summary.status(run)
+    names_of.unique(chosen, dict(zip(names, known, strict=True)), files)
+    with writing(out), _journal(out) as kept:
+        run, stopped = _solve(chosen, names, files, about, kept, out, workers or os.cpu_count() or 1, seeded)
+        try:
+            if run.cells:
+                show(run, out)
+                if junit:
+                    _junit(run, junit)
+        except OSError as error:
+            stopped = stopped or Stopped(_said(error), INCOMPLETE)
+        if not stopped:
+            kept.remove()
+            return summary.status(run)
+    told = f"{len(run.cells)} cells are kept" if run.cells else "nothing was finished yet"
+    print(f"southwell: {stopped.what}: {told}; {CONTINUE}", file=sys.stderr)
+    return stopped.status
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """Why a run came to no end, in words, and the status that says so."""
+
+    what: str
+    status: int
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
@@ -114,47 +134,52 @@ def _solve(
     names: Sequence[str],
     files: Sequence[Added],
     about: Run,
-    path: Path,
+    kept: Journal,
+    out: Path,
     workers: int,
     seeded: Sequence[str],
-) -> tuple[Run, bool]:
-    """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
-    pool, watch = Pool(workers), console.Watch()
+) -> tuple[Run, Stopped | None]:
+    """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once."""
+    scratch = out / SCRATCH
+    shutil.rmtree(scratch, ignore_errors=True)  # a killed run's
+    pool, watch = Pool(workers, scratch.resolve()), console.Watch()
+    executor = Remembering(pool, kept)
+    lumped: list[Future[tuple[Level, ...]]] = []
+    tried: list[Future[list[Control]]] = []
 
-    def keep(step: matrix.Progress) -> None:
-        results.append(path, step.cells, step.levels)
-        watch.show(step)
+    def begin(plan: tuple[Planned, ...]) -> None:
+        kept.begin(replace(about, plan=plan))
+        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+        lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
+        tried.extend(executor.submit(table.run, part) for part in _shared_out(seeded, workers))
 
     try:
+        scratch.mkdir()
         with watch:
-            lumped = [
-                pool.submit(lumping.lumping, v.blade)
-                for c in chosen
-                if isinstance(c, Case)
-                for v in c.variants
-                if v.name == lumping.CASE
-            ]
-            tried = [pool.submit(table.run, part) for part in _shared_out(seeded, workers)]
-            done = matrix.run(chosen, names, pool, keep, added=files)
+            done = matrix.run(chosen, names, executor, watch.show, added=files, on_plan=begin)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
+        controls = tuple(found[name] for name in seeded)
+        run = replace(done, levels=levels, controls=controls)
+        run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
+        if missing := results.gaps(run):
+            return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
+        results.write(out / RESULTS, run)
+        return run, None
     except KeyboardInterrupt:
-        return results.read(path), False
+        stopped = Stopped("interrupted", INTERRUPTED)
     except BrokenProcessPool:
-        lost = (
-            "a worker process was killed, most likely for want of memory: try fewer --workers, or fewer cases at once"
-        )
-        print(f"southwell: {lost}", file=sys.stderr)
-        return results.read(path), False
+        stopped = Stopped("a worker process was killed, probably out of memory (try fewer --workers)", INCOMPLETE)
+    except OSError as error:
+        stopped = Stopped(_said(error), INCOMPLETE)
     finally:
         pool.stop()
-    controls = tuple(found[name] for name in seeded)
-    run = replace(about, cells=done.cells, levels=levels, controls=controls, shares=done.shares, origins=done.origins)
-    ordered = path.with_suffix(".part")
-    ordered.unlink(missing_ok=True)
-    results.append(ordered, run.cells, run.levels, run)
-    ordered.replace(path)
-    return run, True
+        shutil.rmtree(scratch, ignore_errors=True)
+    return replace(journal.read(kept.path), unfinished=stopped.what), stopped
+
+
+def _said(error: OSError) -> str:
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
 def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
@@ -178,18 +203,15 @@ def everything() -> tuple[str, ...]:
     return (*(name for name in library.names() if name not in absent), *library.mechanisms())
 
 
-def _fresh(out: Path) -> Path:
+def _journal(out: Path) -> Journal:
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        path = out / RESULTS
-        path.write_bytes(b"")
+        return Journal(out)
     except OSError as error:
         raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
-    return path
 
 
 def _junit(run: Run, path: Path) -> None:
     try:
-        path.write_bytes(xml.render(run))
+        atomic.write(path, xml.render(run))
     except OSError as error:
         raise UsageError(f"--junit {path}: cannot be written ({error.strerror}): give another file") from error

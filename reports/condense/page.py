@@ -10,6 +10,7 @@ from tabulate import tabulate
 from ...cases.condense.condensed import Condensed, body, names
 from ...cases.condense.condensing import Condensation
 from ...cases.condense.example import EXACT_TARGET, TARGET, Drawn, Example, Speed, cantilever, differences, largest
+from ...cases.input import atomic
 from ...core.modes import Modes
 from ..shared.style import house, save
 from ..shared.units import RAD_S, Units
@@ -45,7 +46,9 @@ def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
     figure = stages(drawn.bricks, drawn.cuts, drawn.segments, drawn.root, found.freedoms)
     save(figure, vector)
     with house():
-        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
     return [vector, raster]
 
 

@@ -71,7 +71,13 @@ def first(run: Run, name: str) -> dict[str, Any]:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few lines, those of the report, without its markup."""
-    lines = [*evidence.first(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    lines = [
+        summary.incomplete(run),
+        *evidence.first(run),
+        witnesses.headline(run),
+        *witnesses.missing(run),
+        controls.headline(run),
+    ]
     return [line.replace("**", "") for line in lines if line]
 
 

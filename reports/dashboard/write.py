@@ -8,6 +8,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from ...cases.input import atomic
 from ...cases.judge.results import Run
 from ...cases.regression.history import History
 from ..shared import summary
@@ -35,7 +36,7 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     for name in ASSETS:
         text = files(__package__ or "").joinpath("templates", name).read_text(encoding="utf-8")
-        (folder / name).write_text(text, encoding="utf-8")
+        atomic.write(folder / name, text)
     starts = {name: "index.html" if k == 0 else f"run-{k + 1}/index.html" for k, name in enumerate(runs)}
     for k, (name, run) in enumerate(runs.items()):
         here = folder / f"run-{k + 1}" if k else folder
@@ -44,7 +45,7 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
         _run(run, name, here, {"up": up, "runs": links, "here": name, "past": history is not None})
     if history is not None:
         shared = {"up": "", "runs": starts, "here": "", "past": True}
-        (folder / "history.html").write_text(_page("history", "History", of_history(history), shared), encoding="utf-8")
+        atomic.write(folder / "history.html", _page("history", "History", of_history(history), shared))
     return folder / "index.html"
 
 
@@ -60,7 +61,7 @@ def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
     for case in summary.cases(run):
         pages[data.page(case)] = _page("case", f"{case} · {name}", data.of_case(run, case), shared)
     for path, text in pages.items():
-        (folder / path).write_text(text, encoding="utf-8")
+        atomic.write(folder / path, text)
 
 
 def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:

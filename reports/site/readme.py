@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...cases.bench import cost as measure
+from ...cases.input import atomic
 from ...cases.judge import results
 from ...cases.judge.results import Cell, Run
 from ...cases.verify.lumping import CASE, OMEGA
@@ -83,12 +84,13 @@ def main() -> None:
     """Take the rows from a results file, if one is given, and the measurement beside it, and write the README's tables."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
-        ROWS.unlink(missing_ok=True)
-        kept = condense(results.read(path))
-        results.append(ROWS, kept.cells, run=kept)
+        run = results.read(path)
+        if run.unfinished:
+            sys.exit(f"{path}: {run.unfinished}: the tables are those of a complete run")
+        results.write(ROWS, condense(run))
         if (measured := path.with_name(bench.FILE)).exists():
             shutil.copyfile(measured, COST)
-    README.write_text(written(README.read_text(encoding="utf-8")), encoding="utf-8")
+    atomic.write(README, written(README.read_text(encoding="utf-8")))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...cases.conformance.blades import PROPERTIES
+from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run
 from ...references.defects import DEFECTS, Defect, shown
 from ...references.protocol import registry as registry
@@ -37,9 +38,9 @@ def write(run: Run, folder: Path) -> Path:
     pages.mkdir(parents=True, exist_ok=True)
     known = [registry.code(name) for name in registry.names()]
     for code in known:
-        (pages / f"{code.name}.md").write_text(page(run, code), encoding="utf-8")
+        atomic.write(pages / f"{code.name}.md", page(run, code))
     path = pages / "index.md"
-    path.write_text(index(run, known), encoding="utf-8")
+    atomic.write(path, index(run, known))
     return path
 
 

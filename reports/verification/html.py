@@ -10,6 +10,7 @@ from urllib.parse import quote
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
+from ...cases.input import atomic
 from ..shared.markdown import anchor
 from ..shared.summary import SYMBOL
 
@@ -62,7 +63,7 @@ def write(report: Path) -> Path:
         OSError: if a figure cannot be read or the file cannot be written.
     """
     path = report.with_suffix(".html")
-    path.write_text(render(report.read_text(encoding="utf-8"), report.parent), encoding="utf-8")
+    atomic.write(path, render(report.read_text(encoding="utf-8"), report.parent))
     return path
 
 
@@ -80,7 +81,8 @@ def pdf(report: Path) -> Path:
             "report.html from a browser"
         ) from error
     path = report.with_suffix(".pdf")
-    HTML(string=render(report.read_text(encoding="utf-8"), report.parent)).write_pdf(path)
+    page = HTML(string=render(report.read_text(encoding="utf-8"), report.parent))
+    atomic.through(path, page.write_pdf)
     return path
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
+from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.verify.lumping import CASE as LUMPED
 from ..condense import page
@@ -63,7 +64,7 @@ def write(run: Run, folder: Path) -> Path:
         "condensed": page.beside(folder),
         "known": closed_forms_figure.beside(folder),
     }
-    path.write_text(render(run, drawn, **beside), encoding="utf-8")
+    atomic.write(path, render(run, drawn, **beside))
     return path
 
 
@@ -120,7 +121,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first."""
-    lines = [evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
+    lines = [*_unfinished(run), evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
@@ -131,7 +132,11 @@ def headline(run: Run) -> list[str]:
 def first(run: Run) -> list[str]:
     """The answer, and after it what ``evidence`` names first, as text."""
     answer, *rest = evidence.first(run)
-    return [answer, *map(plain, rest)]
+    return [*_unfinished(run), answer, *map(plain, rest)]
+
+
+def _unfinished(run: Run) -> list[str]:
+    return [f"**{plain(told)}**"] if (told := summary.incomplete(run)) else []
 
 
 def unasked(run: Run) -> str:

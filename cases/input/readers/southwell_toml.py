@@ -11,6 +11,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from ....core.blade import Blade
+from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
 from ..toml import convert, document, finite
@@ -81,7 +82,7 @@ def write(blade: Blade, path: Path) -> None:
     lines += [f"{key} = {_toml(value)}" for key, value in data.items() if value is not None and key not in tables]
     for name, table in tables.items():
         lines += ["", f"[blade.{name}]", *(f"{k} = {_toml(v)}" for k, v in table.items() if v is not None)]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    atomic.write(path, "\n".join(lines) + "\n")
 
 
 def _toml(value: object) -> str:

@@ -125,5 +125,5 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
     one = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), change=None)))
-    results.append(tmp_path / "results.jsonl", one.cells, (), one)
+    results.write(tmp_path / "results.jsonl", one)
     assert results.read(tmp_path / "results.jsonl") == one

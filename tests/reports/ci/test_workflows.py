@@ -16,6 +16,7 @@ import yaml
 from southwell.cases.judge import results
 from southwell.cases.regression import history
 from southwell.reports.cli import app as cli
+from southwell.reports.shared import statuses
 
 ROOT = Path(__file__).parents[3]
 ACTION = ROOT / "action.yml"
@@ -169,3 +170,20 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     kept.write_text(git(origin, "show", "history:history.jsonl"), encoding="utf-8")
     assert [e.commit for e in history.read(kept).entries] == ["aaa", "bbb"]
     assert git(origin, "ls-tree", "--name-only", "main").split() == ["file"]
+
+
+@pytest.mark.skipif(BASH is None, reason="no bash")
+@pytest.mark.parametrize(("status", "expected"), [(0, 0), (1, 0), (2, 2), (3, 3), (70, 70), (130, 130), (137, 137)])
+@pytest.mark.parametrize("name", ["action.yml: Solve, compare, judge", "nightly", "gitlab-ci.yml"])
+def test_only_misses_are_left_to_the_gate(name: str, status: int, expected: int, tmp_path: Path) -> None:
+    """The line that runs ``verify`` goes on after statuses 0 and 1, and ends the script with any other."""
+    (line,) = re.findall(r"^ *(southwell verify .*)$", scripts()[name], re.MULTILINE)
+    script = f"southwell() {{ return {status}; }}\nCASES= out=. cases=() options=()\n{line}\necho went on"
+    done = subprocess.run(["bash", "-eo", "pipefail", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (expected, "" if expected else "went on\n")
+
+
+def test_the_exit_statuses_are_documented_and_told_by_help() -> None:
+    text = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+    assert all(f"| {status} | {meaning} |" in text for status, meaning in statuses.MEANING.items())
+    assert statuses.listed() in str(cli.app.help)

@@ -108,7 +108,7 @@ def test_a_reproducer_that_cannot_run_is_said_to() -> None:
 
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.append(tmp_path / arguments.RESULTS, RUN.cells, run=RUN)
+    results.write(tmp_path / arguments.RESULTS, RUN)
     with pytest.raises(SystemExit) as ended:
         cli.main(["codes", "--pages", str(tmp_path)])
     assert ended.value.code == 0
