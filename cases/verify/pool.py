@@ -28,6 +28,7 @@ class Pool(ProcessPoolExecutor):
 
     def __init__(self, workers: int) -> None:
         os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
+        os.environ["PYTHONSAFEPATH"] = "1"  # nor do they execute random.py of the current folder
         super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin)
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:

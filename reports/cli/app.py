@@ -19,7 +19,8 @@ app = App(
 
     One blade through many independent codes, every difference with its uncertainty and its cause.
 
-    Exit status: 0 all within target or explained, 1 something fails or is inconclusive, 2 bad input, 130 interrupted.
+    Exit status: 0 all within target or explained, 1 something fails or is inconclusive, 2 bad input, 3 cut short,
+    130 interrupted.
     """,
     version=lambda: version("southwell"),
     suppress_keyboard_interrupt=False,
@@ -60,8 +61,6 @@ class _FirstUse(event.Listener):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status."""
-    if "" not in sys.path:
-        sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
     event.register("numba:compile", _FirstUse())
     try:
         if (sys.argv[1:] if arguments is None else list(arguments)) in ([], *([flag] for flag in app.help_flags)):

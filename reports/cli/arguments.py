@@ -11,7 +11,8 @@ from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
 
-PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
+PASSED, BAD_INPUT, LOST, INTERRUPTED = 0, 2, 3, 130
+"""Exit statuses; 3: the run was cut short, and not by its user."""
 
 RESULTS = "results.jsonl"
 
@@ -28,6 +29,9 @@ Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
 Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
+
+Positive = Annotated[float, Parameter(validator=Number(gt=0, lte=86_400))]
+"""Seconds, or gibibytes."""
 
 Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 """A relative uncertainty."""

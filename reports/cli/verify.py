@@ -4,10 +4,11 @@ import os
 import re
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ...cases.faults import table
 from ...cases.input import library, mechanisms
@@ -20,9 +21,11 @@ from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
+from ...references.protocol.description import Description, describe
+from ...references.protocol.process import Limits
 from ..ci import junit as xml
 from ..shared import console, summary
-from .arguments import INTERRUPTED, RESULTS, Count, UsageError, Whole
+from .arguments import INTERRUPTED, LOST, RESULTS, Count, Positive, UsageError, Whole
 from .report import show
 
 
@@ -35,6 +38,8 @@ def command(
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
+    time_limit: Positive | None = None,
+    memory_limit: Positive = Limits.memory / 2**30,
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
@@ -62,10 +67,14 @@ def command(
     witnesses
         How many independent groups must confirm each blade. By default what its case says, where all codes take part; a run
         with `--codes` requires none.
+    time_limit
+        Seconds that one solution by another code may take; by default what each case says, 300 if it says nothing.
+    memory_limit
+        Memory that one solution by another code may take, in GiB, with all the processes that it starts.
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or everything())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-    known = [registry.code(name) for name in names]
+    known = describe(names)
     files = [_added(text) for text in add]
     user_results.check(files, [v for c in chosen if isinstance(c, Case) for v in c.variants], [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
@@ -81,17 +90,18 @@ def command(
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
     path = _fresh(out)
     results.append(path, run=about)
-    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1, seeded)
+    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
+    run, cut = _solve(chosen, known, files, about, path, workers or os.cpu_count() or 1, seeded, limits)
     if run.cells:
         show(run, out)
         if junit:
             _junit(run, junit)
-    if not complete:
+    if cut:
         kept = (
             f"the report has the {len(run.cells)} cells that were finished" if run.cells else "nothing was finished yet"
         )
-        print(f"southwell: interrupted: {kept}", file=sys.stderr)
-        return INTERRUPTED
+        print(f"southwell: {cut}: {kept}", file=sys.stderr)
+        return INTERRUPTED if cut == "interrupted" else LOST
     return summary.status(run)
 
 
@@ -111,14 +121,15 @@ def _added(text: str) -> Added:
 
 def _solve(
     chosen: Sequence[Case | MechanismCase],
-    names: Sequence[str],
+    codes: Sequence[Description],
     files: Sequence[Added],
     about: Run,
     path: Path,
     workers: int,
     seeded: Sequence[str],
-) -> tuple[Run, bool]:
-    """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
+    limits: Mapping[str, Any],
+) -> tuple[Run, str]:
+    """The run, and what cut it short if anything did; rows go to ``path`` as they come, and in order once all are there."""
     pool, watch = Pool(workers), console.Watch()
 
     def keep(step: matrix.Progress) -> None:
@@ -135,17 +146,14 @@ def _solve(
                 if v.name == lumping.CASE
             ]
             tried = [pool.submit(table.run, part) for part in _shared_out(seeded, workers)]
-            done = matrix.run(chosen, names, pool, keep, added=files)
+            done = matrix.run(chosen, codes, pool, keep, added=files, **limits)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
     except KeyboardInterrupt:
-        return results.read(path), False
+        return results.read(path), "interrupted"
     except BrokenProcessPool:
-        lost = (
-            "a worker process was killed, most likely for want of memory: try fewer --workers, or fewer cases at once"
-        )
-        print(f"southwell: {lost}", file=sys.stderr)
-        return results.read(path), False
+        lost = "a worker process was killed, probably out of memory (try fewer --workers, or fewer cases at once)"
+        return results.read(path), lost
     finally:
         pool.stop()
     controls = tuple(found[name] for name in seeded)
@@ -154,7 +162,7 @@ def _solve(
     ordered.unlink(missing_ok=True)
     results.append(ordered, run.cells, run.levels, run)
     ordered.replace(path)
-    return run, True
+    return run, ""
 
 
 def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
