@@ -22,7 +22,9 @@ T = TypeVar("T")
 Pair = tuple[float, float]
 """Real and imaginary part."""
 
-Line = Annotated[str, Meta(max_length=300, pattern=r"^[^\x00-\x1f\x7f]*$")]
+PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
+
+Line = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
 Name = Annotated[str, Meta(max_length=60, pattern=r"^[^\W_][\w.+-]*$")]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]
 Elements = Annotated[int, Meta(ge=1, le=10**7)]
@@ -80,7 +82,7 @@ class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     digits: Annotated[int, Meta(ge=1, le=17)]
     bracket: bool
     independence: Origin | None
-    version: Annotated[str, Meta(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")] | None
+    version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
     page: str
 
 

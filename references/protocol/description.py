@@ -135,13 +135,21 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
         else None
     )
     effects = Model(**{f: getattr(said.model, f) for f in said.model.__struct_fields__})
-    known = Description(asked, **{**facts, "independence": origin, "model": effects, "refused": tuple(refused)})
+    known = Description(
+        asked,
+        **{
+            **facts,
+            "independence": origin,
+            "model": effects,
+            "refused": tuple(why and one_line(why) for why in refused),
+        },
+    )
     return replace(known, failure=Failure("nonsense", one_line(trouble))) if trouble else known
 
 
 def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
     """What a code declares, as plain data; what raises is the code's own fault."""
-    solves = hasattr(code, "solve")
+    solves, origin = hasattr(code, "solve"), independence(code)
     facts = {
         "name": code.name,
         "title": getattr(code, "title", ""),
@@ -157,9 +165,9 @@ def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
         "motions": motions(code),
         "digits": digits(code),
         "bracket": brackets(code),
-        "independence": independence(code) and vars(independence(code)),
+        "independence": vars(origin) if isinstance(origin, Independence) else origin,
         "version": None,
-        "page": inspect.getdoc(sys.modules.get(type(code).__module__)) or "",
+        "page": (inspect.getdoc(sys.modules.get(type(code).__module__)) or "").encode("utf-8", "replace").decode(),
     }
     try:
         facts["version"] = code.version()

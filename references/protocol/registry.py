@@ -9,7 +9,7 @@ import sys
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.metadata import entry_points
-from typing import Any, Protocol
+from typing import Any, Protocol, TypedDict
 
 from .mechanism_interface import takes_mechanisms
 from .process import Failure, one_line, raised
@@ -38,8 +38,11 @@ OURS = {
 """Name → ``module:attribute`` of the codes that come with the package."""
 
 
-Address = dict[str, str | None]
-"""Where a worker process finds a code."""
+class Address(TypedDict):
+    """Where a worker process finds a code: its import path, and a folder that is searched last for its module."""
+
+    code: str
+    folder: str | None
 
 
 class UnknownCodeError(ValueError):
@@ -108,12 +111,17 @@ def code(name: str) -> Any:
     """
     path = locate(name)
     module, _, attribute = path.partition(":")
+    advice = "is it module:attribute, and installed or in this folder?"
+    if not module or module.startswith("."):
+        raise UnknownCodeError(f"code: {name!r}: no module is named: {advice}")
     try:
-        found = getattr(import_module(module), attribute)
-    except (ImportError, AttributeError, ValueError) as error:
-        raise UnknownCodeError(
-            f"code: {name!r} cannot be loaded from {path}: {error}: is it module:attribute, and installed or in this folder?"
-        ) from error
+        holder = import_module(module)
+    except ImportError as error:
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}: {advice}") from error
+    if not hasattr(holder, attribute):
+        told = f"module {module!r} has no attribute {attribute!r}"
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {advice}")
+    found = getattr(holder, attribute)
     needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
     if missing:
