@@ -1,7 +1,7 @@
 """All checks asked of a foreign code in a process of its own; a check that ends it fails, and the others go on in a new one."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct
@@ -10,7 +10,10 @@ from ...references.protocol import boundary, registry
 from ...references.protocol.boundary import NonsenseError
 from ...references.protocol.child import Reply, blunder, serve
 from ...references.protocol.process import Failure, Limits, converse, one_line
-from .suite import CHECKS, Outcome, judge
+from .suite import CHECKS, Check, Outcome, judge
+
+LIMITS = Limits(seconds=600.0)
+"""Of one check, which is several solutions."""
 
 
 class _Judged(Struct, frozen=True, forbid_unknown_fields=True):
@@ -18,11 +21,12 @@ class _Judged(Struct, frozen=True, forbid_unknown_fields=True):
     reason: Annotated[str, Meta(max_length=100_000)]
 
 
-def outcomes(name: str, limits: Limits = Limits()) -> list[Outcome]:  # noqa: B008
-    """What came of every check of ``suite.CHECKS``, in their order.
+def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMITS) -> list[Outcome]:
+    """What came of checks, in their order.
 
     Args:
         name: of the code, or its import path.
+        checks: those of ``suite.CHECKS`` that are asked.
         limits: of each check.
 
     Raises:
@@ -30,8 +34,8 @@ def outcomes(name: str, limits: Limits = Limits()) -> list[Outcome]:  # noqa: B0
     """
     done: list[Outcome] = []
     where = registry.address(name)
-    while len(done) < len(CHECKS):
-        asked = list(range(len(done), len(CHECKS)))
+    while len(done) < len(checks):
+        asked = [CHECKS.index(check) for check in checks[len(done) :]]
         request = json.dumps({**where, "checks": asked}).encode()
         lines, ended = converse(__name__, request, len(asked), limits)
         for number, line in enumerate(lines):
@@ -42,11 +46,11 @@ def outcomes(name: str, limits: Limits = Limits()) -> list[Outcome]:  # noqa: B0
                 ended = Failure("nonsense", one_line(error))
                 break
             verdict, reason = ("fail", said.reason) if isinstance(said, Failure) else (said.verdict, said.reason)
-            done.append(Outcome(CHECKS[len(done)], verdict, one_line(reason)))
+            done.append(Outcome(checks[len(done)], verdict, one_line(reason)))
         else:
             if len(lines) == len(asked):
                 break
-        done.append(Outcome(CHECKS[len(done)], "fail", ended.reason))
+        done.append(Outcome(checks[len(done)], "fail", ended.reason))
     return done
 
 

@@ -75,6 +75,7 @@ class Column:
 def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: Limits) -> list[Column]:
     """All columns of one blade; ``limits`` of each solution by a foreign code.
 
+    ``refused`` of each code is its answer to this blade; a code that was not shown it is asked when it is to solve it.
     Codes that take mechanisms only have none, unless there are no others.
     """
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
@@ -110,6 +111,8 @@ def _mechanisms_only(case: str, code: Description, target: float) -> Column:
 def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column:
     if code.failure:
         return Column(code.name, FULL, head, failing_work(head, code.failure))
+    if code.refused and code.refused[0]:
+        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", code.refused[0]))
     name, model = code.asked, felt(code.model, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)

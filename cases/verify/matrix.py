@@ -3,7 +3,7 @@
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -12,6 +12,7 @@ from pathlib import Path
 from platform import python_version
 from typing import Any
 
+from ...core.blade import Blade
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
 from ..input.errors import CaseError
@@ -86,11 +87,11 @@ def run(
         CaseError: if core itself cannot solve a case, or results are added that are not of these cases.
         UnknownCodeError: if a code is not known.
     """
-    found = iter(describe([code for code in codes if isinstance(code, str)]))
-    known = [next(found) if isinstance(code, str) else code for code in codes]
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
+    known = _known(codes, [v.blade for v in blades])
     check(added, blades, [c.name for c in known])
-    plans = [task for case in cases for task in _tasks(case, known, _limits(case, seconds, memory), added)]
+    shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
+    plans = [task for case in cases for task in _tasks(case, known, shown, _limits(case, seconds, memory), added)]
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
@@ -135,6 +136,18 @@ def run(
     )
 
 
+def _known(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
+    """Descriptions of codes that have been shown every blade of the run."""
+    ready = {
+        c.asked: c
+        for c in codes
+        if isinstance(c, Description) and (c.failure or not c.blades or len(c.refused) == len(blades))
+    }
+    names = [c if isinstance(c, str) else c.asked for c in codes]
+    ready |= {c.asked: c for c in describe([name for name in names if name not in ready], blades)}
+    return [ready[name] for name in names]
+
+
 def _answer(future: Future[Any]) -> Any:
     """What a task gave, or that it failed by an error of ours: that costs its cells, and no others."""
     try:
@@ -151,7 +164,11 @@ def _limits(case: Case | MechanismCase, seconds: float | None, memory: int) -> L
 
 
 def _tasks(
-    case: Case | MechanismCase, codes: Sequence[Description], limits: Limits, added: Sequence[Added]
+    case: Case | MechanismCase,
+    codes: Sequence[Description],
+    shown: Mapping[str, Sequence[Description]],
+    limits: Limits,
+    added: Sequence[Added],
 ) -> list[_Task]:
     """One for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
@@ -160,7 +177,7 @@ def _tasks(
         return [_Task(turning, made, partial(mechanism_columns.references, turning))]
     out = []
     for v in case.variants:
-        made = (*columns(case, v, codes, limits), *added_columns(v, added, case.text.compare.target))
+        made = (*columns(case, v, shown[v.name], limits), *added_columns(v, added, case.text.compare.target))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
         out.append(_Task(v, made, question, shares=partial(error_budget.solve, case, v)))

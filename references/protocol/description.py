@@ -42,7 +42,8 @@ class Description:
         name, title, shares, model, hint, levels, order, motions, digits, bracket, independence: as declared.
         blades, mechanisms: whether it solves them.
         version: None if it is not installed.
-        refused: for each blade that was shown to it, why it does not take it; None if it does.
+        refused: for each blade that was shown to it, why it does not take it; None if it does, or gave no reason that is one
+            (a worker that is to solve the blade says so again).
         page: its module's docstring.
         failure: what it did instead of answering; None if it is as it should be. Of the rest only ``asked`` and ``name`` are
             sure then.
@@ -179,9 +180,10 @@ def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
 
 def _refusal(code: Any, blade: Blade) -> str | None:
     try:
-        return code.unsupported(blade)
-    except BaseException as error:
-        return f"unsupported(): {raised(error)}"
+        why = code.unsupported(blade)
+    except BaseException:  # an exit, too
+        return None
+    return why if isinstance(why, str) else None
 
 
 def _plain(value: Any) -> Any:

@@ -74,9 +74,10 @@ def command(
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or everything())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-    known = describe(names)
+    blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+    known = describe(names, [v.blade for v in blades])
     files = [_added(text) for text in add]
-    user_results.check(files, [v for c in chosen if isinstance(c, Case) for v in c.variants], [c.name for c in known])
+    user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     about = Run(
         cells=(),

@@ -14,7 +14,7 @@ from southwell.cases.judge.results import Cell, Level
 from southwell.cases.verify.columns import Column, columns
 from southwell.cases.verify.reference import Reference, References, references
 from southwell.references.protocol import registry
-from southwell.references.protocol.description import Description, describe
+from southwell.references.protocol.description import describe
 from southwell.references.protocol.process import Limits
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
@@ -29,14 +29,9 @@ CASES: dict[str, tuple[Case, Variant]] = {
 
 
 @cache
-def codes() -> tuple[Description, ...]:
-    return describe(tuple(CODES))
-
-
-@cache
 def plan(blade: str) -> dict[str, Column]:
     case, variant = CASES[blade]
-    return {c.name: c for c in columns(case, variant, codes(), Limits())}
+    return {c.name: c for c in columns(case, variant, describe(tuple(CODES), [variant.blade]), Limits())}
 
 
 @cache
