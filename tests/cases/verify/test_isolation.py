@@ -1,5 +1,7 @@
 """A whole run with codes that misbehave: their cells fail, their neighbours' do not, and nothing looks complete that is not."""
 
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
@@ -141,3 +143,16 @@ def test_a_lost_pool_worker_is_no_interruption(
     assert ended.value.code == LOST == 3
     assert "a worker process was killed" in said
     assert "interrupted" not in said
+
+
+def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, folder: Path) -> None:
+    """As installed: neither the command, nor its pool's processes, nor the codes' workers."""
+    (folder / "southwell").mkdir()
+    for name in ("random.py", "json.py", "numpy.py", "ctypes.py", "southwell/__init__.py"):
+        (folder / name).write_text("import os\nos._exit(9)\n", encoding="utf-8")
+    command = [str(Path(sys.executable).with_name("southwell")), "verify", case.path, "--codes", "yoo-shin"]
+    ended = subprocess.run(
+        [*command, "--faults", "none", "--workers", "1"], capture_output=True, text=True, timeout=200
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "pass" in ended.stdout
