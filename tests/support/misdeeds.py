@@ -131,7 +131,7 @@ PIPES = {
     "patches_json": ("json.dumps = lambda *a, **k: '[1, 2]'", "not an answer: b'[1, 2]'"),
     "endless_line": ("json.dumps = lambda *a, **k: 'x' * 2**25", "more than 16 MiB"),
     "deep_json": ("json.dumps = lambda *a, **k: '[' * 10**6", "not an answer"),
-    "eats_memory": ("x = [b'x' * (1 + n) * 2**30 for n in range(3)]", "GiB of memory"),
+    "eats_memory": ("x = [b'x' * 2**26 for _ in range(40)]; time.sleep(600)", "GiB of memory"),
 }  # fmt: skip
 """What spoils the answers' pipe, or is stopped."""
 
@@ -152,7 +152,9 @@ def _table() -> tuple[Misdeed, ...]:
         Misdeed("hang", "import", HANGS["hang"], "all", "no answer within"),
         Misdeed("forks_twice", "import", HARMLESS["forks_twice"], "none"),
         Misdeed("changes_folder", "import", HARMLESS["changes_folder"], "none"),
-        Misdeed("patches_numpy", "import", "numpy.isfinite = numpy.diff = lambda *a: 1 / 0", "none"),
+        Misdeed(
+            "patches_numpy", "import", "numpy.isfinite = numpy.diff = lambda *a: 1 / 0", "all", "ZeroDivisionError"
+        ),
         Misdeed("patches_json", "import", PIPES["patches_json"][0], "all", "not an answer"),
         Misdeed("clears_modules", "import", "sys.modules.clear()", "all"),
         Misdeed("exit_0", "version", "os._exit(0)", "all", "exit status 0"),

@@ -19,7 +19,7 @@ from ...support.misdeeds import ANSWERS, DECLARATIONS, TABLE, Misdeed, answering
 
 BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
-LIMITS = Limits(seconds=4.0, memory=3 * 2**29)
+LIMITS = Limits(seconds=4.0, memory=3 * 2**28)
 TOKEN = f"southwell-misdeeds-{os.getpid()}"
 
 LEFT = {"none": "MMM", "one": "MFM", "rest": "MFF", "all": "FFF"}
