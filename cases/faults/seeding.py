@@ -150,8 +150,8 @@ def known(trial: Trial) -> tuple[Description, ...]:
 
 
 @lru_cache
-def _described(trial: Trial, _: tuple[str, ...]) -> tuple[Description, ...]:
-    _, variant = _variant(trial)
+def _described(trial: Trial, _paths: tuple[str, ...]) -> tuple[Description, ...]:
+    variant = _variant(trial)[1]
     return describe(trial.codes, [variant.blade])
 
 
