@@ -129,6 +129,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     target: Annotated[
         float, Meta(gt=0, description="largest difference: of frequencies relative, of damping ratios")
     ] = 1e-8
+    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):

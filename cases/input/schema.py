@@ -49,6 +49,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     ] = get_args(Motion)
     target: Annotated[float, Meta(gt=0, description="largest difference, relative")] = 1e-3
     tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
         Meta(description="how many independent groups must agree with core: a number, or one for each variant by name"),

@@ -1,8 +1,8 @@
 """Names that tell the rows of a run apart: no two of its blades, and no two of its columns, may have the same."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
+from ...references.protocol.description import Description
 from ...references.published import load
 from ..input.errors import CaseError
 from ..input.schema import Case
@@ -14,11 +14,11 @@ OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed table
 """Columns of this package that are no codes, as in results and as in tables."""
 
 
-def unique(cases: Sequence[Case | MechanismCase], codes: Mapping[str, Any], added: Sequence[Added]) -> None:
+def unique(cases: Sequence[Case | MechanismCase], codes: Sequence[Description], added: Sequence[Added]) -> None:
     """Every name is that of one thing only.
 
     Args:
-        codes: by the name or import path they were asked for.
+        codes: as described.
 
     Raises:
         CaseError: one line that names both of two with the same name.
@@ -28,7 +28,7 @@ def unique(cases: Sequence[Case | MechanismCase], codes: Mapping[str, Any], adde
     columns = [(name, "this package") for name in OURS]
     for table in dict.fromkeys(tables):
         columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
-    columns += [(code.name, f"--codes {asked}") for asked, code in codes.items()]
+    columns += [(code.name, f"--codes {code.asked}") for code in codes]
     columns += [(one.name, f"--add {one.path}") for one in added]
     _once("code", columns, "leave one out, or give it another name")
 

@@ -6,9 +6,9 @@ They do when told to, and when the process that started them is gone, however it
 import os
 import signal
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from threading import Thread, main_thread
@@ -18,6 +18,8 @@ from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
 T = TypeVar("T")
+
+SAFE_PATH = "PYTHONSAFEPATH"
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -35,7 +37,8 @@ class Pool(ProcessPoolExecutor):
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """As any executor's; a task that was handed over but not begun when the stop came is not begun."""
-        return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
+        with _safe_path():  # processes are started when they are first needed
+            return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
 
     def stop(self) -> None:
         """Interrupt every process and drop what is pending; returns when all are gone."""
@@ -46,7 +49,21 @@ class Pool(ProcessPoolExecutor):
         self.shutdown(wait=True, cancel_futures=True)
 
 
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Python processes that are started meanwhile execute no ``random.py`` of the current folder."""
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        os.environ.pop(SAFE_PATH)
+        if before is not None:
+            os.environ[SAFE_PATH] = before
+
+
 def _begin(scratch: Path | None) -> None:
+    os.environ.pop(SAFE_PATH, None)  # it was meant for this process, and not for what foreign codes start
     if scratch:
         os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     for number in (signal.SIGINT, signal.SIGTERM):

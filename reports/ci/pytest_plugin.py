@@ -92,7 +92,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     try:
         some = [select(n) for n in wanted.split(",")] if wanted else None
         cases = [select(n) for n in yours.cases] or some or _all()
-        unique(cases, {}, [])
+        unique(cases, [], [])
         only = {v.name for c in some or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error

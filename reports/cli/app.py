@@ -63,8 +63,6 @@ class _FirstUse(event.Listener):
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status, see ``statuses``."""
     streams.prepare()
-    if "" not in sys.path:
-        sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
     event.register("numba:compile", _FirstUse())
     try:
         status = _run(sys.argv[1:] if arguments is None else list(arguments))

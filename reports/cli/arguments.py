@@ -29,6 +29,9 @@ Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
 
+Positive = Annotated[float, Parameter(validator=Number(gt=0, lte=86_400))]
+"""Seconds, or gibibytes."""
+
 Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 """A relative uncertainty."""
 

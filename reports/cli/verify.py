@@ -5,11 +5,12 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ...cases.faults import table
 from ...cases.input import atomic, library, mechanisms
@@ -24,10 +25,12 @@ from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
+from ...references.protocol.description import Description, describe
+from ...references.protocol.process import Limits
 from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
-from .arguments import CONTINUE, RESULTS, Count, UsageError, Whole, writing
+from .arguments import CONTINUE, RESULTS, Count, Positive, UsageError, Whole, writing
 from .report import show
 
 SCRATCH = "results.partial.tmp"
@@ -43,6 +46,8 @@ def command(
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
+    time_limit: Positive | None = None,
+    memory_limit: Positive = Limits.memory / 2**30,
 ) -> int:
     """Solve cases with every code, compare, judge, and write a report.
 
@@ -72,12 +77,17 @@ def command(
     witnesses
         How many independent groups must confirm each blade. By default what its case says, where all codes take part; a run
         with `--codes` requires none.
+    time_limit
+        Seconds that one solution by another code may take; by default what each case says, 300 if it says nothing.
+    memory_limit
+        Memory that one solution by another code may take, in GiB, with all the processes that it starts.
     """
     chosen = [_chosen(name) for name in dict.fromkeys(case or everything())]
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-    known = [registry.code(name) for name in names]
+    blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+    known = describe(names, [v.blade for v in blades])
     files = [_added(text) for text in add]
-    user_results.check(files, [v for c in chosen if isinstance(c, Case) for v in c.variants], [c.name for c in known])
+    user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     about = Run(
         cells=(),
@@ -89,9 +99,10 @@ def command(
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    names_of.unique(chosen, dict(zip(names, known, strict=True)), files)
+    names_of.unique(chosen, known, files)
+    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
     with writing(out), _journal(out) as kept:
-        run, stopped = _solve(chosen, names, files, about, kept, out, workers or os.cpu_count() or 1, seeded)
+        run, stopped = _solve(chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits)
         try:
             if run.cells:
                 show(run, out)
@@ -131,13 +142,14 @@ def _added(text: str) -> Added:
 
 def _solve(
     chosen: Sequence[Case | MechanismCase],
-    names: Sequence[str],
+    codes: Sequence[Description],
     files: Sequence[Added],
     about: Run,
     kept: Journal,
     out: Path,
     workers: int,
     seeded: Sequence[str],
+    limits: Mapping[str, Any],
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once."""
     scratch = out / SCRATCH
@@ -156,7 +168,7 @@ def _solve(
     try:
         scratch.mkdir()
         with watch:
-            done = matrix.run(chosen, names, executor, watch.show, added=files, on_plan=begin)
+            done = matrix.run(chosen, codes, executor, watch.show, added=files, on_plan=begin, **limits)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
         controls = tuple(found[name] for name in seeded)

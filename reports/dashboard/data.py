@@ -3,11 +3,12 @@
 import hashlib
 import re
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
-from ...references.protocol.registry import UnknownCodeError
+from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
 from ..shared.units import BY_KEY, Units
@@ -231,10 +232,10 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
 
 def _known(name: str) -> dict[str, str]:
     """What the adapter says of itself; nothing of a code that is not known here, as in another's results."""
-    if name not in registry.names():
-        return {}
-    try:
-        code = registry.code(name)
-    except UnknownCodeError:
-        return {}
-    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint}
+    code = _described().get(name)
+    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint} if code else {}
+
+
+@lru_cache
+def _described() -> dict[str, Description]:
+    return {code.asked: code for code in describe(registry.names()) if not code.failure}

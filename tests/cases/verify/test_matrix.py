@@ -56,7 +56,7 @@ def case(tmp_path: Path):
 
 def solve(case: Case, *codes: str, timeout: float = 60.0) -> Run:
     with ThreadPoolExecutor(2) as executor:
-        return matrix.run([case], codes, executor, timeout=timeout)
+        return matrix.run([case], codes, executor, seconds=timeout)
 
 
 def of(run: Run, code: str) -> list[Cell]:
