@@ -11,6 +11,9 @@ from typing import Any, Literal
 
 import msgspec
 
+from ...core.regular_files import LARGEST_DATA, read_bytes
+from . import checks
+
 Verdict = Literal["pass", "fail", "inconclusive", "known difference", "estimate", "not applicable", "not run"]
 Unit = Literal["rad_s", "rpm", "gamma"]
 
@@ -225,15 +228,20 @@ def read(path: Path) -> Run:
     """
     rows: dict[type, list[Any]] = {kind: [] for kind in KINDS.values()}
     about: dict[str, Any] = {}
-    for number, line in enumerate(path.read_bytes().split(b"\n")[:-1], 1):
+    for number, line in enumerate(read_bytes(path, LARGEST_DATA).split(b"\n")[:-1], 1):
         try:
             data = msgspec.json.decode(line)
             kind = data.pop("kind")
             if kind == "run":
-                about = {"versions": data["versions"], "command": data["command"]}
+                about = {
+                    "versions": msgspec.convert(data["versions"], dict[str, str]),
+                    "command": msgspec.convert(data["command"], str),
+                }
             else:
-                rows[KINDS[kind]].append(msgspec.convert(data, KINDS[kind]))
-        except (msgspec.DecodeError, AttributeError, KeyError, TypeError) as error:
+                row = msgspec.convert(data, KINDS[kind])
+                checks.check(row)
+                rows[KINDS[kind]].append(row)
+        except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
             raise ValueError(
                 f"{path}: line {number}: not a result ({error}): was it written by another version?"
             ) from error

@@ -3,15 +3,21 @@
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
 from numba.core import event
 from threadpoolctl import threadpool_limits
 
+from ...cases.input import files
 from ...cases.input.errors import CaseError
 from ...references.protocol.registry import UnknownCodeError
+from ..shared.console import LogSafe
 from .arguments import BAD_INPUT, INTERRUPTED, PASSED, UsageError
+
+OUTSIDE = "--allow-outside"
+"""An option of every command, wherever it stands."""
 
 app = App(
     name="southwell",
@@ -21,6 +27,7 @@ app = App(
 
     Exit status: 0 all within target or explained, 1 something fails or is inconclusive, 2 bad input, 130 interrupted.
     """,
+    help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
     version=lambda: version("southwell"),
     suppress_keyboard_interrupt=False,
 )
@@ -60,11 +67,23 @@ class _FirstUse(event.Listener):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    with (
+        redirect_stdout(LogSafe(sys.stdout)),  # pyright: ignore[reportArgumentType]
+        redirect_stderr(LogSafe(sys.stderr)),  # pyright: ignore[reportArgumentType]
+        files.outside_allowed(OUTSIDE in given),
+    ):
+        status = _status([word for word in given if word != OUTSIDE])
+    sys.exit(status)
+
+
+def _status(arguments: list[str]) -> int:
+    """Run a command; its exit status."""
     if "" not in sys.path:
         sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
     event.register("numba:compile", _FirstUse())
     try:
-        if (sys.argv[1:] if arguments is None else list(arguments)) in ([], *([flag] for flag in app.help_flags)):
+        if arguments in ([], *([flag] for flag in app.help_flags)):
             app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
         with threadpool_limits(1):  # matrices are small: threads would wait for each other
             status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
@@ -84,4 +103,4 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:  # the reader of a pipe has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = PASSED
-    sys.exit(status)
+    return status

@@ -1,5 +1,6 @@
 """What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -21,11 +22,13 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
     try:
         return int(tokens[0].value)
     except ValueError:
-        raise ValueError(f"{tokens[0].value!r} is not a whole number: give one, as in 10") from None
+        raise ValueError(f"{tokens[0].value[:40]!r} is not a whole number: give one, as in 10") from None
 
 
-Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1_000_000))]
 Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
+Workers = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1024))]
+
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
 
@@ -45,7 +48,7 @@ def finished(path: Path) -> Run:
     Raises:
         CaseError: if there is none.
     """
-    file = path / RESULTS if path.is_dir() else path
+    file = path / RESULTS if os.path.isdir(path) else path
     try:
         run = results.read(file)
     except OSError as error:

@@ -17,6 +17,7 @@ from ...cases.input.properties import Mass, Sections, about_hub, about_root, sec
 from ...core.blade import Blade, straight
 from ..shared import not_used
 from ..shared.console import output
+from ..shared.paths import file_name
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
 
@@ -64,7 +65,7 @@ def command(
         not_used.show(subject.unused, console)
         console.print(stations(subject.blade, None if all else ROWS))
         if out is not None:
-            folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+            folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             try:
                 written = write(subject.blade, folder)
             except OSError as error:

@@ -22,7 +22,7 @@ from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
 from ..ci import junit as xml
 from ..shared import console, summary
-from .arguments import INTERRUPTED, RESULTS, Count, UsageError, Whole
+from .arguments import INTERRUPTED, RESULTS, Count, UsageError, Workers
 from .report import show
 
 
@@ -30,7 +30,7 @@ def command(
     *case: str,
     codes: str | None = None,
     out: Path = Path("southwell-report"),
-    workers: Whole | None = None,
+    workers: Workers | None = None,
     add: tuple[str, ...] = (),
     junit: Path | None = None,
     faults: str = "fast",
@@ -104,7 +104,7 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
 
 def _added(text: str) -> Added:
     name, equals, path = text.partition("=")
-    if not (equals and path and re.fullmatch(r"\w[\w .+-]*", name)):
+    if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
         raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
     return user_results.read(name, Path(path))
 

@@ -32,7 +32,7 @@ def beside(folder: Path) -> str:
     path = folder / PAGE
     if not path.exists():
         return ""
-    text = re.sub(r"\$\$.*?\$\$\n\n", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    text = re.sub(r"\$\$.*?\$\$\n\n", "", read_bytes(path).decode(errors="replace"), flags=re.DOTALL)
     return re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 
