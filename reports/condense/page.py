@@ -10,8 +10,8 @@ from tabulate import tabulate
 from ...cases.condense.condensed import Condensed, body, names
 from ...cases.condense.condensing import Condensation
 from ...cases.condense.example import EXACT_TARGET, TARGET, Drawn, Example, Speed, cantilever, differences, largest
-from ...core.regular_files import read_bytes
 from ...core.modes import Modes
+from ...core.regular_files import read_bytes
 from ..shared.style import house, save
 from ..shared.units import RAD_S, Units
 from .figure import stages

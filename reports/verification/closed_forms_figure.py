@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from ...cases.closed_forms.closed_forms import ClosedForm, differences
+from ...core.regular_files import read_bytes
 from ..shared.style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, house, title
 from ..shared.style import beside as labels
 
