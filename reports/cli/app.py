@@ -11,7 +11,7 @@ from numba.core import event
 from threadpoolctl import threadpool_limits
 
 from ...cases.input import files
-from ...cases.input.errors import CaseError
+from ...cases.input.errors import CaseError, brief
 from ...references.protocol.registry import UnknownCodeError
 from ..shared.console import LogSafe
 from .arguments import BAD_INPUT, INTERRUPTED, PASSED, UsageError
@@ -89,13 +89,13 @@ def _status(arguments: list[str]) -> int:
             status = app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        words = " ".join(error.unused_tokens or ())
+        words = brief(" ".join(error.unused_tokens or ()))
         print(
             f"southwell: {words}: not understood here: more words than the command takes; see --help", file=sys.stderr
         )
         status = BAD_INPUT
     except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
-        print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"southwell: {brief(str(error))}", file=sys.stderr)
         status = BAD_INPUT
     except KeyboardInterrupt:
         print("southwell: interrupted", file=sys.stderr)

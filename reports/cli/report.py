@@ -41,6 +41,15 @@ def show(run: Run, folder: Path) -> Path:
     )
 
     report = matrix_report.write(run, folder)
+    show_tables(run)
+    output().print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
+    return report
+
+
+def show_tables(run: Run) -> None:
+    """The headline, the matrix and the controls on standard output."""
+    from ..verification import report as matrix_report
+
     console = output()
     for line in matrix_report.headline(run):
         console.print(line.replace("**", ""), markup=False)
@@ -49,5 +58,3 @@ def show(run: Run, folder: Path) -> Path:
     console.print(terminal.legend(), style="dim", markup=False)
     if run.controls:
         console.print(terminal.controls(run))
-    console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
-    return report
