@@ -115,7 +115,7 @@ def _body(found: Mass) -> str:
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
     """Facts in a table, and how the blade was read."""
     table = Table(
-        box=None, show_header=False, pad_edge=False, title=blade.name, title_justify="left", title_style="bold"
+        box=None, show_header=False, pad_edge=False, title=escape(blade.name), title_justify="left", title_style="bold"
     )
     table.add_column(style="dim")
     table.add_column(overflow="fold")
