@@ -474,10 +474,9 @@ def batch(seed: int, first: int, last: int, progress: Path) -> None:
             log.write(msgspec.json.encode({"number": number, "kind": kind, "wrong": wrong, "seconds": spent}) + b"\n")
 
 
-def run(count: int, seed: int) -> list[dict]:
-    """Every trial, in processes; rows of ``batch``, those that killed the process among them."""
+def run(count: int, seed: int, first: int = 0) -> list[dict]:
+    """Trials ``first`` to ``count`` (left out), in processes; rows of ``batch``, those that killed the process among them."""
     rows: list[dict] = []
-    first = 0
     while first < count:
         last = min(first + BATCH, count)
         with tempfile.TemporaryDirectory() as name:
@@ -489,14 +488,17 @@ def run(count: int, seed: int) -> list[dict]:
             except subprocess.TimeoutExpired:
                 ended = "hang"
             found = [json.loads(line) for line in progress.read_bytes().splitlines()] if progress.exists() else []
-        rows += [row for row in found if "number" in row]
+        new = [row for row in found if "number" in row]
         if not found:
             raise RuntimeError(f"no trial was begun: {ended}")
         if "begins" in found[-1]:
-            rows.append({"number": found[-1]["begins"], "kind": "?", "wrong": ended, "seconds": 0.0})
+            new.append({"number": found[-1]["begins"], "kind": "?", "wrong": ended, "seconds": 0.0})
             first = found[-1]["begins"] + 1
         else:
             first = found[-1]["number"] + 1
+        rows += new
+        for row in (r for r in new if r["wrong"]):
+            print(f"--- seed {seed}, trial {row['number']}, {row['kind']}\n{row['wrong']}")
         print(f"{first} of {count}: {sum(bool(r['wrong']) for r in rows)} wrong", flush=True)
     return rows
 
@@ -506,6 +508,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", type=int, nargs="?", default=10_000)
     parser.add_argument("--seed", type=int)
+    parser.add_argument("--first", type=int, default=0, help="number of the first trial")
     parser.add_argument("--batch", nargs=3, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.batch:
@@ -513,9 +516,7 @@ def main() -> int:
         return 0
     seed = random.SystemRandom().randrange(2**32) if given.seed is None else given.seed
     print(f"seed {seed}", flush=True)
-    rows = run(given.count, seed)
-    for row in (r for r in rows if r["wrong"]):
-        print(f"--- seed {seed}, trial {row['number']}, {row['kind']}\n{row['wrong']}")
+    rows = run(given.count, seed, given.first)
     slowest = max(rows, key=lambda r: r["seconds"])
     print(
         f"seed {seed}: {len(rows)} trials, {sum(bool(r['wrong']) for r in rows)} wrong; by kind:",
