@@ -36,10 +36,11 @@ def read_bytes(path: Path, largest: int = LARGEST_TEXT) -> bytes:
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except ValueError as error:  # a zero byte, or a surrogate that the system's encoding lacks
         raise FileRefusedError(path, f"impossible name: {error}") from error
+    found = os.fstat(number)
+    if not stat.S_ISREG(found.st_mode):
+        os.close(number)
+        raise FileRefusedError(path, f"{_kind(found.st_mode)}, not a file")
     with os.fdopen(number, "rb") as file:
-        found = os.fstat(number)
-        if not stat.S_ISREG(found.st_mode):
-            raise FileRefusedError(path, f"{_kind(found.st_mode)}, not a file")
         if found.st_size <= largest:  # of some, as those in /proc, the system says 0
             content = file.read(largest + 1)
             if len(content) <= largest:
