@@ -35,7 +35,7 @@ def variants(folder: Path, label: str) -> str:
 def test_a_label_stays_in_the_folder_given(folder: Path, command: str, label: str) -> None:
     out = folder / "out"
     before = set(folder.parents[1].rglob("*"))
-    more = ["--rpm", "0,5", "--modes", "1", "--elements", "3"] if command == "campbell" else []
+    more = ["--rpm", "10,20", "--modes", "1", "--elements", "3"] if command == "campbell" else []
     assert southwell(command, variants(folder, label), *more, "--out", str(out)) == 0
     new = set(folder.parents[1].rglob("*")) - before
     assert all(p == out or p.is_relative_to(out) for p in new)
