@@ -17,6 +17,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from ...core.regular_files import read_bytes
 from ...core.solve import mesh_modes, mesh_sweep
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
@@ -110,7 +111,7 @@ def read(path: Path) -> Bench:
     Raises:
         msgspec.DecodeError: if the file is not such a one.
     """
-    return msgspec.json.decode(path.read_bytes(), type=Bench)
+    return msgspec.json.decode(read_bytes(path), type=Bench)
 
 
 def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple[float, ...]) -> tuple[Timing, ...]:

@@ -11,8 +11,10 @@ from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
+from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..input import atomic
 from ..input.errors import NO_STATE, CaseError, unsteady
+from ..input.names import Name
 
 Array = NDArray[np.float64]
 
@@ -85,7 +87,7 @@ class _Piece(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class _Kept(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
+    name: Name
     root: list[list[float]]
     segments: list[_Piece]
 
@@ -97,10 +99,12 @@ def read(path: Path) -> Condensed:
         CaseError: no such file, not such a one, or a matrix of the wrong size.
     """
     try:
-        kept = msgspec.json.decode(path.read_bytes(), type=_Kept)
+        kept = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: correct the path") from None
-    except msgspec.DecodeError as error:
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
     sizes = {"rest": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []

@@ -16,6 +16,7 @@ from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
 from ...core.effects import FULL, Model
 from ...core.modes import Modes
+from ...core.regular_files import read_bytes
 from ...references.protocol.interface import CodeError
 from ...references.solid import calculix, hexahedra, timoshenko
 from ...references.solid.mesh import Bricks, clamped
@@ -175,7 +176,7 @@ def read(path: Path) -> Example:
     Raises:
         msgspec.DecodeError: if the file is not such a one.
     """
-    return msgspec.json.decode(path.read_bytes(), type=Example)
+    return msgspec.json.decode(read_bytes(path), type=Example)
 
 
 def _at_speed(

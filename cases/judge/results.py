@@ -14,7 +14,9 @@ from typing import Any, Literal
 
 import msgspec
 
+from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..input import atomic
+from . import checks
 
 Verdict = Literal["pass", "fail", "inconclusive", "known difference", "estimate", "not applicable", "not run"]
 Unit = Literal["rad_s", "rpm", "gamma"]
@@ -290,21 +292,26 @@ def read(path: Path) -> Run:
     """
     rows: dict[str, list[Any]] = {kind: [] for kind in KINDS}
     about: dict[str, Any] = {}
-    *lines, torn = path.read_bytes().split(b"\n")
+    *lines, torn = read_bytes(path, LARGEST_DATA).split(b"\n")
     kinds = []
     for number, line in enumerate(lines, 1):
         try:
             data = msgspec.json.decode(line)
             kinds.append(kind := data.pop("kind"))
             if kind == "run":
-                about |= {"versions": data["versions"], "command": data["command"]}
+                about |= {
+                    "versions": msgspec.convert(data["versions"], dict[str, str]),
+                    "command": msgspec.convert(data["command"], str),
+                }
             elif kind == "plan":
                 about["plan"] = msgspec.convert(data["columns"], tuple[Planned, ...])
             elif kind == "end":
                 about["end"] = data["lines"]
             else:
-                rows[kind].append(msgspec.convert(data, KINDS[kind]))
-        except (msgspec.DecodeError, AttributeError, KeyError, TypeError) as error:
+                row = msgspec.convert(data, KINDS[kind])
+                checks.check(row)
+                rows[kind].append(row)
+        except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
             raise ValueError(
                 f"{path}: line {number}: not a result ({error}): was it written by another version?"
             ) from error

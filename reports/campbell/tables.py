@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 from tabulate import tabulate
 
@@ -175,7 +176,7 @@ def terminal(sheet: Sheet) -> Table:
     """For the console; what is too near is red."""
     out = Table(
         box=box.SIMPLE_HEAD,
-        title=sheet.title,
+        title=escape(sheet.title),
         title_justify="left",
         title_style="bold",
         caption=sheet.note or None,

@@ -3,17 +3,23 @@
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
 from numba.core import event
 from threadpoolctl import threadpool_limits
 
-from ...cases.input.errors import CaseError
+from ...cases.input import files
+from ...cases.input.errors import CaseError, brief
 from ...references.protocol.registry import UnknownCodeError
 from ..shared import streams
+from ..shared.console import LogSafe
 from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASSED, listed
 from .arguments import IncompleteError, UsageError
+
+OUTSIDE = "--allow-outside"
+"""An option of every command, wherever it stands."""
 
 app = App(
     name="southwell",
@@ -23,6 +29,7 @@ app = App(
 
     Exit status: {listed()}.
     """,
+    help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
     version=lambda: version("southwell"),
     suppress_keyboard_interrupt=False,
 )
@@ -62,10 +69,23 @@ class _FirstUse(event.Listener):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status, see ``statuses``."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
     streams.prepare()
+    with (
+        redirect_stdout(LogSafe(sys.stdout)),  # pyright: ignore[reportArgumentType]
+        redirect_stderr(LogSafe(sys.stderr)),  # pyright: ignore[reportArgumentType]
+        files.outside_allowed(OUTSIDE in given),
+    ):
+        status = _status([word for word in given if word != OUTSIDE])
+        streams.finish()
+    sys.exit(status)
+
+
+def _status(arguments: list[str]) -> int:
+    """Run a command; its exit status."""
     event.register("numba:compile", _FirstUse())
     try:
-        status = _run(sys.argv[1:] if arguments is None else list(arguments))
+        status = _run(arguments)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
         words = " ".join(error.unused_tokens or ())
@@ -84,12 +104,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = _told(
             f"internal error: {type(error).__name__}: {error}: please report it, with the lines above", INTERNAL
         )
-    streams.finish()
-    sys.exit(status)
+    return status
 
 
-def _run(arguments: Sequence[str]) -> int:
-    if list(arguments) in ([], *([flag] for flag in app.help_flags)):
+def _run(arguments: list[str]) -> int:
+    if arguments in ([], *([flag] for flag in app.help_flags)):
         app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
     with threadpool_limits(1):  # matrices are small: threads would wait for each other
         return app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
@@ -97,5 +116,5 @@ def _run(arguments: Sequence[str]) -> int:
 
 def _told(what: object, status: int) -> int:
     """Say in one line why there is no more; the status."""
-    print(f"southwell: {' '.join(str(what).split())}", file=sys.stderr)
+    print(f"southwell: {brief(str(what))}", file=sys.stderr)
     return status

@@ -1,5 +1,6 @@
 """What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -21,11 +22,13 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
     try:
         return int(tokens[0].value)
     except ValueError:
-        raise ValueError(f"{tokens[0].value!r} is not a whole number: give one, as in 10") from None
+        raise ValueError(f"{tokens[0].value[:40]!r} is not a whole number: give one, as in 10") from None
 
 
-Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1_000_000))]
 Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
+Workers = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1024))]
+
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
 
@@ -88,7 +91,7 @@ def found(path: Path) -> Run:
         IncompleteError: if not a single cell of it is there.
     """
     file = path
-    if path.is_dir():
+    if os.path.isdir(path):
         file = path / journal.NAME if (path / journal.NAME).exists() else path / RESULTS
     try:
         run = journal.read(file) if file.name == journal.NAME else results.read(file)

@@ -23,9 +23,10 @@ from ..campbell import page
 from ..campbell import tables as tables
 from ..shared import not_used
 from ..shared.console import output
+from ..shared.paths import file_name
 from ..shared.units import Units
 from . import campbell_options as options
-from .arguments import Elements, Whole
+from .arguments import Elements, Whole, Workers
 from .mounting import Mounting
 from .subjects import Subject
 from .subjects import subjects as find_subjects
@@ -46,7 +47,7 @@ def command(
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
-    workers: Whole = 1,
+    workers: Workers = 1,
     mounting: Mounting | None = None,
 ) -> int:
     """A blade's Campbell diagram: modes by name along rotor speed, where they meet n per revolution or each other.
@@ -102,7 +103,7 @@ def command(
             gravity=options.gravity(azimuth, tilt),
             load=options.load(load, subject.blade),
         )
-        folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+        folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
         _check(out)
         diagram = solve(subject.blade, wanted, units, workers)
         _show(diagram, units, subject)
@@ -119,7 +120,7 @@ def command(
 def _check(out: Path) -> None:
     """Before minutes of work: whether a folder is there, or can be made."""
     there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
-    if not there.is_dir():
+    if not os.path.isdir(there):
         raise _unwritable(out, f"{there} is a file")
     if not os.access(there, os.W_OK):
         raise _unwritable(out, f"no permission in {there}")

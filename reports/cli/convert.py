@@ -1,5 +1,6 @@
 """``southwell convert``: a blade in any format that is read, written as TOML, for BeamDyn or for ElastoDyn."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
@@ -62,7 +63,7 @@ def command(
     chosen = to or ("toml" if out.suffix.lower() == ".toml" else None)
     if chosen is None:
         raise CaseError(f"{out}: ends in {out.suffix or 'nothing'}: say the format by --to toml, beamdyn or elastodyn")
-    if out.exists():
+    if os.path.lexists(out):
         raise CaseError(f"{out}: is there already: give another name, or remove it")
     subjects = find_subjects(blade, (mounting or Mounting()).mount())
     if len(subjects) > 1:

@@ -1,5 +1,6 @@
 """``southwell gate``: a run against an earlier one; status 1 if something got worse."""
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +16,9 @@ from ...cases.judge.results import Run
 from ...cases.regression import history
 from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
 from ...cases.regression.history import Entry
+from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..ci import gate_text, junit
-from ..shared.console import output
+from ..shared.console import commands, output
 from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
 from ..verification import report as matrix_report
@@ -83,7 +85,7 @@ def command(
     console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
     if annotations:
         for line in gate_text.annotations(gate, Path()):
-            print(line)
+            print(line, file=commands())
     if junit_file:
         _write("--junit", junit_file, lambda: atomic.write(junit_file, junit.render(run, gate, strict)))
     if summary:
@@ -95,7 +97,7 @@ def command(
 
 def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
     """The run to compare with, and those whose times show noise."""
-    if path.is_dir() or _is_run(path):
+    if os.path.isdir(path) or _is_run(path):
         if commit:
             raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")
         return replace(history.entry(finished(path), str(path)), date="", machine=""), ()
@@ -113,9 +115,8 @@ def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
 def _is_run(path: Path) -> bool:
     """Whether a file is a run's results: its lines say of what kind they are."""
     try:
-        with path.open("rb") as file:
-            first = msgspec.json.decode(file.readline())
-    except (OSError, msgspec.DecodeError):
+        first = msgspec.json.decode(read_bytes(path, LARGEST_DATA).partition(b"\n")[0])
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
         return path.name == RESULTS
     return isinstance(first, dict) and "kind" in first
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from ...core.multibody.solution import Solution
@@ -13,13 +14,15 @@ ROTATIONS = (".rx", ".ry", ".rz")
 
 def modes(found: Solution, title: str) -> Table:
     """A row for each mode: frequency, damping ratio, the coordinate that leads."""
-    out = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
+    out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     for head in ("mode", "rad/s", "Hz", "damping ratio"):
         out.add_column(head, justify="right")
     out.add_column("led by")
     for row in _rows(found):
         numbers = (f"{row['frequency_rad_s']:.7g}", f"{row['frequency_hz']:.7g}", f"{row['damping_ratio']:.6f}")
-        out.add_row(str(row["mode"]), *numbers, row["led_by"] + ("; grows" if row["damping_ratio"] < -1e-9 else ""))
+        out.add_row(
+            str(row["mode"]), *numbers, escape(row["led_by"]) + ("; grows" if row["damping_ratio"] < -1e-9 else "")
+        )
     return out
 
 
@@ -36,7 +39,7 @@ def state(found: Solution) -> Table:
     out.add_column("in vibration")
     for name, value in found.steady.items():
         shown = f"{value:.7g}" if abs(value) > ROUNDING else "0"
-        out.add_row(name, shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
+        out.add_row(escape(name), shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
     return out
 
 

@@ -53,6 +53,17 @@ def show(run: Run, folder: Path) -> Path | None:
 
     keep = bool(run.unfinished) and (folder / RESULTS).exists()
     report = None if keep else matrix_report.write(run, folder)
+    show_tables(run)
+    kept = f"{folder / RESULTS}: of an earlier run, unchanged"
+    told = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
+    output().print(told, markup=False, soft_wrap=True)
+    return report
+
+
+def show_tables(run: Run) -> None:
+    """The headline, the matrix and the controls on standard output."""
+    from ..verification import report as matrix_report
+
     console = output()
     for line in matrix_report.headline(run):
         console.print(line.replace("**", ""), markup=False, soft_wrap=True)
@@ -61,7 +72,3 @@ def show(run: Run, folder: Path) -> Path | None:
     console.print(terminal.legend(), style="dim", markup=False)
     if run.controls:
         console.print(terminal.controls(run))
-    kept = f"{folder / RESULTS}: of an earlier run, unchanged"
-    told = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
-    console.print(told, markup=False, soft_wrap=True)
-    return report

@@ -18,6 +18,7 @@ from ...cases.input.properties import Mass, Sections, about_hub, about_root, sec
 from ...core.blade import Blade, straight
 from ..shared import not_used
 from ..shared.console import output
+from ..shared.paths import file_name
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
 
@@ -65,7 +66,7 @@ def command(
         not_used.show(subject.unused, console)
         console.print(stations(subject.blade, None if all else ROWS))
         if out is not None:
-            folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+            folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             try:
                 written = write(subject.blade, folder)
             except OSError as error:
@@ -115,7 +116,7 @@ def _body(found: Mass) -> str:
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
     """Facts in a table, and how the blade was read."""
     table = Table(
-        box=None, show_header=False, pad_edge=False, title=blade.name, title_justify="left", title_style="bold"
+        box=None, show_header=False, pad_edge=False, title=escape(blade.name), title_justify="left", title_style="bold"
     )
     table.add_column(style="dim")
     table.add_column(overflow="fold")

@@ -30,7 +30,7 @@ from ...references.protocol.process import Limits
 from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
-from .arguments import CONTINUE, RESULTS, Count, Positive, UsageError, Whole, writing
+from .arguments import CONTINUE, RESULTS, Count, Positive, UsageError, Workers, writing
 from .report import show
 
 SCRATCH = "results.partial.tmp"
@@ -41,7 +41,7 @@ def command(
     *case: str,
     codes: str | None = None,
     out: Path = Path("southwell-report"),
-    workers: Whole | None = None,
+    workers: Workers | None = None,
     add: tuple[str, ...] = (),
     junit: Path | None = None,
     faults: str = "fast",
@@ -135,7 +135,7 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
 
 def _added(text: str) -> Added:
     name, equals, path = text.partition("=")
-    if not (equals and path and re.fullmatch(r"\w[\w .+-]*", name)):
+    if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
         raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
     return user_results.read(name, Path(path))
 

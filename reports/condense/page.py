@@ -12,6 +12,7 @@ from ...cases.condense.condensing import Condensation
 from ...cases.condense.example import EXACT_TARGET, TARGET, Drawn, Example, Speed, cantilever, differences, largest
 from ...cases.input import atomic
 from ...core.modes import Modes
+from ...core.regular_files import read_bytes
 from ..shared.style import house, save
 from ..shared.units import RAD_S, Units
 from .figure import stages
@@ -32,7 +33,7 @@ FORCES = ("axial", "along y", "along z", "torsion", "about y", "about z")
 def beside(folder: Path) -> str:
     """What ``southwell condense`` wrote into a report's folder, a heading lower; empty if nothing."""
     path = folder / FILE
-    return re.sub(r"^#", "##", path.read_text(encoding="utf-8"), flags=re.MULTILINE) if path.exists() else ""
+    return re.sub(r"^#", "##", read_bytes(path).decode(errors="replace"), flags=re.MULTILINE) if path.exists() else ""
 
 
 def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:

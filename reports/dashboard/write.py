@@ -24,6 +24,13 @@ SCRIPTS = {
 }
 """What a page of each kind needs; the last draws it."""
 
+POLICY = (
+    "default-src 'none'; script-src 'self' file:; style-src 'self' file:; img-src data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+"""What a browser may do with a page: run the scripts and use the style beside it (as ``file:`` where the site is opened from
+a disk), no other and none that stand in the page."""
+
 ASSETS = ("dashboard.css", *dict.fromkeys(name for names in SCRIPTS.values() for name in names))
 
 
@@ -77,4 +84,4 @@ def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]
     for sign in "<>&\u2028\u2029":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
     template = environment.get_template("page.html.jinja")
-    return template.render(kind=kind, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)
+    return template.render(kind=kind, policy=POLICY, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)

@@ -146,7 +146,7 @@ def beside(axes: Axes, labels: Sequence[tuple[float, str] | tuple[float, str, st
         labels: height, text, and colour if not that of ink.
         size: of the letters, points.
     """
-    figure = axes.get_figure(root=True)
+    figure = axes.figure.figure
     assert figure is not None
     points = axes.get_position().height * figure.get_figheight() * 72
     fractions = [float((axes.transScale + axes.transLimits).transform((axes.get_xlim()[1], y))[1]) for y, *_ in labels]

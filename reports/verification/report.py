@@ -1,6 +1,5 @@
 """The report of a run as GitHub-flavoured Markdown: verdict first, then a heat table, then case by case."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -15,6 +14,7 @@ from ...cases.verify.lumping import CASE as LUMPED
 from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
+from ..shared.paths import file_name
 from ..shared.style import save
 from ..shared.summary import SYMBOL, amount, broad, column, columns
 from ..shared.units import BY_KEY, Units
@@ -53,7 +53,7 @@ def write(run: Run, folder: Path) -> Path:
     for case in summary.cases(run):
         for kind, draw in FIGURES.items():
             if figure := draw(run, case, units(run, case)):
-                name = f"{re.sub(r'[^A-Za-z0-9.-]+', '-', case)}-{kind}.svg"
+                name = f"{file_name(case)}-{kind}.svg"
                 save(figure, figures / name)
                 drawn.setdefault(case, []).append(f"figures/{name}")
     if figure := lumped.lumping(run):
@@ -95,7 +95,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     return environment.get_template("report.md.jinja").render(
         headline=first(run),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[told for told in (witnesses.headline(run), controls.headline(run)) if told],
+        remarks=[plain(told) for told in (witnesses.headline(run), controls.headline(run)) if told],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -108,7 +108,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",
-        command=run.command,
+        command=" ".join(run.command.split()).replace("`", "'"),
         cost=cost,
         condensed=condensed,
         known=known,
@@ -168,7 +168,7 @@ def heat(run: Run, linked: bool = False) -> str:
         shown = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
         rows.append({"case": shown} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
     if any(c.shares for c in run.cells):
-        shares = {plain(n): witnesses.shared([c for c in run.cells if broad(c) == n]) for n in names}
+        shares = {plain(n): plain(witnesses.shared([c for c in run.cells if broad(c) == n])) for n in names}
         rows.append({"case": "*shares with core*"} | shares)
     return table(rows)
 
@@ -251,7 +251,7 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
         core = next(
             (c.full for c in cells if names[c] == mode and c.full is not None and c.reference == c.full), full.get(mode)
         )
-        row = {"mode": mode, f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
         for name in columns(cells):
             mine = next((c for c in cells if column(c) == name and names[c] == mode), None)
             row[plain(name)] = _entry(mine, unit) if mine else ""
@@ -285,7 +285,7 @@ def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
             {
                 "verdict": f"{SYMBOL[verdict]} {verdict}",
                 "code": plain(name),
-                "mode": mode,
+                "mode": plain(mode),
                 "speed": where,
                 "reason": plain(reason),
             }

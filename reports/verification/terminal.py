@@ -51,15 +51,15 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         out.add_column("case", no_wrap=True)
         for name in part:
-            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name)
+            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", escape(name))
             out.add_column(head, overflow="fold", min_width=NARROW)
         for case, shown in zip(summary.cases(run), cases, strict=True):
             mine = [c for c in run.cells if c.case == case]
-            out.add_row(shown, *[_field([c for c in mine if broad(c) == name]) for name in part])
+            out.add_row(escape(shown), *[_field([c for c in mine if broad(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
             shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in part]
             out.add_section()
-            out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
+            out.add_row("shares with core", *[escape(share).replace(" ", "\n") for share in shares], style="dim")
         yield out
 
 
@@ -106,7 +106,7 @@ def _short(size: float, target: float) -> str:
 
 def frequencies(rows: Sequence[Named], title: str, units: Units) -> Table:
     """Modes × speeds, rows by name, in the order of the first speed, and the largest uncertainty of each."""
-    out = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
+    out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     speeds = list(dict.fromkeys(r.omega for r in rows))
     out.add_column(units.frequency_label)
     for omega in speeds:

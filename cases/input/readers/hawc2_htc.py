@@ -5,6 +5,7 @@ folder, which is the htc's or the one above. c2_def is x, y, z and twist in degr
 the half-chord line may lie beside the blade's axis; between them Akima splines in z.
 """
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,6 +28,12 @@ LENGTHS = 5e-3
 """How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
 
 _DEEP = 10
+
+MOST_FILES = 100
+"""That ``continue_in_file`` leads to, each as often as it is named."""
+
+MOST_LINES = 200_000
+"""Of all of them together."""
 
 _BODIES = re.compile(r"\s*begin\s+(new_htc_structure|main_body)\b", re.IGNORECASE)
 
@@ -68,7 +75,7 @@ def blade_body(htc: Text) -> Body:
     """
     body: Body = []
     inside = False
-    for command in _commands(htc, htc.path, 0):
+    for command in _commands(htc, htc.path, 0, []):
         low = [w.lower() for w in command.words]
         if low[:2] == ["begin", "main_body"]:
             body, inside = [], True
@@ -165,7 +172,9 @@ def _section(command: Command) -> list[float]:
     return [float(v) for v in values if v is not None]
 
 
-def _commands(text: Text, main: Path, depth: int) -> Iterator[Command]:
+def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterator[Command]:
+    """The commands of a file and of those it goes on in; ``lengths`` gains the number of lines of each."""
+    lengths.append(len(text.lines))
     for k, line in enumerate(text.lines):
         words = line.partition(";")[0].split()
         if not words:
@@ -177,8 +186,13 @@ def _commands(text: Text, main: Path, depth: int) -> Iterator[Command]:
             yield command
         elif depth == _DEEP:
             raise CaseError(f"{command.at}: continue_in_file: the {depth}th within each other: does one name itself?")
+        elif len(lengths) > MOST_FILES or sum(lengths) > MOST_LINES:
+            raise CaseError(
+                f"{command.at}: continue_in_file: {len(lengths)} files, {sum(lengths)} lines: at most {MOST_FILES} files and "
+                f"{MOST_LINES} lines are read: do they name each other?"
+            )
         else:
-            yield from _commands(load(_near(main, command)), main, depth + 1)
+            yield from _commands(load(_near(main, command)), main, depth + 1, lengths)
 
 
 def _near(main: Path, command: Command) -> Path:
@@ -188,6 +202,6 @@ def _near(main: Path, command: Command) -> Path:
         raise CaseError(f"{command.at}: {what}: no name: add it")
     given = Path(names[0].replace("\\", "/"))
     for folder, name in ((main.parent, given), (main.parent.parent, given), (main.parent, Path(given.name))):
-        if (folder / name).is_file():
+        if os.path.isfile(folder / name):
             return folder / name
     raise CaseError(f"{command.at}: {what}: {names[0]}: not found from the htc's folder or the one above: put it there")

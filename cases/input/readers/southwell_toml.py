@@ -14,6 +14,7 @@ from ....core.blade import Blade
 from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
+from ..names import Name
 from ..toml import convert, document, finite
 from .sections import describe
 from .source import Mount, Reading, Source
@@ -25,7 +26,7 @@ AXES = "ours: x along the blade, z the rotor's axis, y the direction of motion; 
 class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A blade file."""
 
-    name: Annotated[str, Meta(min_length=1, description="what to call it")]
+    name: Name
     blade: BladeData
     title: Annotated[str, Meta(description="one line")] = ""
     source: Annotated[str, Meta(description="where the data come from")] = ""

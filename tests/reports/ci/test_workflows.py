@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ ACTION = ROOT / "action.yml"
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 GITLAB = ROOT / "docs" / "gitlab-ci.yml"
 BASH = shutil.which("bash")
-SCRIPTS = [ROOT / ".ci" / "nightly", ROOT / ".ci" / "run"]
+SCRIPTS = [ROOT / ".ci" / name for name in ("fuzz", "nightly", "run", "versions")]
 
 
 def load(path: Path) -> dict[Any, Any]:
@@ -81,6 +82,23 @@ def test_southwell_understands_it(line: str) -> None:
 def test_no_script_has_anything_pasted_into_it() -> None:
     """What others wrote reaches a script by its environment alone: pasted in by ``${{ }}`` it would be run."""
     assert not [name for name, script in scripts().items() if "${{" in script]
+
+
+def test_every_action_is_pinned_by_commit() -> None:
+    used = [s["uses"] for path in (ACTION, *WORKFLOWS) for s in steps(path) if "uses" in s]
+    foreign = [name for name in used if name != "./"]
+    assert len(foreign) > 10
+    assert all(re.fullmatch(r"[\w-]+/[\w-]+@[0-9a-f]{40}", name) for name in foreign)
+
+
+def test_the_lowest_versions_are_those_declared() -> None:
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    lines = (ROOT / ".ci" / "lowest.txt").read_text().splitlines()
+    lowest = dict(line.split("==") for line in lines if not line.startswith("#"))
+    for requirement in declared:
+        name, least = requirement.split(">=")
+        assert re.sub(r"(\.0)+$", "", lowest.pop(name)) == re.sub(r"(\.0)+$", "", least)
+    assert not lowest
 
 
 def test_the_workflow_uses_the_action_with_inputs_that_it_has() -> None:
