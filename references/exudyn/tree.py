@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
+from scipy.linalg import block_diag
 
-from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
+from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
@@ -30,7 +31,7 @@ JOINT = ("PrismaticX", "PrismaticY", "PrismaticZ", "RevoluteX", "RevoluteY", "Re
 
 
 class ExudynTree:
-    """See the module; straight blades with twist, taper, shear, precone, pitch and tip mass."""
+    """See the module; coupled, curved, twisted, tapered blades with shear, precone, pitch and tip mass."""
 
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
@@ -46,13 +47,11 @@ class ExudynTree:
         return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped, the sections couple, or the blade is curved or rigid in bending."""
+        """A reason if the root is not clamped, the curve has kinks, or the blade is rigid in bending."""
         if not clamped(blade):
             return "the root is not clamped: the first segment is the hub's"
-        if coupled(blade):
-            return "sections couple (off-diagonal entries): the hinges' joints have a spring each"
-        if not straight(blade):
-            return "prebend or sweep: the hinges are laid along a straight line"
+        if blade.kinks:
+            return f"a kink at {blade.kinks[0]:g} m: the sections of an element have one hinge's axes"
         if np.isinf(blade.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any():
             return "rigid in bending: a hinge without joints"
         return None
@@ -108,6 +107,10 @@ def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
             jointVelocityOffsetVector=zero,
         )
     )
+    if tree.coupling.any():
+        coupling = np.zeros((n, n))
+        coupling[1:, 1:] = block_diag(*tree.coupling)
+        mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))
     ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
     if omega:
@@ -117,12 +120,12 @@ def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
 
 
 def jacobian(tree: Tree, q: Array, point: Array) -> Array:
-    """(e, 6, n): velocity of the point at ``point`` (m) along each segment and its angular velocity, per joint rate.
+    """(e, 6, n): velocity of each segment's ``point`` (e, 3), m in its axes, and its angular velocity, per joint rate.
 
     In the axes of the first link's parent, with the joints at ``q`` (n,).
     """
     n = len(q)
-    to = np.repeat(point, np.diff(tree.segment, prepend=-1))
+    to = np.repeat(point, np.diff(tree.segment, prepend=-1), axis=0)
     R, p = np.eye(3), np.zeros(3)
     axis, origin, where = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     for k, strain in enumerate(tree.strain):
@@ -133,7 +136,7 @@ def jacobian(tree: Tree, q: Array, point: Array) -> Array:
             p = p + axis[k] * q[k]
         else:
             R = R @ rotation(strain % 3, q[k])
-        where[k] = p + R[:, 0] * to[k]
+        where[k] = p + R @ to[k]
     turns = np.isin(tree.strain, TURN)[:, None]
     out = np.zeros((len(tree.segment), 6, n))
     for row, k in zip(out, tree.segment, strict=True):

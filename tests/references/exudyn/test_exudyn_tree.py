@@ -86,7 +86,7 @@ def test_mass_matrix_is_what_the_motion_says():
     tree = hinged_segments.plant(blade, 5)
     M, _, _, q = exudyn_tree.linearize(tree, 20.0)
     assert abs(q).max() > 0.01
-    J = exudyn_tree.jacobian(tree, q, tree.centre[:, 0])
+    J = exudyn_tree.jacobian(tree, q, tree.centre)
     angle = 0.3 + 0.7 * 0.1 * np.arange(1, 10, 2) + np.cumsum(q[tree.strain == 3])  # untwisted by the propeller moment
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[np.eye(3)[0], [0, ci, -si], [0, si, ci]] for ci, si in zip(c, s, strict=True)])

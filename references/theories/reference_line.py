@@ -13,7 +13,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
 from ...core.blade import Blade, straight, twist_at
-from ..theories.spectral import intervals
+from .spectral import intervals
 
 Array = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def moments(mass: Array) -> Array:
 
 
 def element_ends(blade: Blade, elements: int, most: int) -> Array:
-    """Arc lengths (n+1,) of the ends of ``elements`` elements at least; see ``theories.grading`` for uncoupled blades.
+    """Arc lengths (n+1,) of the ends of ``elements`` elements at least; see ``grading`` for uncoupled blades.
 
     Every interval between two kinks of a property or of the line is divided into the same number of elements, so that each
     element is smooth and the order of convergence survives. Of a blade with more than ``most`` intervals there are more
