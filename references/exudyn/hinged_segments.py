@@ -2,7 +2,8 @@
 
 An element bends, twists, stretches and shears in one hinge, by its whole compliance and where the compliance in bending
 has its centroid (the middle, if uniform); what lies between two hinges is a rigid body with the blade's own mass and
-inertia. What lies before the first belongs to the hub. This is a lumped model of second order.
+inertia. What lies before the first belongs to the hub, or to the root's joint: sliding along its axes x, y, z and then turning
+about them, as far as they are not held. This is a lumped model of second order.
 
 The hinge has the place and axes of its section, so that the line may be curved; its 6×6 compliance is the integral of the
 sections', each rotated into its axes, so that strains may couple.
@@ -15,10 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at, stiffness_at
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped, mass_at, stiffness_at
 from ...core.space.spatial import skew
-from ..theories.reference_line import line
+from ..theories.reference_line import line, root_axes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -33,7 +35,7 @@ class Tree:
     Attributes:
         strain: (n,) what the joint lets happen (``core.blade``'s order of strains).
         stiffness: (n,) of each joint by itself, N/m or N m.
-        coupling: (e, k, k) what one joint of a hinge bears when another moves, zero on the diagonal.
+        coupling: (n, n) what one joint of a hinge bears when another moves, zero on the diagonal.
         offset, turn: (n, 3), (n, 3, 3) from the link before; from the hub's axes, coned, for the first.
         segment: (e,) the link that carries the segment, the last of each hinge.
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
@@ -53,33 +55,43 @@ class Tree:
 
 
 def plant(blade: Blade, elements: int) -> Tree:
-    """A blade as a tree of ``elements`` equal elements."""
+    """A blade as a tree of ``elements`` equal elements, behind the joint at its root if that is not clamped."""
     ends = np.linspace(0.0, blade.length, elements + 1)
     hinges = _hinges(blade, ends)
     place, axes = _frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
     slide, turn = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
     hinge = np.array([*slide, *turn, *slide[::-1]])
-    stiffness = _stiffness(blade, ends, axes, hinge)
-    n = len(hinge)
+    stiffness = list(_stiffness(blade, ends, axes, hinge))
+    joints = [hinge] * elements
+    reach = (axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
+    if not clamped(blade):
+        free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
+        joints, stiffness = [free, *joints], [np.diag(blade.root[free]), *stiffness]
+        hinges, reach = np.append(0.0, hinges), np.concatenate([np.zeros((1, 3)), reach])
+        place = np.concatenate([_frames(blade, hinges[:1])[0], place])
+        axes = np.concatenate([root_axes(blade)[None], axes])
+    segment = np.cumsum([len(j) for j in joints]) - 1
+    first = segment - [len(j) - 1 for j in joints]
+    n = int(segment[-1]) + 1
     before = np.concatenate([np.eye(3)[None], axes[:-1]]).mT
-    offset, joint_turn = np.zeros((elements, n, 3)), np.tile(np.eye(3), (elements, n, 1, 1))
-    offset[:, 0] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
-    joint_turn[:, 0] = before @ axes
+    offset, joint_turn = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
+    offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
+    joint_turn[first] = before @ axes
     mass, centre, inertia = _segments(blade, hinges, place, axes)
-    reach = axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None]
-    own = np.diagonal(stiffness, axis1=1, axis2=2)
+    full = block_diag(*stiffness)
+    own = np.diagonal(full)
     return Tree(
-        strain=np.tile(hinge, elements),
-        stiffness=own.ravel(),
-        coupling=stiffness * (1.0 - np.eye(n)),
-        offset=offset.reshape(-1, 3),
-        turn=joint_turn.reshape(-1, 3, 3),
-        segment=np.arange(1, elements + 1) * n - 1,
+        strain=np.concatenate(joints),
+        stiffness=own,
+        coupling=full - np.diag(own),
+        offset=offset,
+        turn=joint_turn,
+        segment=segment,
         mass=mass,
         centre=centre,
         inertia=inertia,
-        reach=reach[..., 0],
+        reach=reach,
     )
 
 

@@ -116,13 +116,13 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
     parts = [_part(blade, fem.Basis(mesh, basis.elem, intorder=INERTIA), None)]
     if blade.tip_mass.any():
         parts.append(_part(blade, basis.boundary("tip"), blade.tip_mass))
-    root = basis.get_dofs("root").flatten()
+    root = np.array(basis.get_dofs("root").flatten())
     free_root = np.flatnonzero(np.isfinite(blade.root))
     inner = np.setdiff1d(np.arange(basis.N), root)
     turn = np.kron(np.eye(2), root_axes(blade))[:, free_root]
     to_free = sp.lil_array((basis.N, len(free_root) + len(inner)))
     to_free[root, : len(free_root)] = turn
-    to_free[inner, len(free_root) + np.arange(len(inner))] = 1.0
+    to_free[inner, np.arange(len(free_root), to_free.shape[1])] = 1.0
     springs = np.zeros(to_free.shape[1])
     springs[: len(free_root)] = blade.root[free_root]
     return Beam(
@@ -175,11 +175,11 @@ def moved(beam: Beam, state: State, step: Array, force: Array) -> State:
     """The state after a motion of the free coordinates, ``step``, and with section forces ``force``."""
     q = beam.to_free @ step
     u = beam.basis.interpolate(q)
-    w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], u.value[3:], u.grad[3:, 0]))
+    w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], np.asarray(u)[3:], u.grad[3:, 0]))
     back = np.swapaxes(state.axes, -1, -2)
     place, turned = [], []
     for part, at, axes in zip(beam.parts, state.place, state.turned, strict=True):
-        value = np.moveaxis(part.basis.interpolate(q).value, 0, -1)
+        value = np.moveaxis(np.asarray(part.basis.interpolate(q)), 0, -1)
         place.append(at + value[..., :3])
         turned.append(forms.exponential(value[..., 3:]) @ axes)
     return State(
@@ -209,7 +209,7 @@ def strain_rate(beam: Beam, state: State) -> Any:
 def stiffening(beam: Beam, state: State, omega: float) -> Any:
     """Stiffness of all coordinates by the steady section forces and by the centrifugal force's change."""
     fem = skfem()
-    force = np.moveaxis(beam.forces.interpolate(state.force).value, 0, -1)
+    force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
     on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
     K = fem.BilinearForm(forms.quadratic_local).assemble(beam.basis, on=on)
     for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):

@@ -125,12 +125,12 @@ def bending_rate(phi: Array, rate: Array) -> Array:
 
 def local(u: Any) -> Any:
     """z (12, e, q) of a field q."""
-    return np.concatenate([u.value, u.grad[:, 0]])
+    return np.concatenate([u, u.grad[:, 0]])
 
 
 def quadratic(u: Any, v: Any, w: Any) -> Any:
     """Bilinear form with coefficients on q."""
-    return np.einsum("ij...,i...,j...", w.on, v.value, u.value)
+    return np.einsum("ij...,i...,j...", w.on, v, u)
 
 
 def quadratic_local(u: Any, v: Any, w: Any) -> Any:
@@ -140,12 +140,12 @@ def quadratic_local(u: Any, v: Any, w: Any) -> Any:
 
 def mixed(u: Any, v: Any, w: Any) -> Any:
     """Bilinear form of a field of section forces v with z of a field u."""
-    return np.einsum("ij...,i...,j...", w.on, v.value, local(u))
+    return np.einsum("ij...,i...,j...", w.on, v, local(u))
 
 
 def linear(v: Any, w: Any) -> Any:
     """Linear form with coefficients on q, or on section forces."""
-    return np.einsum("i...,i...", w.on, v.value)
+    return np.einsum("i...,i...", w.on, v)
 
 
 def linear_local(v: Any, w: Any) -> Any:
