@@ -71,15 +71,15 @@ def plant(blade: Blade, elements: int) -> Tree:
         hinges, reach = np.append(0.0, hinges), np.concatenate([np.zeros((1, 3)), reach])
         place = np.concatenate([_frames(blade, hinges[:1])[0], place])
         axes = np.concatenate([root_axes(blade)[None], axes])
-    segment = np.cumsum([len(j) for j in joints]) - 1
-    first = segment - [len(j) - 1 for j in joints]
-    n = int(segment[-1]) + 1
+    count = np.array([len(joint) for joint in joints])
+    first = np.cumsum(count) - count
+    n = int(count.sum())
     before = np.concatenate([np.eye(3)[None], axes[:-1]]).mT
     offset, joint_turn = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
     offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
     joint_turn[first] = before @ axes
     mass, centre, inertia = _segments(blade, hinges, place, axes)
-    full = block_diag(*stiffness)
+    full: Array = np.asarray(block_diag(*stiffness), float)
     own = np.diagonal(full)
     return Tree(
         strain=np.concatenate(joints),
@@ -87,7 +87,7 @@ def plant(blade: Blade, elements: int) -> Tree:
         coupling=full - np.diag(own),
         offset=offset,
         turn=joint_turn,
-        segment=segment,
+        segment=first + count - 1,
         mass=mass,
         centre=centre,
         inertia=inertia,

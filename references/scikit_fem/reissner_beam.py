@@ -120,10 +120,11 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
     free_root = np.flatnonzero(np.isfinite(blade.root))
     inner = np.setdiff1d(np.arange(basis.N), root)
     turn = np.kron(np.eye(2), root_axes(blade))[:, free_root]
-    to_free = sp.lil_array((basis.N, len(free_root) + len(inner)))
+    count = len(free_root) + len(inner)
+    to_free = sp.lil_array((basis.N, count))
     to_free[root, : len(free_root)] = turn
-    to_free[inner, np.arange(len(free_root), to_free.shape[1])] = 1.0
-    springs = np.zeros(to_free.shape[1])
+    to_free[inner, np.arange(len(free_root), count)] = 1.0
+    springs = np.zeros(count)
     springs[: len(free_root)] = blade.root[free_root]
     return Beam(
         blade=blade,

@@ -1,4 +1,4 @@
-"""Weak forms of a geometrically exact beam that turns with its hub, about any state; see docs/theory/reissner.md.
+"""Weak forms of a geometrically exact beam that turns with its hub, about any state; see docs/geometrically-exact-beam.md.
 
 Reissner's beam (E. Reissner, Studies in Applied Mathematics 52 (1973) 87–95; J. C. Simo, Comput. Methods Appl. Mech. Eng.
 49 (1985) 55–70): a section at arc length s has the place r(s) and the axes Λ(s), and the strains, per unit of arc length and

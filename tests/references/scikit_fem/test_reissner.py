@@ -40,15 +40,15 @@ def body() -> Array:
     """(6, 6) of a few particles, from their places alone."""
     out = np.zeros((6, 6))
     for m, y in zip([1.0, 2.0, 0.5, 1.5], RNG.normal(size=(4, 3)), strict=True):
-        velocity = np.hstack([np.eye(3), np.cross(np.eye(3), y).T])
-        out += m * velocity.T @ velocity
+        velocity: Array = np.hstack([np.eye(3), np.cross(np.eye(3), y).T])
+        out = out + m * velocity.T @ velocity
     return out
 
 
 class TestForms:
     """Against the exact, finite motion: rotate, then difference."""
 
-    slope, axes, force = RNG.normal(size=3), Rotation.random(rng=2).as_matrix(), RNG.normal(size=6)
+    slope, axes, force = RNG.normal(size=3), Rotation.from_rotvec(RNG.normal(size=3)).as_matrix(), RNG.normal(size=6)
     place = RNG.normal(size=3)
 
     def strain(self, z: Array) -> Array:
