@@ -2,9 +2,9 @@
 
 Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced integration),
 and section forces, linear and discontinuous, are fields of their own (E. Hellinger 1914, E. Reissner 1950): no strain locks,
-and a rigid strain is an exact constraint, with no penalty. Weak forms are in ``reissner_forms``, their derivation in
-docs/geometrically-exact-beam.md. First the steady state by Newton's method, down to rounding; then the matrices about it, in the
-strains as coordinates, of which the rigid ones are left out. Frequencies converge with the fourth power of the element size.
+and a rigid strain is an exact constraint, with no penalty. The weak forms are in ``reissner_forms``, their derivation in
+docs/geometrically-exact-beam.md. First comes the steady state, by Newton's method down to rounding; then the matrices about
+it, in the strains that are not rigid as coordinates. Frequencies converge with the fourth power of the element size.
 scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
 """
 

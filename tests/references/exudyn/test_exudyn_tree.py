@@ -12,7 +12,7 @@ from southwell.references.exudyn import hinged_segments
 from southwell.references.exudyn import tree as exudyn_tree
 from southwell.references.exudyn.tree import CODE as TREE
 
-from ...support.beams import curved
+from ...support.beams import curved, tapered
 from ...support.exudyn_beams import extrapolated, families, needs_exudyn, unit
 
 pytestmark = needs_exudyn
@@ -135,6 +135,13 @@ def test_a_twisted_blade_with_precone_has_a_steady_state(omega):
     """To be reached in steps: from rest to full speed at once Newton's method wanders."""
     blade = replace(unit(0.1, EI_z=9.0, EA=1e5, I_y=1e-4, I_z=9e-4), twist=np.array([0.9, 0.0]), precone=0.3)
     found, core = limit(blade, omega)
+    np.testing.assert_allclose(found, core, rtol=2e-4)
+
+
+def test_a_deck_without_axial_and_torsional_stiffness_has_no_such_joints():
+    stiffness = tapered().stiffness.copy()
+    stiffness[:, [0, 3], [0, 3]] = np.inf
+    found, core = limit(replace(tapered(), stiffness=stiffness, precone=0.05), 3.0)
     np.testing.assert_allclose(found, core, rtol=2e-4)
 
 
