@@ -153,7 +153,8 @@ def test_a_flap_hinge(precone):
     np.testing.assert_allclose(found, core, rtol=1e-4)
 
 
-def test_springs_at_the_root_slide_and_turn():
-    blade = replace(unit(0.2, EA=1e4, I_y=1e-3, I_z=2e-3), root=np.array([80.0, 60.0, 40.0, 2.0, 5.0, 7.0]), pitch=0.3)
+@pytest.mark.parametrize("root", [[80.0, 60.0, 40.0, *3 * [np.inf]], [*3 * [np.inf], 2.0, 5.0, 7.0]], ids=["slides", "turns"])
+def test_springs_at_the_root(root):
+    blade = replace(unit(0.2, EA=1e4, I_y=1e-3, I_z=2e-3), root=np.array(root), pitch=0.3)
     found, core = limit(blade, 2.0)
     np.testing.assert_allclose(found, core, rtol=1e-4)
