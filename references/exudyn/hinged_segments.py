@@ -8,8 +8,8 @@ about them, as far as they are not held. This is a lumped model of second order.
 The hinge has the place and axes of its section, so that the line may be curved; its 6×6 compliance is the integral of the
 sections', each rotated into its axes, so that strains may couple.
 
-Sliding joints sit half on either side of the turning ones, so that a stretched hinge still turns at its middle
-(all on one side would cost an order: the middle would be off by half the stretch).
+All joints but the last turning one sit half on either side of it: a stretched hinge still turns at its middle, and the order
+of finite rotations, which do not commute, does not matter. All on one side would cost an order.
 """
 
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ def plant(blade: Blade, elements: int) -> Tree:
     place, axes = _frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
     slide, turn = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
-    hinge = np.array([*slide, *turn, *slide[::-1]])
+    hinge = np.array([*slide, *turn, *turn[-2::-1], *slide[::-1]])
     stiffness = list(_stiffness(blade, ends, axes, hinge))
     joints = [hinge] * elements
     reach = (axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
@@ -114,7 +114,7 @@ def _hinges(blade: Blade, ends: Array) -> Array:
 def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     """(e, k, k) of the joints ``hinge`` of each element: the inverse of the compliance ``∫ R c Rᵀ ds`` of its sections.
 
-    A strain's two sliding joints add up to it, and by what they differ they bear its own stiffness.
+    A strain's two joints add up to it, and by what they differ they bear its own stiffness.
     """
     s, weight = _gauss(np.union1d(ends, blade.stations))
     element = np.searchsorted(ends, s) - 1
@@ -130,7 +130,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     stiffness[:, strains[:, None], strains] = np.linalg.inv(compliance[:, strains[:, None], strains])
     first = np.array([k == list(hinge).index(strain) for k, strain in enumerate(hinge)])
     sign = np.where(first, 1.0, -1.0)
-    same = (hinge[:, None] == hinge) & np.isin(hinge, SLIDE)
+    same = (hinge[:, None] == hinge) & ((hinge == hinge[:, None]).sum(1) > 1)
     apart = sign[:, None] * sign * same
     out = stiffness[:, hinge[:, None], hinge]
     return out + apart * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
