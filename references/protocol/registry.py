@@ -23,6 +23,7 @@ OURS = {
     "exudyn-ancf": "southwell.references.exudyn.ancf:CODE",
     "exudyn-tree": "southwell.references.exudyn.tree:CODE",
     "scikit-fem": "southwell.references.scikit_fem.beam:CODE",
+    "scikit-fem-reissner": "southwell.references.scikit_fem.reissner:CODE",
     "pinocchio": "southwell.references.joint_chains.pinocchio:CODE",
     "drake": "southwell.references.joint_chains.drake:CODE",
     "mujoco": "southwell.references.joint_chains.mujoco:CODE",
@@ -129,9 +130,17 @@ def code(name: str) -> Any:
     return found
 
 
-CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96, "frame3dd": 100}
+CAPS = {
+    "pinocchio": 40,
+    "drake": 80,
+    "mujoco": 80,
+    "pybmodes": 320,
+    "sharpy": 96,
+    "frame3dd": 100,
+    "scikit-fem-reissner": 96,
+}
 """Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
-freedoms, pyBModes dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
+freedoms, pyBModes and scikit-fem-reissner dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
 grows as the cube."""
 
 
