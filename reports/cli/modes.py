@@ -11,6 +11,7 @@ from ...cases.input import library
 from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
 from ..shared import not_used
+from ..shared.certain import remarks
 from ..shared.console import output
 from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
@@ -87,7 +88,7 @@ def modes(
                 units or subject.units,
             )
             console.print(terminal.frequencies(found, title, shown))
-            for line in terminal.remarks(found, accuracy if elements is None else None, shown):
+            for line in remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
