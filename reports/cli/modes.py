@@ -114,7 +114,7 @@ def mechanism(
     time
         The instant looked at, in seconds, where motions are functions of time.
     json
-        Print everything as JSON.
+        Print everything as JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is rounding's.
     """
     described = library.mechanism(name)
     found = described.solve(modes, time)
@@ -126,6 +126,7 @@ def mechanism(
     console.print(answer.modes(found, described.text.title or described.text.name))
     console.print(answer.state(found))
     console.print(answer.redundant(found), markup=False, soft_wrap=True)
+    console.print(answer.NOTE, markup=False, soft_wrap=True)
     return PASSED
 
 
