@@ -2,6 +2,7 @@
 
 import os
 
+import pytest
 from hypothesis import settings
 
 from southwell.tests.support.guesses import every_steady_state_again
@@ -9,5 +10,13 @@ from southwell.tests.support.guesses import every_steady_state_again
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("nightly", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the property tests."""
+    for item in items:
+        if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
+            item.add_marker("random")
+
 
 __all__ = ["every_steady_state_again"]
