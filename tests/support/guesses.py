@@ -42,9 +42,8 @@ def same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen:
         found = STEADY(tree, perturbed(names, guess or {}, k))
         again = about(tree, found, linear.names)
         stiff = np.abs(again.K - linear.K).max(initial=0.0) <= 1e-8 * np.abs(linear.K).max(initial=0.0)
-        assert stiff or (drifts and np.allclose(_shape(found), _shape(expected), rtol=1e-8, atol=0.0)), (
-            f"guess {k}: another state"
-        )
+        alike = drifts and np.allclose(_shape(found), _shape(expected), rtol=1e-8, atol=0.0)
+        assert stiff or alike, f"guess {k}: another state"
 
 
 def _shape(state: State) -> np.ndarray:
