@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.condense.compressed import chain_from_segments, chain_modes
+from ...core.condense.compressed import segment_modes
 from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
@@ -34,14 +34,14 @@ class Condensed:
     segments: list[Segment]
 
 
-def modes(blade: Condensed, omega: float, count: int) -> Modes:
-    """The lowest modes at ``omega`` rad/s.
+def modes(blade: Condensed, omega: float, count: int, allow_large_strain: bool = False) -> Modes:
+    """The lowest modes at ``omega`` rad/s, with their relative uncertainties; see ``core.condense.compressed.segment_modes``.
 
     Raises:
-        CaseError: no stable steady state at this speed.
+        CaseError: no stable steady state at this speed, or one of large strain.
     """
     try:
-        return chain_modes(chain_from_segments(blade.segments, blade.root), omega, count)
+        return segment_modes(blade.segments, blade.root, omega, count, allow_large_strain=allow_large_strain)
     except NO_STATE as error:
         raise unsteady(blade.name, omega, error) from error
 

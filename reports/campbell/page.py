@@ -66,6 +66,7 @@ def _page(diagram: Campbell, k: int, units: Units, command: str, about: Sequence
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
         f"{tables.verdict(diagram, units)}\n",
+        *[f"{line}.\n" for line in tables.notes(diagram, units)],
         "![Natural frequencies along rotor speed](campbell.svg)\n",
         *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
         *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],

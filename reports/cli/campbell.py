@@ -26,7 +26,7 @@ from ..shared.console import output
 from ..shared.paths import file_name
 from ..shared.units import Units
 from . import campbell_options as options
-from .arguments import Elements, Whole, Workers
+from .arguments import Accuracy, Elements, Flag, Whole, Workers
 from .mounting import Mounting
 from .subjects import Subject
 from .subjects import subjects as find_subjects
@@ -43,7 +43,9 @@ def command(
     per_rev: str = "1:6",
     operating: str | None = None,
     margin: str = "10%",
-    elements: Elements = 50,
+    elements: Elements | None = None,
+    accuracy: Accuracy = 1e-6,
+    allow_large_strain: Flag = False,
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
@@ -76,7 +78,11 @@ def command(
     margin
         How far modes should keep from n per revolution over it, in parts of n per revolution: `10%`, `10` or `0.1`.
     elements
-        Beam elements along the blade.
+        Beam elements of equal length along the blade; by default, as many at each speed as --accuracy takes.
+    accuracy
+        Largest relative uncertainty of a frequency, without --elements.
+    allow_large_strain
+        Accept steady strains above 20 %.
     azimuth
         Degrees from the blade pointing up, in the direction of rotation: the blade under gravity there. Without: no gravity.
     tilt
@@ -100,6 +106,8 @@ def command(
             operating=options.operating(operating, units, speeds) if operating else None,
             margin=options.margin(margin),
             elements=elements,
+            accuracy=accuracy,
+            allow_large_strain=allow_large_strain,
             gravity=options.gravity(azimuth, tilt),
             load=options.load(load, subject.blade),
         )
@@ -201,5 +209,7 @@ def _show(diagram: Campbell, units: Units, subject: Subject) -> None:
     for sheet in tables.sheets(diagram, units):
         console.print(tables.terminal(sheet))
         console.print()
+    for line in tables.notes(diagram, units):
+        console.print(line, style="yellow", markup=False, soft_wrap=True)
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)

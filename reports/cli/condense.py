@@ -19,7 +19,7 @@ from ..condense import page
 from ..shared.console import output
 from ..shared.units import RAD_S
 from . import campbell_options
-from .arguments import Whole
+from .arguments import Flag, Whole
 
 EXAMPLE = "example"
 FILE, SEGMENTS, DATA = page.FILE, "segments.json", "condensation.json"
@@ -34,6 +34,7 @@ def command(
     omega: str | None = None,
     rpm: str | None = None,
     modes: Whole = 6,
+    allow_large_strain: Flag = False,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
 ) -> int:
     """Condense finite element matrices of a blade to rigid bodies and complex stiffness elements; modes of those.
@@ -54,6 +55,8 @@ def command(
         The same in revolutions per minute.
     modes
         How many, from the lowest.
+    allow_large_strain
+        Accept steady strains above 20 %.
     out
         Folder for what is written.
     """
@@ -71,7 +74,7 @@ def command(
     else:
         told = condensing.condense(path)
         blade = told.blade
-    found = [(speed, condensed.modes(blade, speed, modes)) for speed in speeds]
+    found = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
     text = page.own(blade, found, units, told, _line())
     folder = _folder(out)
     _write(folder, text, blade)

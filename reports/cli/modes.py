@@ -11,6 +11,7 @@ from ...cases.input import library
 from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
 from ..shared import not_used
+from ..shared.certain import remarks
 from ..shared.console import output
 from ..shared.statuses import PASSED
 from ..shared.units import RAD_S, RPM, Units
@@ -88,7 +89,7 @@ def modes(
                 units or subject.units,
             )
             console.print(terminal.frequencies(found, title, shown))
-            for line in terminal.remarks(found, accuracy if elements is None else None, shown):
+            for line in remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
@@ -114,7 +115,7 @@ def mechanism(
     time
         The instant looked at, in seconds, where motions are functions of time.
     json
-        Print everything as JSON.
+        Print everything as JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is rounding's.
     """
     described = library.mechanism(name)
     found = described.solve(modes, time)
@@ -126,6 +127,7 @@ def mechanism(
     console.print(answer.modes(found, described.text.title or described.text.name))
     console.print(answer.state(found))
     console.print(answer.redundant(found), markup=False, soft_wrap=True)
+    console.print(answer.NOTE, markup=False, soft_wrap=True)
     return PASSED
 
 

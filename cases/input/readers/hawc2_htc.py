@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
+from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 from ..errors import CaseError
 from .source import Unused, unused
@@ -26,6 +26,9 @@ FINE = 2001
 
 LENGTHS = 5e-3
 """How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
+
+SAME = 1e-6
+"""Of the length: a section of c2_def so near to a station is that station."""
 
 _DEEP = 10
 
@@ -55,11 +58,17 @@ Body = list[Command]
 
 
 class HalfChords(NamedTuple):
-    """The half-chord line at stations: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes."""
+    """The half-chord line at the stations of both files: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes.
+
+    ``at`` (n,) are the same stations in the structural file's r. ``strays`` says how far (m, rad) the line strays from c2_def
+    between the stations, where the one is a spline of its own and the other Akima's.
+    """
 
     s: Array
     curve: Array
     twist: Array
+    at: Array
+    strays: tuple[float, float]
 
 
 def is_one(text: Text) -> bool:
@@ -130,7 +139,7 @@ def left(body: Body) -> tuple[Unused, ...]:
 
 
 def half_chords(body: Body, r: Array) -> HalfChords:
-    """The half-chord line at stations ``r`` (n,) m of a structural file.
+    """The half-chord line at the stations ``r`` m of a structural file and at the sections of c2_def.
 
     Raises:
         CaseError: naming the line of the section at fault.
@@ -161,8 +170,15 @@ def half_chords(body: Body, r: Array) -> HalfChords:
             f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: are they of the same blade?"
         )
     s = r * (arc[-1] / r[-1])
+    own = np.interp(c2[:, 2], z, arc)
+    apart = np.abs(own[:, None] - s).min(axis=1)
+    s = np.union1d(s, own[apart > SAME * arc[-1]])
     at = spline(np.interp(s, arc, z))
-    return HalfChords(s, at[:, [2, 0, 1]], np.radians(at[:, 3]))
+    curve, twist = at[:, [2, 0, 1]], np.radians(at[:, 3])
+    fine = spline(z)
+    bent = np.linalg.norm(CubicSpline(s, curve)(arc) - fine[:, [2, 0, 1]], axis=1).max()
+    turned = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
+    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(turned)))
 
 
 def _section(command: Command) -> list[float]:

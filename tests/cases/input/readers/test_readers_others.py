@@ -73,7 +73,16 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
     np.testing.assert_allclose(blade.curve[-1], [19.988, -0.10, -0.50], atol=1e-12)  # z, x, y of HAWC2's
     np.testing.assert_allclose(np.degrees(blade.twist[[0, -1]]), [-12.0, 1.0])
     assert blade.length == pytest.approx(20.0, abs=0.01)
-    np.testing.assert_allclose(blade.stations[1] / blade.length, 0.6, rtol=1e-12)
+    assert np.abs(blade.stations / blade.length - 0.6).min() < 1e-12
+    for x, y, z, turn in ((0.0, 0.0, 5.0, -10.0), (-0.02, -0.05, 10.0, -6.0), (-0.06, -0.20, 15.0, -2.0)):
+        k = int(np.abs(blade.curve[:, 0] - z).argmin())  # every section of c2_def is a station
+        np.testing.assert_allclose(blade.curve[k], [z, x, y], atol=1e-9)
+        assert np.degrees(blade.twist[k]) == pytest.approx(turn, abs=1e-7)
+    np.testing.assert_allclose(blade.mass, np.repeat(blade.mass[:1], 6, axis=0), rtol=1e-12, atol=1e-12)
+    (note,) = (n for n in found.source.notes if n.startswith("stations: "))
+    assert note.startswith(
+        "stations: 3 of the structural file and 3 more of c2_def; between them curve and twist stray"
+    )
     same(blade, readers.read(ST, Mount(main=HTC, hub_radius=2.0)))
 
 
