@@ -204,6 +204,12 @@ def markdown(sheet: Sheet) -> str:
     return f"## {sheet.title}\n\n{table}{note}\n"
 
 
+def margins_kept(diagram: Campbell) -> bool:
+    """Whether every mode could be judged over the operating range and keeps its margins."""
+    judged = {m.track for m in diagram.margins}
+    return len(judged) == diagram.tracks.count and all(m.kept for m in diagram.margins)
+
+
 def verdict(diagram: Campbell, units: Units) -> str:
     """The answer in one line."""
     wanted = diagram.wanted

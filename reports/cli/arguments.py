@@ -1,4 +1,4 @@
-"""What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
+"""Types of arguments, and the finished run that several commands read."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,8 +10,6 @@ from cyclopts.validators import Number
 from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
-
-PASSED, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 RESULTS = "results.jsonl"
 
@@ -34,9 +32,8 @@ Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 
 Flag = Annotated[bool, Parameter(negative=())]
 
-
-class UsageError(ValueError):
-    """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
+Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_default=False, consume_multiple=False)]
+"""Changes of a blade's properties, each as ``NAME=*FACTOR``."""
 
 
 def finished(path: Path) -> Run:

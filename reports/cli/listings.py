@@ -15,7 +15,8 @@ from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import registry as registry
 from ..shared import console
-from .arguments import PASSED, RESULTS, UsageError, finished
+from .arguments import RESULTS, finished
+from .exit_status import PASSED, UsageError
 
 
 def cases() -> int:

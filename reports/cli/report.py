@@ -5,7 +5,8 @@ from pathlib import Path
 from ...cases.judge.results import Run
 from ..shared.console import output
 from ..verification import terminal
-from .arguments import PASSED, RESULTS, Flag, UsageError, finished
+from .arguments import RESULTS, Flag, finished
+from .exit_status import PASSED, UsageError
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:

@@ -10,6 +10,7 @@ from urllib.parse import quote
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
+from ...references.protocol import install
 from ..shared.markdown import anchor
 from ..shared.summary import SYMBOL
 
@@ -76,7 +77,7 @@ def pdf(report: Path) -> Path:
         from weasyprint import HTML  # pyright: ignore[reportMissingImports]
     except (ImportError, OSError) as error:
         raise PdfError(
-            f"--pdf: WeasyPrint cannot be used ({error}): pip install 'southwell[pdf]', and the system's Pango; or print "
+            f"--pdf: WeasyPrint cannot be used ({error}): {install.extra('pdf')}, and the system's Pango; or print "
             "report.html from a browser"
         ) from error
     path = report.with_suffix(".pdf")
