@@ -249,12 +249,11 @@ def _one(blade: Blade, wanted: Wanted, omega: float, units: Units) -> Modes:
 
 def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet]) -> None:
     console = output()
-    for line in subject.about:
-        console.print(line, style="dim", markup=False)
-    not_used.show(subject.unused, console)
-    console.print()
     for sheet in (*tables.sheets(diagram, units), *extra):
         console.print(tables.terminal(sheet))
         console.print()
+    for line in subject.about:
+        console.print(line, style="dim", markup=False)
+    not_used.show(subject.unused, console)
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
