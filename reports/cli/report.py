@@ -10,16 +10,16 @@ from .exit_status import PASSED, UsageError
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
-    """Write report.md and figures anew from the results.jsonl in a folder.
+    """Rewrite the report of a finished run from its results.jsonl.
 
     Parameters
     ----------
     folder
-        What `southwell verify --out` was given.
+        Output folder of `southwell verify`.
     html
-        Also report.html, one file with the figures inside it.
+        Also write report.html, one file with its figures.
     pdf
-        Also report.pdf; needs the extra `pdf` (WeasyPrint).
+        Also write report.pdf; requires the extra `pdf` (WeasyPrint).
     """
     written = show(finished(folder / RESULTS), folder)
     if html or pdf:
@@ -36,7 +36,7 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
 
 
 def show(run: Run, folder: Path) -> Path:
-    """Write the report, print what it says first; the report's path."""
+    """Write the report and print its summary; the path of the report."""
     from ..verification import (
         report as matrix_report,  # with its figures half of a command's time to start, and of every worker's
     )

@@ -1,4 +1,4 @@
-"""``southwell show``: what a blade is, in numbers and a figure, and how its file was read."""
+"""``southwell show``: the properties of a blade in numbers and a figure, and how its file was read."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -46,16 +46,18 @@ def command(
     all: Annotated[bool, Parameter(negative=())] = False,
     mounting: Mounting | None = None,
 ) -> int:
-    """A blade's mass, centre, moments, sections and axes, and how its file was read.
+    """Show the mass, sections and axes of a blade, and how its file was read.
+
+    Lists every non-zero quantity of the file that is not used.
 
     Parameters
     ----------
     blade
-        A blade file (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, TOML, CSV), or a case (`southwell cases`).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
     out
-        Folder for a figure of the properties along the span (SVG, PNG) and a CSV of all stations.
+        Output folder for a figure of the properties along the span (SVG, PNG) and a CSV table of all stations.
     all
-        Every station in the table.
+        Print all stations.
     """
     subjects = find_subjects(blade, (mounting or Mounting()).mount())
     console = output()
@@ -95,7 +97,7 @@ def facts(blade: Blade) -> dict[str, str]:
         "hub radius": f"{blade.hub_radius:.6g} m",
         "precone": f"{np.degrees(blade.precone):.5g}° (positive downwind)",
         "pitch": f"{pitch:.5g}° (positive with the leading edge downwind; as OpenFAST's BlPitch: {0.0 - pitch:.5g}°)",
-        "root": "clamped" if not loose else f"{', '.join(loose)}; the rest held",
+        "root": "clamped" if not loose else f"{', '.join(loose)}; otherwise clamped",
         "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,
     }
@@ -131,7 +133,7 @@ def rows(blade: Blade, found: Sections) -> Array:
 
 
 def stations(blade: Blade, most: int | None) -> Table:
-    """The sections in a table: at most so many stations, evenly picked, first and last among them."""
+    """The sections in a table: at most ``most`` stations, evenly spaced, with the first and the last."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in COLUMNS:
         table.add_column(column.replace(" [", "\n").replace("]", ""), justify="right", no_wrap=True)
