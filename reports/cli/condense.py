@@ -38,8 +38,8 @@ def command(
     """Condense finite element matrices of a blade to a multibody model.
 
     The model has rigid bodies and complex stiffness elements. Prints segments and modes; writes segments.json and
-    condensation.md, which `southwell report` includes if it is in the folder of the report. The example takes about a minute and
-    also writes a figure of the three stages; status 1 if a difference exceeds its target.
+    condensation.md, which `southwell report` includes if it is in the folder of the report. The example takes about a
+    minute and also writes a figure of the three stages; status 1 if a difference exceeds its target.
 
     Parameters
     ----------

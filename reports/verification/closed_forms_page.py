@@ -23,8 +23,8 @@ FOLDER = "closed-forms"
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
     """Compare core with mechanisms that have closed-form solutions.
 
-    Pendulums, a top, a turntable, linkages and a spinning ring. Takes ten seconds. Writes closed-forms.md and its figures, which
-    `southwell report` includes if they are in the folder of the report.
+    Pendulums, a top, a turntable, linkages and a spinning ring. Takes ten seconds. Writes closed-forms.md and its figures,
+    which `southwell report` includes if they are in the folder of the report.
 
     Parameters
     ----------
