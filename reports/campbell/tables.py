@@ -94,7 +94,7 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
 
 
 def _margin(m: Margin) -> str:
-    ends = " … ".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
+    ends = "…".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
     return ends if m.kept else f"{TOO_NEAR} {ends}"
 
 

@@ -103,7 +103,8 @@ def modes(
                 f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}",
                 units or subject.units,
             )
-            console.print(terminal.frequencies(found, title, shown))
+            for table in terminal.frequencies(found, title, shown, console.width):
+                console.print(table)
             for line in terminal.remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)
             if other:

@@ -2,13 +2,20 @@
 
 import re
 import shlex
+from io import StringIO
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
+from southwell.cases.campbell.sweep import Named
 from southwell.cases.judge import results
+from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
+from southwell.reports.cli import show
+from southwell.reports.shared.units import RPM
+from southwell.reports.verification import terminal
 
 DECK = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
 BLADE = f"{DECK} --length 61.5 --hub-radius 1.5"
@@ -112,3 +119,31 @@ def test_wrong_options_are_one_line(arguments: str, told: str, capsys: pytest.Ca
     assert (status, out) == (2, "")
     assert err.count("\n") == 1
     assert told in err
+
+
+@pytest.mark.parametrize("count", [1, 6, 11])
+def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
+    """Every digit of every speed, in as many tables as that takes."""
+    rows = [
+        Named(rpm / RPM.speeds, mode, f"chordwise {mode}", (10.0 * mode + rpm) / RPM.frequencies, 1e-9, 0.0)
+        for rpm in range(0, 3 * count, 3)
+        for mode in (1, 2)
+    ]
+    console = Console(width=80, file=StringIO(), highlight=False)
+    for table in terminal.frequencies(rows, "a blade", RPM, 80):
+        console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    printed = [float(x) for line in shown.splitlines() if line.startswith("  chord") for x in line.split()[2:-1]]
+    assert sorted(printed) == pytest.approx(sorted(r.frequency * RPM.frequencies for r in rows))
+
+
+def test_stations_are_whole_in_eighty_columns() -> None:
+    console = Console(width=80, file=StringIO(), highlight=False)
+    for table in show.stations(uniform_blade("b", 99.0, EA=1.5e10, GJ=1.5e9, EI_y=1.5e10, EI_z=2.5e10, mass=1234.5), 5):
+        console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in shown
+    assert shown.count("99.000") == 2
+    assert shown.count("2.5e+10") == 2
