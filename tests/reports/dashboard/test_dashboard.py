@@ -264,7 +264,7 @@ def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys:
         str(folder), "--history", str(kept(tmp_path / "h.jsonl")), "--out", str(tmp_path / "site")
     )
     assert (status, out.strip()) == (0, str(tmp_path / "site" / "index.html"))
-    assert "line 8: cut short" in err
+    assert "line 8: truncated" in err
     for words in ([], [str(tmp_path / "nowhere")], [str(folder), "--history", str(tmp_path / "none.jsonl")]):
         status, out, err = southwell(*words, "--out", str(tmp_path / "other"))
         assert (status, out, err.count("\n")) == (2, "", 1)

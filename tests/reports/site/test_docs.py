@@ -171,7 +171,7 @@ class Page(HTMLParser):
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for needed in ("mkdocs", "material", "mkdocstrings", "latex2mathml"):
         if importlib.util.find_spec(needed) is None:
-            pytest.skip(f"{needed} is not installed: pip install 'southwell[docs]'")
+            pytest.skip(f"{needed} is not installed: pip install '.[docs]'")
     out = tmp_path_factory.mktemp("site")
     done = typed([sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(out)], ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
