@@ -26,12 +26,14 @@ def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) ->
     assert frame["name"].tolist() == ["chordwise 1", "flapwise 1", "chordwise 2"]
     np.testing.assert_allclose(frame["frequency_rad_s"], core.frequencies, rtol=1e-12)
     np.testing.assert_allclose(frame["frequency_hz"] * 2 * np.pi, core.frequencies, rtol=1e-12)
-    assert (frame["uncertainty"] <= 1e-6).all()
+    assert frame["uncertainty"].max() <= 1e-6
     assert repr(found) == "<3 modes of park-cantilever at 10 rad/s: 1.864, 2.451, 11.21 Hz>"
     assert "<table" in found._repr_html_()
     axes = found.plot(modes=2)
     assert isinstance(axes, Axes)
-    assert [line.get_xydata()[-1].tolist() for line in axes.lines] == [[blade.length, pytest.approx(1.0)]] * 2
+    assert [np.asarray(line.get_xydata())[-1].tolist() for line in axes.lines] == [
+        [blade.length, pytest.approx(1.0)]
+    ] * 2
 
 
 def test_a_diagram_has_the_frequencies_of_each_speed_in_the_unit_given(blade: southwell.Blade) -> None:
@@ -44,8 +46,9 @@ def test_a_diagram_has_the_frequencies_of_each_speed_in_the_unit_given(blade: so
         np.testing.assert_allclose(np.sort(row), core, rtol=1e-9)
     margins = found.margins()
     assert len(margins) == 2 * 6
-    ends = margins[(margins["mode"] == frame.columns[0]) & (margins["per_rev"] == 2)][["low", "high"]].to_numpy()[0]
-    np.testing.assert_allclose(ends, frame[frame.columns[0]].loc[[30.0, 60.0]] / [1.0, 2.0] - 1.0, rtol=1e-6)
+    first = frame.columns[0]
+    ends = np.asarray(margins.query("mode == @first and per_rev == 2")[["low", "high"]])[0]
+    np.testing.assert_allclose(ends, frame[first].loc[[30.0, 60.0]] / [1.0, 2.0] - 1.0, rtol=1e-6)
     assert repr(found) == "<Campbell diagram of park-cantilever: 2 modes, 3 speeds from 0 to 60 rpm>"
     assert found.verdict
     assert "<table" in found._repr_html_()
@@ -63,7 +66,7 @@ def test_a_verification_has_a_row_for_every_cell_and_a_verdict(blade: southwell.
     assert found.passed
     evidence = found.evidence().set_index("code")
     assert evidence.loc["exact-beam", "modes"] == 4
-    assert evidence.loc["exact-beam", "difference"] == mine["difference"].abs().max()
+    assert evidence.loc["exact-beam", "difference"] == np.abs(mine["difference"]).max()
     assert "pass" in repr(found)
     assert "<table" in found._repr_html_()
     assert found.plot().get_xscale() == "log"
