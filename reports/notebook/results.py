@@ -4,7 +4,6 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -25,6 +24,13 @@ SIGNIFICANT = 6
 
 def _html(title: str, frame: pd.DataFrame) -> str:
     return f"<p>{title}</p>{frame.to_html(index=False, border=0, float_format=f'%.{SIGNIFICANT}g')}"
+
+
+def _axes(width: float, height: float) -> Axes:
+    """Axes of a new figure, inches."""
+    import matplotlib.pyplot as plt  # chooses a backend, which reading and solving must not
+
+    return plt.subplots(figsize=(width, height), layout="constrained")[1]
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,7 +71,7 @@ class ModesResult(Modes):
 
     def plot(self, modes: int = 4, axes: Axes | None = None) -> Axes:
         """Draw the shapes of the lowest ``modes`` along the span: of each, the motion that is largest, scaled to 1."""
-        axes = axes if axes is not None else plt.subplots(layout="constrained")[1]
+        axes = axes or _axes(6.4, 4.8)
         for k, name in enumerate(self.names[:modes]):
             shape = self.shapes[k] * (1, 1, 1, self.blade.length / 10)  # a rotation by its displacement at a tenth of L
             part = int(np.abs(shape).max(axis=0).argmax())
@@ -125,7 +131,7 @@ class CampbellResult:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw frequencies along rotor speed, the lines of n per revolution and the operating range."""
-        axes = axes if axes is not None else plt.subplots(figsize=(7, 4.5), layout="constrained")[1]
+        axes = axes or _axes(7.0, 4.5)
         return lines(axes, self.diagram, self.units)
 
     def write(self, folder: str | Path) -> tuple[Path, ...]:
@@ -200,7 +206,7 @@ class VerifyResult:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the size of every difference with its uncertainty, one row per code; the target is a line."""
-        axes = axes if axes is not None else plt.subplots(figsize=(7, 3.5), layout="constrained")[1]
+        axes = axes or _axes(7.0, 3.5)
         frame = self.to_frame().dropna(subset=["difference"])
         codes = list(dict.fromkeys(frame["code"]))
         size = (frame["difference"].abs() + frame["uncertainty"].fillna(0.0)).clip(lower=1e-16)
