@@ -1,22 +1,25 @@
 """Compiled loops, and the products of small matrices they are made of.
 
 What runs for every element at every speed is compiled by numba at its first call and kept on disk for later processes, in a
-folder named after the sources of all such functions: where one of them changes, none is taken from before.
+folder named after the sources of all such functions: where one of them changes, none is taken from before. The first
+compilation of a command is announced by the logger ``southwell``, whose warnings go to standard error by default.
 """
 
 import hashlib
+import logging
 import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
-from numba.core import config
+from numba.core import config, event
 from numpy.typing import NDArray
 
 from . import compiled_files
@@ -52,6 +55,39 @@ def _places() -> Iterator[Path]:
             yield Path.home() / ".cache" / "southwell"
     with suppress(OSError):  # no temporary folder either
         yield Path(tempfile.gettempdir()) / f"southwell-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
+
+
+ANNOUNCEMENT = "southwell: compiling the solver's loops (first use only, up to half a minute)"
+
+
+class _FirstUse(event.Listener):
+    """Announces once that code is being compiled; of several worker processes, one does."""
+
+    announced = False
+
+    def on_start(self, event: event.Event) -> None:
+        """Numba begins to compile a function that is not in the cache."""
+        ours = event.data["dispatcher"].py_func.__module__.startswith(__package__ or "")
+        if ours and not self.announced:
+            self.announced = True
+            if parent_process() is None or _first_worker():
+                logging.getLogger("southwell").warning(ANNOUNCEMENT)
+
+    def on_end(self, event: event.Event) -> None:
+        """Nothing to do."""
+
+
+def _first_worker() -> bool:
+    folder = _folder()
+    if folder is None:
+        return True
+    with suppress(FileExistsError):
+        (folder / "announced").touch(exist_ok=False)
+        return True
+    return False
+
+
+event.register("numba:compile", _FirstUse())
 
 
 def compiled(f: F) -> F:

@@ -17,7 +17,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker("random")
-        if item.get_closest_marker("nightly") and "nightly" not in config.getoption("-m"):
+        if item.get_closest_marker("nightly") and "nightly" not in str(config.getoption("-m")):
             item.add_marker(pytest.mark.skip(reason="for the night: pytest -m nightly"))
 
 

@@ -60,7 +60,7 @@ def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
     assert beside - data_files() == {
         "reports/site/readme.jsonl",
         "reports/site/readme-bench.json",
-    }  # for the README alone
+    }  # for the README and the site alone
 
 
 @pytest.fixture(scope="module")

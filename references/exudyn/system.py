@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..protocol import install
 from ..protocol.interface import CodeError
 
 Array = NDArray[np.float64]
 
-HINT = "pip install 'southwell[codes]'"
+HINT = install.extra("codes")
 
 
 def version() -> str | None:

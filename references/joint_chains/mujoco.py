@@ -16,6 +16,7 @@ from ...core.blade import Blade
 from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
+from ..protocol import install
 from ..protocol.interface import CORE, Independence, Shares
 from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
@@ -42,7 +43,7 @@ class MujocoChain:
     model = FULL
     levels = (10, 20, 40)
     order = 2
-    hint = "pip install 'southwell[more-codes]'"
+    hint = install.extra("more-codes")
 
     def version(self) -> str | None:
         """Version of MuJoCo, without importing it."""

@@ -16,6 +16,7 @@ from ...core.blade import Blade
 from ...core.effects import FULL
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
+from ..protocol import install
 from ..protocol.interface import CORE, Independence, Shares
 from .joint_chain import bodies, chain_modes, check, places, refusal
 
@@ -38,7 +39,7 @@ class PinocchioChain:
     model = FULL
     levels = (10, 20, 40)
     order = 2
-    hint = "pip install 'southwell[codes]'"
+    hint = install.extra("codes")
 
     def version(self) -> str | None:
         """Version of Pinocchio, without importing it."""

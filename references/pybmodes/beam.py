@@ -26,6 +26,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from ...core.blade import Blade, clamped, coupled, sample, straight
 from ...core.effects import Model
 from ...core.modes import STATIONS, Modes
+from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
 
@@ -90,7 +91,7 @@ class PyBModes:
     model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
-    hint = "pip install 'southwell[codes]'"
+    hint = install.extra("codes")
 
     def version(self) -> str | None:
         """Version of pyBModes, without importing it."""

@@ -17,6 +17,7 @@ from scipy.sparse import dia_array
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
+from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
@@ -45,7 +46,7 @@ class ScikitFemBeam:
     model = FULL
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
-    hint = "pip install 'southwell[codes]'"
+    hint = install.extra("codes")
 
     def version(self) -> str | None:
         """Version of scikit-fem, without importing it."""

@@ -20,13 +20,14 @@ from scipy.sparse.linalg import splu
 
 from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
+from ..protocol import install
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
 from .mesh import Bools, Bricks, Clamp, Material, held_by, mean_motions
 
 Array = NDArray[np.float64]
 
-HINT = "pip install 'southwell[codes]'"
+HINT = install.extra("codes")
 
 NEWTON = 12
 

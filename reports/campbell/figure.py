@@ -75,6 +75,16 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
     return figure
 
 
+def lines(axes: Axes, diagram: Campbell, units: Units) -> Axes:
+    """The modes, n per revolution and the operating range on given axes, on one scale; the axes."""
+    top = 1.06 * float(np.nanmax(diagram.tracks.frequencies)) * units.frequencies
+    _panel(axes, diagram, units, (0.0, top))
+    rays(axes, diagram, units)
+    axes.set_xlabel(units.speed_label)
+    axes.set_ylabel(units.frequency_label)
+    return axes
+
+
 def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
     """Of frequencies, from below: one, or two where the rays stay in the lower part of what there is."""
     tracks, wanted = diagram.tracks, diagram.wanted

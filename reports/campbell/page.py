@@ -21,8 +21,17 @@ PAGE = "campbell.md"
 DPI = 180
 
 
-def write(diagram: Campbell, folder: Path, units: Units, command: str, about: Sequence[str] = ()) -> tuple[Path, ...]:
-    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything; ``about`` says where the blade is from.
+def write(
+    diagram: Campbell,
+    folder: Path,
+    units: Units,
+    command: str,
+    about: Sequence[str] = (),
+    extra: Sequence[tables.Sheet] = (),
+) -> tuple[Path, ...]:
+    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything.
+
+    ``about`` says where the blade is from; ``extra`` are tables beyond those of every diagram.
 
     Raises:
         OSError: if a file cannot be written.
@@ -39,7 +48,7 @@ def write(diagram: Campbell, folder: Path, units: Units, command: str, about: Se
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
-    atomic.write(page, _page(diagram, k, units, command, about))
+    atomic.write(page, _page(diagram, k, units, command, about, extra))
     return (page, *written)
 
 
@@ -61,7 +70,9 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     return vector, raster
 
 
-def _page(diagram: Campbell, k: int, units: Units, command: str, about: Sequence[str]) -> str:
+def _page(
+    diagram: Campbell, k: int, units: Units, command: str, about: Sequence[str], extra: Sequence[tables.Sheet]
+) -> str:
     omega = float(diagram.tracks.omega[k])
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
@@ -69,11 +80,11 @@ def _page(diagram: Campbell, k: int, units: Units, command: str, about: Sequence
         *[f"{line}.\n" for line in tables.notes(diagram, units)],
         "![Natural frequencies along rotor speed](campbell.svg)\n",
         *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
-        *[tables.markdown(sheet) for sheet in tables.sheets(diagram, units)],
+        *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
         *(["![Where modes meet](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
         _elastodyn(diagram, k, units),
-        f"## How to have this again\n\n```\n{command}\n```\n",
+        f"## Reproduce\n\n```\n{command}\n```\n",
     ]
     return "\n".join(parts)
 

@@ -117,7 +117,7 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
 
 
 def _margin(m: Margin) -> str:
-    ends = " … ".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
+    ends = "…".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
     return ends if m.kept else f"{TOO_NEAR} {ends}"
 
 
@@ -249,6 +249,12 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
         if tracks.place[k, t] >= 0
     ]
     return remarks(rows, wanted.accuracy if wanted.elements is None else None, units)
+
+
+def margins_kept(diagram: Campbell) -> bool:
+    """Whether every mode could be judged over the operating range and keeps its margins."""
+    judged = {m.track for m in diagram.margins}
+    return len(judged) == diagram.tracks.count and all(m.kept for m in diagram.margins)
 
 
 def verdict(diagram: Campbell, units: Units) -> str:

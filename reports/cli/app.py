@@ -1,96 +1,115 @@
-"""The command line: bad input is one line on standard error and status 2, never a traceback."""
+"""The command line: bad input is one line on standard error and status 2, never a traceback.
+
+A command's module is imported when the command runs: `southwell --help` loads no numerical library.
+"""
 
 import sys
 import traceback
 from collections.abc import Sequence
-from contextlib import redirect_stderr, redirect_stdout
-from importlib.metadata import version
+from contextlib import AbstractContextManager, nullcontext, redirect_stderr, redirect_stdout
 
-from cyclopts import App, CycloptsError, UnusedCliTokensError
-from numba.core import event
-from threadpoolctl import threadpool_limits
+from cyclopts import App, CycloptsError, Group, UnusedCliTokensError
 
-from ...cases.input import files
-from ...cases.input.errors import CaseError, brief
-from ...references.protocol.registry import UnknownCodeError
 from ..shared import streams
-from ..shared.console import LogSafe
+from ..shared.log_safe import LogSafe
 from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASSED, listed
-from .arguments import IncompleteError, UsageError
+from .errors import IncompleteError, UsageError
 
 OUTSIDE = "--allow-outside"
 """An option of every command, wherever it stands."""
 
-app = App(
-    name="southwell",
-    help=f"""Are these natural frequencies of a rotating blade right?
-
-    One blade through many independent codes, every difference with its uncertainty and its cause.
-
-    Exit status: {listed()}.
-    """,
-    help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
-    version=lambda: version("southwell"),
-    suppress_keyboard_interrupt=False,
+ONE_BLADE, VERIFY, OTHER, CI, LAST = (
+    Group.create_ordered(name)
+    for name in ("Your blade", "Verification", "Other models", "Regression and continuous integration", "Options")
 )
 
-app.command(f"{__package__}.verify:command", name="verify")
-app.command(f"{__package__}.modes:modes", name="modes")
-app.command(f"{__package__}.modes:mechanism", name="mechanism")
-app.command(f"{__package__}.report:command", name="report")
-app.command(f"{__package__}.listings:cases", name="cases")
-app.command(f"{__package__}.listings:code_app", name="codes")
-app.command(f"{__package__}.campbell:command", name="campbell")
-app.command("southwell.reports.verification.bench:command", name="bench")
-app.command(f"{__package__}.condense:command", name="condense")
-app.command("southwell.reports.verification.closed_forms_page:command", name="closed-forms")
-app.command(f"{__package__}.conform:command", name="conform")
-app.command(f"{__package__}.show:command", name="show")
-app.command(f"{__package__}.convert:command", name="convert")
-app.command(f"{__package__}.history:app", name="history")
-app.command(f"{__package__}.gate:command", name="gate")
-app.command(f"{__package__}.dashboard:command", name="dashboard")
+COMMANDS = (
+    (ONE_BLADE, "campbell", "cli.campbell:command", "Compute the Campbell diagram of a blade and judge its margins."),
+    (ONE_BLADE, "modes", "cli.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
+    (ONE_BLADE, "show", "cli.show:command", "Show the mass, sections and axes of a blade, and how its file was read."),
+    (ONE_BLADE, "convert", "cli.convert:command", "Write a blade in another format."),
+    (VERIFY, "verify", "cli.verify:command", "Solve blades with every code, compare the results and write a report."),
+    (VERIFY, "report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
+    (VERIFY, "cases", "cli.listings:cases", "List the cases that come with the package."),
+    (
+        VERIFY,
+        "codes",
+        "cli.listings:code_app",
+        "List the codes: version, what they share with core, how to install them.",
+    ),
+    (VERIFY, "conform", "cli.conform:command", "Run the conformance checks on a code."),
+    (VERIFY, "bench", "verification.bench:command", "Measure the run time of core and of the other codes."),
+    (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
+    (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),
+    (
+        OTHER,
+        "closed-forms",
+        "verification.closed_forms_page:command",
+        "Compare core with mechanisms that have closed-form solutions.",
+    ),
+    (CI, "gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
+    (CI, "history", "cli.history:app", "Record the results of runs by commit."),
+    (CI, "dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),
+)
+"""Group, name, place and line in the list of commands; the line is also the first of the command's own help."""
 
 
-class _FirstUse(event.Listener):
-    """Says at a terminal why nothing happens, where code is compiled."""
+def _version() -> str:
+    from importlib.metadata import version
 
-    told = False
+    return version("southwell")
 
-    def on_start(self, event: event.Event) -> None:
-        """Once."""
-        if not _FirstUse.told and sys.stderr.isatty():
-            print("southwell: compiling the solver's loops, once: about half a minute", file=sys.stderr)
-        _FirstUse.told = True
 
-    def on_end(self, event: event.Event) -> None:
-        """Nothing."""
+def build(listing: bool = False) -> App:
+    """The application; with ``listing`` each command has its line in the list but is not imported for it."""
+    built = App(
+        name="southwell",
+        help=f"""Verify the natural frequencies of rotating blades.
+
+        Southwell solves a blade with its own multibody solver and with independent codes, and reports every difference
+        with its uncertainty and, where known, its cause. For one command: southwell COMMAND --help.
+
+        Exit status: {listed()}.
+        """,
+        help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
+        help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
+        group_commands=LAST,
+        version=_version,
+        suppress_keyboard_interrupt=False,
+    )
+    reports = str(__package__).rpartition(".")[0]
+    for place, (group, name, target, line) in enumerate(COMMANDS):
+        path = f"{reports}.{target}"
+        built.command(path, name=name, group=group, sort_key=place, help=line if listing else None)
+    built.register_install_completion_command(help="Install completion for bash, zsh or fish, and exit.")
+    return built
+
+
+app = build()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """The entry point; ends the process with the command's status, see ``statuses``."""
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    words = sys.argv[1:] if arguments is None else list(arguments)
     streams.prepare()
     with (
         redirect_stdout(LogSafe(sys.stdout)),  # pyright: ignore[reportArgumentType]
         redirect_stderr(LogSafe(sys.stderr)),  # pyright: ignore[reportArgumentType]
-        files.outside_allowed(OUTSIDE in given),
+        _outside_allowed() if OUTSIDE in words else nullcontext(),
     ):
-        status = _status([word for word in given if word != OUTSIDE])
+        status = _status([word for word in words if word != OUTSIDE])
         streams.finish()
     sys.exit(status)
 
 
-def _status(arguments: list[str]) -> int:
+def _status(words: list[str]) -> int:
     """Run a command; its exit status."""
-    event.register("numba:compile", _FirstUse())
     try:
-        status = _run(arguments)
+        status = _run(words)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        words = " ".join(error.unused_tokens or ())
-        status = _told(f"{words}: not understood here: more words than the command takes; see --help", BAD_INPUT)
-    except (CycloptsError, CaseError, UnknownCodeError, UsageError) as error:
+        status = _told(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
+    except (CycloptsError, UsageError) as error:
         status = _told(error, BAD_INPUT)
     except IncompleteError as error:
         status = _told(error, INCOMPLETE)
@@ -100,21 +119,40 @@ def _status(arguments: list[str]) -> int:
         what = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
         status = _told(what, BAD_INPUT)
     except Exception as error:
+        from ...cases.input.errors import CaseError
+        from ...references.protocol.registry import UnknownCodeError
+
+        if isinstance(error, CaseError | UnknownCodeError):
+            return _told(error, BAD_INPUT)
         traceback.print_exc()
-        status = _told(
-            f"internal error: {type(error).__name__}: {error}: please report it, with the lines above", INTERNAL
-        )
+        what = f"internal error: {type(error).__name__}: {error}: please report it, with the lines above"
+        status = _told(what, INTERNAL)
     return status
 
 
-def _run(arguments: list[str]) -> int:
-    if arguments in ([], *([flag] for flag in app.help_flags)):
-        app.resolved_commands()  # loads what is otherwise loaded when asked for, whose help has a line each here
-    with threadpool_limits(1):  # matrices are small: threads would wait for each other
-        return app(arguments, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+def _run(words: list[str]) -> int:
+    chosen = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
+    runs = bool(words) and words[0] in {name for _, name, *_ in COMMANDS}
+    with _one_thread() if runs else nullcontext():
+        return chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
 
 
 def _told(what: object, status: int) -> int:
     """Say in one line why there is no more; the status."""
+    from ...cases.input.errors import brief
+
     print(f"southwell: {brief(str(what))}", file=sys.stderr)
     return status
+
+
+def _outside_allowed() -> AbstractContextManager[object]:
+    from ...cases.input import files
+
+    return files.outside_allowed(True)
+
+
+def _one_thread() -> AbstractContextManager[object]:
+    """Matrices are small: threads would wait for each other."""
+    from threadpoolctl import threadpool_limits
+
+    return threadpool_limits(1)

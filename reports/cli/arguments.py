@@ -1,4 +1,4 @@
-"""What the commands take and give back: whole numbers, flags, a case by name or file, how bad input is told."""
+"""Types of arguments, and the finished run that several commands read."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -13,6 +13,7 @@ from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
 from ...cases.verify import journal
+from .errors import IncompleteError, UsageError
 
 RESULTS = "results.jsonl"
 
@@ -44,9 +45,8 @@ Flag = Annotated[bool, Parameter(negative=())]
 CONTINUE = "run the same `southwell verify` again, which continues where it was stopped"
 """What to do about an incomplete run."""
 
-
-class UsageError(ValueError):
-    """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
+Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_default=False, consume_multiple=False)]
+"""Changes of a blade's properties, each as ``NAME=*FACTOR``."""
 
 
 @contextmanager
@@ -64,10 +64,6 @@ def writing(out: Path) -> Iterator[None]:
         except OSError as error:
             raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
         yield
-
-
-class IncompleteError(ValueError):
-    """A run that is not complete, where only a complete one will do: names it, says what is missing."""
 
 
 def finished(path: Path) -> Run:

@@ -13,22 +13,32 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from ...cases.campbell import confirmation
+from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import Campbell, Wanted, campbell, solver
 from ...cases.campbell.tracking import Solver
+from ...cases.input.changes import parse
+from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
+from ...cases.verify import matrix
 from ...cases.verify.pool import Pool
 from ...core.blade import Blade
 from ...core.modes import Modes
+from ...references.protocol import registry
+from ..campbell import changes as changes_table
+from ..campbell import confirmation as confirmation_table
 from ..campbell import page
 from ..campbell import tables as tables
+from ..campbell.tables import Sheet
 from ..shared import not_used
-from ..shared.console import output
+from ..shared.console import Watch, output
 from ..shared.paths import file_name
-from ..shared.units import Units
+from ..shared.units import RPM, Units
 from . import campbell_options as options
-from .arguments import Accuracy, Elements, Flag, Whole, Workers
+from .arguments import Accuracy, Changes, Elements, Flag, Whole, Workers
+from .errors import UsageError
 from .mounting import Mounting
-from .subjects import Subject
+from .subjects import Subject, changed, single
 from .subjects import subjects as find_subjects
 
 
@@ -50,54 +60,75 @@ def command(
     tilt: float = 0.0,
     load: Path | None = None,
     workers: Workers = 1,
+    changes: Changes = (),
+    against: str | None = None,
+    verify: Flag = False,
+    strict: Flag = False,
     mounting: Mounting | None = None,
 ) -> int:
-    """A blade's Campbell diagram: modes by name along rotor speed, where they meet n per revolution or each other.
+    """Compute the Campbell diagram of a blade and judge its margins.
 
-    Prints tables; writes campbell.md, figures (SVG, PNG) of the diagram and of the mode shapes, and CSV. A step of speed
-    is halved where modes come so near that it is not clear which is which.
+    Prints tables of the modes, of the margins to n per revolution (nP), of resonances, and of crossings and veerings. Writes
+    campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds are inserted where two modes
+    come close to each other.
 
     Parameters
     ----------
     blade
-        A blade's file: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV. Or a case by name
-        (`southwell cases`), one of its blades as `case/blade`, or its TOML file.
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`), one
+        of its blades as `case/blade`, or its TOML file.
     rpm
-        Rotor speeds in revolutions per minute: `first:last:step` with both ends, or a list `0,5,10`; a case's own speeds by
-        default.
+        Rotor speeds in rpm: a range `first:last:step` or a list `0,5,10`. Default: the speeds of the case.
     omega
-        The same in rad/s.
+        Rotor speeds in rad/s, in the same form.
     out
-        Folder for figures and tables; of several blades, each has a folder in it.
+        Output folder; one sub-folder per blade.
     modes
-        How many, from the lowest.
+        Number of modes, from the lowest.
     per_rev
-        Multiples of the rotor's speed that excite: `1:6`, or `1,2,3,6`.
+        Excitation orders n (nP): `1:6` or `1,2,3,6`.
     operating
-        Speeds between which the rotor runs, as `6.9:12.1`, in the unit of the speeds; margins are judged over it.
+        Operating range, as `6.9:12.1`, in the unit of the speeds. Margins are judged over it.
     margin
-        How far modes should keep from n per revolution over it, in parts of n per revolution: `10%`, `10` or `0.1`.
+        Required distance from nP over the operating range, relative to nP: `10%`, `10` or `0.1`.
     elements
-        Beam elements of equal length along the blade; by default, as many at each speed as --accuracy takes.
+        Number of beam elements of equal length. Default: at each speed as many as --accuracy requires.
     accuracy
         Largest relative uncertainty of a frequency, without --elements.
     allow_large_strain
         Accept steady strains above 20 %.
     azimuth
-        Degrees from the blade pointing up, in the direction of rotation: the blade under gravity there. Without: no gravity.
+        Azimuth in degrees, 0 with the blade up, for the gravity load. Default: no gravity.
     tilt
-        Degrees the rotor's axis points above the horizontal; with --azimuth.
+        Tilt of the rotor axis above the horizontal, in degrees; with --azimuth.
     load
-        A steady load that bends the blade before it vibrates: a CSV table of `fraction [-]`, `fx [N/m]`, `fy [N/m]`,
-        `fz [N/m]`, in axes that turn with the hub (x outwards, y in the direction of motion, z along the rotor's axis).
+        CSV table of a steady load: `fraction [-]`, `fx [N/m]`, `fy [N/m]`, `fz [N/m]`, in hub axes (x along the blade, y in
+        the direction of motion, z along the rotor axis).
     workers
-        Processes that share the speeds; starting one costs about as much as twenty speeds.
+        Worker processes that share the speeds.
+    changes
+        Change a property: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone, pitch. May be
+        repeated.
+    against
+        Another blade; adds a table of changes of every frequency.
+    verify
+        Run all codes on the blade at the ends of the operating range; adds the uncertainty of each line and the independent
+        codes that confirm it.
+    strict
+        Status 1 if a margin is violated or could not be judged.
     """
+    if strict and operating is None:
+        raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")
+    if verify and (azimuth is not None or load is not None):
+        raise UsageError("--verify: the other codes solve the blade without gravity and steady loads: leave those out")
     given = options.speeds(rpm, omega)
-    subjects = find_subjects(blade, (mounting or Mounting()).mount())
+    mount = (mounting or Mounting()).mount()
+    subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
+    other = single(against, mount) if against else None
+    kept = True
     for subject in subjects:
         if not (given or subject.speeds):
-            raise CaseError(f"--rpm: missing: {blade} says no speeds: give them, as in 0:15:0.5")
+            raise CaseError(f"--rpm: missing: {blade} does not define rotor speeds: give them, as in 0:15:0.5")
         speeds, units = given or (subject.speeds, subject.units)
         wanted = Wanted(
             speeds=tuple(speeds),
@@ -114,19 +145,44 @@ def command(
         folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
         _check(out)
         diagram = solve(subject.blade, wanted, units, workers)
-        _show(diagram, units, subject)
+        extra = []
+        if verify:
+            extra.append(confirmed_by(diagram, subject, units))
+        if other:
+            found = blade_changes(subject.blade, other.blade, speeds, modes, elements)
+            extra.append(changes_table.sheet(found, other.blade.name, units))
+        _show(diagram, units, subject, extra)
+        kept &= tables.margins_kept(diagram)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
-            written = page.write(diagram, folder, units, line, (*subject.about, *not_used.lines(subject.unused)))
+            written = page.write(diagram, folder, units, line, (*subject.about, *not_used.lines(subject.unused)), extra)
         except OSError as error:
             raise _unwritable(out, error.strerror) from error
         names = ", ".join(path.name for path in written)
         output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
-    return 0
+    return int(strict and not kept)
+
+
+def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
+    """The codes that confirm each line, from a run of all of them."""
+    case = default_case(
+        subject.blade,
+        confirmation.speeds(diagram),
+        rpm=units is RPM,
+        source="; ".join(subject.about),
+        modes=diagram.wanted.modes,
+    )
+    pool, watch = Pool(os.cpu_count() or 1), Watch()
+    try:
+        with watch:
+            run = matrix.run([case], registry.names(), pool, watch.show, parts=False)
+    finally:
+        pool.stop()
+    return confirmation_table.sheet(diagram, confirmation.confirmations(diagram, run), units)
 
 
 def _check(out: Path) -> None:
-    """Before minutes of work: whether a folder is there, or can be made."""
+    """Raise before minutes of work if the folder cannot be written."""
     there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
     if not os.path.isdir(there):
         raise _unwritable(out, f"{there} is a file")
@@ -156,7 +212,7 @@ def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campb
 
 
 class Told:
-    """A bar on standard error over the speeds asked for; speeds between, where modes meet, are named as they come."""
+    """A progress bar on standard error over the requested speeds; inserted speeds are shown as they are solved."""
 
     def __init__(self, name: str, speeds: Sequence[float], units: Units) -> None:
         console = Console(stderr=True, highlight=False)
@@ -179,7 +235,7 @@ class Told:
         if omega in self.asked:
             self.bar.update(self.task, advance=1, description=self.units.at(omega))
         else:
-            self.bar.update(self.task, description=f"modes meet: looking closer at {self.units.at(omega)}")
+            self.bar.update(self.task, description=f"modes come close: inserting {self.units.at(omega)}")
 
 
 def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told: Told, units: Units) -> Solver:
@@ -200,15 +256,14 @@ def _one(blade: Blade, wanted: Wanted, omega: float, units: Units) -> Modes:
     return solver(blade, wanted, at=units.at)(omega)
 
 
-def _show(diagram: Campbell, units: Units, subject: Subject) -> None:
+def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet]) -> None:
     console = output()
+    for sheet in (*tables.sheets(diagram, units), *extra):
+        console.print(tables.terminal(sheet))
+        console.print()
     for line in subject.about:
         console.print(line, style="dim", markup=False)
     not_used.show(subject.unused, console)
-    console.print()
-    for sheet in tables.sheets(diagram, units):
-        console.print(tables.terminal(sheet))
-        console.print()
     for line in tables.notes(diagram, units):
         console.print(line, style="yellow", markup=False, soft_wrap=True)
     line = tables.verdict(diagram, units)

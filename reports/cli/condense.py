@@ -37,28 +37,28 @@ def command(
     allow_large_strain: Flag = False,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
 ) -> int:
-    """Condense finite element matrices of a blade to rigid bodies and complex stiffness elements; modes of those.
+    """Condense finite element matrices of a blade to a multibody model.
 
-    Prints the segments and modes; writes segments.json and condensation.md. The example takes about a minute; it also writes
-    the picture of the three stages, and its status is 1 if a difference exceeds its target. `southwell report` takes
-    condensation.md up from the folder of a report.
+    The model has rigid bodies and complex stiffness elements. Prints segments and modes; writes segments.json and
+    condensation.md, which `southwell report` includes if it is in the folder of the report. The example takes about a
+    minute and also writes a figure of the three stages; status 1 if a difference exceeds its target.
 
     Parameters
     ----------
     file
-        TOML that names matrices, nodes and sections; segments.json of an earlier run, for other speeds; or `example`.
+        TOML file that names matrices, nodes and sections; segments.json of an earlier run; or `example`.
     example
-        A tapered, twisted solid blade against its own modes, and a solid cantilever against Timoshenko's.
+        Compare a tapered, twisted solid blade with its own modes, and a solid cantilever with Timoshenko's.
     omega
-        Rotor speeds in rad/s, one or `first:last:step`; at rest by default.
+        Rotor speeds in rad/s: one, a range `first:last:step` or a list `0,5,10`. Default: at rest.
     rpm
-        The same in revolutions per minute.
+        Rotor speeds in rpm, in the same form.
     modes
-        How many, from the lowest.
+        Number of modes, from the lowest.
     allow_large_strain
         Accept steady strains above 20 %.
     out
-        Folder for what is written.
+        Output folder.
     """
     if example or file == EXAMPLE:
         if file not in (None, EXAMPLE) or omega or rpm:

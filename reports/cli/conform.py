@@ -1,4 +1,4 @@
-"""``southwell conform``: what an adapter must pass, asked of one."""
+"""``southwell conform``: the conformance checks of an adapter."""
 
 from collections import Counter
 
@@ -14,20 +14,21 @@ MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"
 
 
 def command(code: str, /) -> int:
-    """Ask a code what every adapter must pass: closed forms, symmetries, and whether it drops what it does not refuse.
+    """Run the conformance checks on a code.
 
-    Status 1 if it fails a check, or is not installed.
+    The checks are closed forms, symmetries, and whether the adapter ignores an effect that it neither refuses nor declares.
+    Status 1 if a check fails or the code is not installed.
 
     Parameters
     ----------
     code
-        A name (`southwell codes`), or the import path `module:attribute` of an adapter.
+        Name (`southwell codes`), or import path `module:attribute` of an adapter.
     """
     (known,) = describe([code])
     if not known.blades:
         raise UnknownCodeError(f"code: {code!r} takes mechanisms, not blades: there are no checks for it")
     table = Table(box=box.SIMPLE_HEAD)
-    for head in ("", "check", "law, or why not"):
+    for head in ("", "check", "law, or reason"):
         table.add_column(head, overflow="fold")
     found = outcomes(code)
     for outcome in found:

@@ -1,4 +1,4 @@
-"""``southwell convert``: a blade in any format that is read, written as TOML, for BeamDyn or for ElastoDyn."""
+"""``southwell convert``: a blade of any readable format, written as TOML, BeamDyn or ElastoDyn files."""
 
 import os
 from collections.abc import Sequence
@@ -41,34 +41,36 @@ def command(
     rpm: float = 0.0,
     mounting: Mounting | None = None,
 ) -> int:
-    """Write a blade in another format; what the format cannot hold is refused.
+    """Write a blade in another format.
 
-    TOML holds any blade. BeamDyn holds curved and coupled ones on a clamped root, without tip mass (two files are written);
-    ElastoDyn only straight, uncoupled ones without stretch, torsion and moments of inertia. Quantities of the file that are
-    no property of a blade (damping, mode shapes, pitch axis) are carried over where the format has them, else listed.
+    A blade that the format cannot represent is refused. TOML represents any blade; BeamDyn (two files) curved and coupled
+    blades with a clamped root and no tip mass; ElastoDyn straight, uncoupled blades without axial, torsional and rotary-inertia
+    properties. Damping, mode shapes and pitch axis are copied where the format has them, and listed otherwise.
 
     Parameters
     ----------
     blade
-        A blade file (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, TOML, CSV), or a case's blade (`southwell cases`).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
     out
-        File to write; there must be none.
+        Output file; must not exist.
     to
-        Format; TOML if the file ends in .toml.
+        Output format. Default: TOML if the file ends in .toml.
     rpm
-        Rotor speed at which the mode shapes of an ElastoDyn file are computed; at rest by default.
+        Rotor speed in rpm for the mode shapes of an ElastoDyn file.
     """
     if not 0.0 <= rpm < 1e6:
         raise CaseError(f"--rpm {rpm:g}: not a rotor speed: give 0 or more revolutions per minute, as in 12.1")
     chosen = to or ("toml" if out.suffix.lower() == ".toml" else None)
     if chosen is None:
-        raise CaseError(f"{out}: ends in {out.suffix or 'nothing'}: say the format by --to toml, beamdyn or elastodyn")
+        raise CaseError(
+            f"{out}: ends in {out.suffix or 'nothing'}: give the format with --to toml, beamdyn or elastodyn"
+        )
     if os.path.lexists(out):
-        raise CaseError(f"{out}: is there already: give another name, or remove it")
+        raise CaseError(f"{out}: exists already: give another name, or remove it")
     subjects = find_subjects(blade, (mounting or Mounting()).mount())
     if len(subjects) > 1:
         names = ", ".join(s.blade.name for s in subjects)
-        raise CaseError(f"{blade}: {len(subjects)} blades ({names}): say which")
+        raise CaseError(f"{blade}: {len(subjects)} blades ({names}): name one of them")
     console = output()
     try:
         written, left = _write(subjects[0], out, chosen, rpm / RPM.speeds)

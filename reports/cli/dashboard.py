@@ -18,21 +18,23 @@ def command(
     history: Path | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-dashboard"),
 ) -> int:
-    """Write a static site of one or several runs: it opens from the file system, without a server and without a network.
+    """Write a static site of one or several runs.
+
+    The site needs neither a server nor a network connection.
 
     Status 3 if a run is incomplete; its pages say so.
 
     Parameters
     ----------
     folders
-        Folders that `southwell verify --out` has written, or their results.jsonl; the first is shown first.
+        Output folders of `southwell verify`, or their results.jsonl.
     history
-        A file that `southwell history add` keeps: adds a page of every frequency, difference and time by commit.
+        History file (`southwell history add`): adds a page of every frequency, difference and run time by commit.
     out
-        Folder of the site.
+        Output folder.
     """
     if not folders:
-        raise CaseError("folders: none given: give one that `southwell verify --out` has written")
+        raise CaseError("folders: none given: give an output folder of `southwell verify`")
     names = [folder.name or str(folder.resolve()) for folder in folders]
     if len(set(names)) < len(names):
         names = [str(folder) for folder in folders]

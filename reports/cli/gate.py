@@ -18,7 +18,8 @@ from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
 from ...cases.regression.history import Entry
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..ci import gate_text, junit
-from ..shared.console import commands, output
+from ..shared.console import output
+from ..shared.log_safe import commands
 from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
 from ..verification import report as matrix_report
@@ -41,32 +42,32 @@ def command(
     summary: Path | None = None,
     annotations: Flag = False,
 ) -> int:
-    """Compare a run with an earlier one; status 1 if anything got worse, is gone, or is no longer caught.
+    """Compare a run with an earlier one; status 1 if anything got worse.
 
-    A run that is incomplete does not pass: status 3. Frequencies that moved are listed, from and to. Times are shown with
-    their noise, and never decide.
+    Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected. Changed frequencies are listed.
+    Run times are informational. An incomplete run does not pass: status 3.
 
     Parameters
     ----------
     folder
-        Folder that `southwell verify --out` has written, or its results.jsonl.
+        Output folder of `southwell verify`, or its results.jsonl.
     against
-        A history (`southwell history add`), of which the last run counts; or another run's folder or results.jsonl.
-        Without it every miss counts.
+        History (`southwell history add`), of which the last run counts; or the output folder or results.jsonl of another run.
+        Without it, every failure counts.
     commit
-        Of a history, the last run of this commit instead (its beginning is enough).
+        Compare with the last run of this commit in the history; its first characters suffice.
     strict
-        Frequencies that moved give status 1 too.
+        Status 1 also if a frequency changed.
     partial
-        The run has only some of the cases; of the earlier one, only these count.
+        The run has only some of the cases; compare only these.
     tolerance
-        Relative change of a frequency that is none.
+        Largest relative change of a frequency that does not count as a change.
     junit_file
-        File for the run as JUnit's XML: a test case a cell.
+        Output file for JUnit XML, one test case per cell.
     summary
-        Markdown is appended to this file, as to GitHub's `$GITHUB_STEP_SUMMARY`.
+        File to which a summary in Markdown is appended, such as GitHub's `$GITHUB_STEP_SUMMARY`.
     annotations
-        Print GitHub's workflow commands, which mark the files of cases that got worse, beneath the current folder.
+        Print GitHub workflow commands that mark the files of cases that got worse.
     """
     run = found(folder)
     after = history.entry(run, str(folder))

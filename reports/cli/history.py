@@ -1,4 +1,4 @@
-"""``southwell history``: keeps what runs found, commit by commit, in a file that the gate and the dashboard read."""
+"""``southwell history``: records the results of runs by commit, for the gate and the dashboard."""
 
 import subprocess
 import sys
@@ -16,7 +16,7 @@ from ...cases.regression.history import History
 from ..shared import console
 from .arguments import finished
 
-app = App(name="history", help="Keep what runs found, commit by commit.", result_action="return_value")
+app = App(name="history", help="Record the results of runs by commit.", result_action="return_value")
 
 
 @app.command
@@ -28,20 +28,21 @@ def add(
     commit: str = "",
     machine: str = "",
 ) -> int:
-    """Append a run to a history: a line of JSON with every frequency, difference, verdict and time.
+    """Append a run to a history.
 
-    Runs may be appended by several jobs at once; a line that was cut short spoils no other.
+    A run is one line of JSON with every frequency, difference, verdict and run time. Several jobs may append at the same time;
+    a truncated line does not affect the others.
 
     Parameters
     ----------
     folder
-        Folder that `southwell verify --out` has written, or its results.jsonl.
+        Output folder of `southwell verify`, or its results.jsonl.
     file
-        File to append to; made if there is none.
+        History file; created if it does not exist.
     commit
-        What was run; by default the commit of the Git checkout in the current folder, `-dirty` if it has changes.
+        What was run. Default: the commit of the Git checkout in the current folder, with `-dirty` if it has changes.
     machine
-        In words, where: times are compared only within one; by default kind of system and processors.
+        Name of the machine; run times are compared only within one machine. Default: system and processors.
     """
     entry = history.entry(finished(folder), commit or _checked_out(), machine)
     try:
@@ -59,7 +60,7 @@ def listing(file: Path, /) -> int:
     Parameters
     ----------
     file
-        What `southwell history add` was given.
+        History file (`southwell history add`).
     """
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("commit", "date", "cells", "pass", "fail", "inconclusive", "machine"):
@@ -73,7 +74,7 @@ def listing(file: Path, /) -> int:
 
 
 def load(file: Path) -> History:
-    """The history in a file; lines that were cut short are told on standard error.
+    """The history in a file; truncated lines are reported on standard error.
 
     Raises:
         CaseError: if there is no such file, or it is none.
@@ -87,7 +88,7 @@ def load(file: Path) -> History:
     except ValueError as error:
         raise CaseError(str(error)) from error
     for number in found.torn:
-        print(f"southwell: {file}: line {number}: cut short, left out", file=sys.stderr)
+        print(f"southwell: {file}: line {number}: truncated, ignored", file=sys.stderr)
     return found
 
 

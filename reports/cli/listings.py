@@ -1,4 +1,4 @@
-"""``southwell cases`` and ``southwell codes``: what there is, found or not; and environments for codes that need their own."""
+"""``southwell cases`` and ``southwell codes``: lists, and isolated environments for codes that need one."""
 
 import sys
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 from cyclopts import App
 from rich import box
 from rich.table import Table
+from rich.text import Text
 
 from ...cases.input import library
 from ...cases.input.errors import nearest
@@ -17,7 +18,8 @@ from ...references.protocol import registry as registry
 from ...references.protocol.description import describe
 from ..shared import console
 from ..shared.statuses import PASSED
-from .arguments import RESULTS, UsageError, finished
+from .arguments import RESULTS, finished
+from .errors import UsageError
 
 
 def cases() -> int:
@@ -46,13 +48,13 @@ code_app = App(name="codes", result_action="return_value")
 
 @code_app.default
 def codes(*, pages: Path | None = None) -> int:
-    """List the codes: found or not, version, what each shares with core, how to install it.
+    """List the codes: version, what they share with core, how to install them.
 
     Parameters
     ----------
     pages
-        Folder of a report (`southwell verify --out`): write a page for each code into it instead, with its worst
-        difference on every blade and its known defects, shown by running them.
+        Output folder of `southwell verify`: write one page per code into it instead, with its worst difference on every blade
+        and its known defects, each demonstrated by a run.
     """
     if pages:
         from ..verification import code_pages
@@ -60,14 +62,14 @@ def codes(*, pages: Path | None = None) -> int:
         print(code_pages.write(finished(pages / RESULTS), pages))
         return PASSED
     table = Table(box=box.SIMPLE_HEAD)
-    for head in ("code", "title", "version", "shares with core", "leaves out"):
+    for head in ("code", "title", "version", "shares with core", "omits"):
         table.add_column(head, overflow="fold")
     for known in describe(registry.names()):
         found = f"✔ {known.version}" if known.version else f"○ not found; {known.hint}"
         table.add_row(
             known.name,
             known.title,
-            f"✘ {known.failure.reason}" if known.failure else found,
+            Text(f"✘ {known.failure.reason}" if known.failure else found),
             known.shares,
             ", ".join(known.model.lacks()) or "nothing",
         )
@@ -77,12 +79,14 @@ def codes(*, pages: Path | None = None) -> int:
 
 @code_app.command
 def install(code: str, /) -> int:
-    """Make a pinned environment in the cache for a code whose dependencies conflict with ours; status 1 if it cannot be made.
+    """Install a code in an isolated environment, where its dependencies conflict with those of Southwell.
+
+    The environment is created in the cache. Status 1 if it cannot be created.
 
     Parameters
     ----------
     code
-        Its name; `southwell codes` says which need this.
+        Name of the code; `southwell codes` shows which need this.
     """
     if code not in ENVIRONMENTS:
         raise UsageError(f"code: {code!r}: no environment of its own: {nearest(code, list(ENVIRONMENTS))}")

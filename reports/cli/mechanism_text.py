@@ -1,4 +1,4 @@
-"""A mechanism's answer for people and for programs: modes, steady state, what was chosen, what was redundant."""
+"""The results of a mechanism as tables and as JSON: modes, steady state, coordinates, redundant constraints."""
 
 from typing import Any
 
@@ -60,7 +60,7 @@ def state(found: Solution) -> Table:
 
 
 def redundant(found: Solution) -> str:
-    """One line on the constraints that say nothing new."""
+    """One line on the redundant constraints."""
     if not found.redundant:
         return "redundant constraints: none"
     return f"redundant constraints: {len(found.redundant)}: {', '.join(found.redundant)}"

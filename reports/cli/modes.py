@@ -6,10 +6,14 @@ import msgspec
 import numpy as np
 from rich.console import Console
 
+from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
 from ...cases.input import library
+from ...cases.input.changes import parse
 from ...cases.input.schema import speed_range
 from ...core.velocity_transformation import MOST_ELEMENTS
+from ..campbell import changes as changes_table
+from ..campbell import tables
 from ..shared import not_used
 from ..shared.certain import remarks
 from ..shared.console import output
@@ -18,7 +22,8 @@ from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import Accuracy, Elements, Flag, UsageError, Whole
+from .arguments import Accuracy, Changes, Elements, Flag, Whole
+from .errors import UsageError
 from .mounting import Mounting
 
 
@@ -34,44 +39,56 @@ def modes(
     method: Method = "chain",
     allow_large_strain: Flag = False,
     json: Flag = False,
+    changes: Changes = (),
+    against: str | None = None,
     mounting: Mounting | None = None,
 ) -> int:
-    """Natural frequencies by the in-house solver, with their families.
+    """Compute the natural frequencies of a blade and name its modes.
 
     Parameters
     ----------
     case
-        A case by name (`southwell cases`), one of its blades as `case/blade`, or its TOML file; or a blade's file: ElastoDyn,
-        BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML and CSV.
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`), one
+        of its blades as `case/blade`, or its TOML file.
     omega
-        Rotor speed in rad/s, a list `0,5,10`, or a range `first:last:step` with both ends; by default the case's own speeds,
-        or the one that a BModes file states.
+        Rotor speeds in rad/s: one, a range `first:last:step` or a list `0,5,10`. Default: the speeds of the file or case.
     rpm
-        The same in revolutions per minute.
+        Rotor speeds in rpm, in the same form.
     elements
-        Beam elements of equal length along the blade; by default, as many as --accuracy takes.
+        Number of beam elements of equal length. Default: as many as --accuracy requires.
     accuracy
         Largest relative uncertainty of a frequency, without --elements.
     modes
-        How many, from the lowest.
+        Number of modes, from the lowest.
     method
-        `chain`: block-tridiagonal matrices, no velocity transformation. `velocity-transformation`: the method of Park et al.
-        (2010), with dense matrices: 50 elements by default, at most 200.
+        `chain`: block-tridiagonal matrices. `velocity-transformation`: the method of Park et al. (2010) with dense matrices;
+        50 elements by default, at most 200.
     allow_large_strain
         Accept steady strains above 20 %.
     json
-        Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown),
+        Print JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown),
         steady_strain.
+    changes
+        Change a property: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone, pitch. May be
+        repeated.
+    against
+        Another blade; prints the change of every frequency.
     """
     if method != "chain" and (elements or 0) > MOST_ELEMENTS:
         raise UsageError(
-            f"--elements {elements}: --method {method} has dense matrices: at most {MOST_ELEMENTS}; or use --method chain"
+            f"--elements {elements}: --method {method} uses dense matrices: give at most {MOST_ELEMENTS}, or use --method chain"
         )
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []
-    for subject in subjects.subjects(case, (mounting or Mounting()).mount()):
+    mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]
+    if json and against:
+        raise UsageError(
+            f"--against {against}: with --json: the table of changes is not part of the JSON: leave one out"
+        )
+    other = subjects.single(against, mount) if against else None
+    for subject in subjects.changed(subjects.subjects(case, mount), given):
         if speeds is None and not subject.speeds:
-            raise UsageError(f"--rpm: missing: {case} says no speeds: give them, as in 0:15:5")
+            raise UsageError(f"--rpm: missing: {case} does not define rotor speeds: give them, as in 0:15:5")
         blade = subject.blade
         at = subject.speeds if speeds is None else speeds
         found = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method, (units or subject.units).at)
@@ -88,9 +105,13 @@ def modes(
                 f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}",
                 units or subject.units,
             )
-            console.print(terminal.frequencies(found, title, shown))
+            for table in terminal.frequencies(found, title, shown, console.width):
+                console.print(table)
             for line in remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)
+            if other:
+                compared = blade_changes(blade, other.blade, at, modes, elements or ELEMENTS)
+                console.print(tables.terminal(changes_table.sheet(compared, other.blade.name, shown)))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
     return PASSED
@@ -104,18 +125,20 @@ def mechanism(
     time: float = 0.0,
     json: Flag = False,
 ) -> int:
-    """Steady state and modes of any mechanism: frequencies, damping ratios, what was chosen, what was redundant.
+    """Compute the steady state and the modes of any mechanism.
+
+    Prints frequencies, damping ratios, the steady state, the independent coordinates and the redundant constraints.
 
     Parameters
     ----------
     name
         A mechanism by name (`southwell cases`), or a TOML file of bodies and joints.
     modes
-        How many, from the lowest.
+        Number of modes, from the lowest.
     time
-        The instant looked at, in seconds, where motions are functions of time.
+        Time in seconds at which motions that depend on time are evaluated.
     json
-        Print everything as JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is rounding's.
+        Print JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is that of rounding.
     """
     described = library.mechanism(name)
     found = described.solve(modes, time)

@@ -24,26 +24,25 @@ class Mounting:
     Parameters
     ----------
     main
-        The main file that says how the blade sits on the hub, of a blade's file that does not.
+        Main file that defines how the blade is mounted on the hub (ElastoDyn, BeamDyn, HAWC2 htc).
     length
-        From root to tip, m, if no file says it or it is to be another.
+        Length from root to tip in m; overrides the files.
     hub_radius
-        From the rotor's axis to the root, m, likewise.
+        Distance from the rotor axis to the root in m; overrides the files.
     precone
-        Degrees, downwind, likewise.
+        Precone in degrees, positive downwind; overrides the files.
     pitch
-        Degrees; positive turns the leading edge downwind, unless --pitch-convention says otherwise. 0 if not given: an
-        ElastoDyn main file's BlPitch is the initial pitch of a simulation, and is listed, not used.
+        Pitch in degrees, positive with the leading edge downwind (see --pitch-convention). Default: 0; the BlPitch of an
+        ElastoDyn main file is the initial pitch of a simulation and is listed, not used.
     pitch_convention
-        The sign of --pitch: `southwell`, positive with the leading edge downwind, or `openfast`, positive with the leading
-        edge upwind (to feather), as BlPitch.
+        Sign of --pitch: `southwell`, positive with the leading edge downwind; `openfast`, positive with the leading edge
+        upwind (to feather), as BlPitch.
     subset
-        Set and subset of a HAWC2 structural file that has several, as `5:1`.
+        Set and subset of a HAWC2 structural file, as `5:1`.
     multipliers
-        Of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
+        Mass, flap and edge multipliers in place of an ElastoDyn table's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
     offsets
-        Whether the offset columns of a FAST 7 table (PrecrvRef, PreswpRef, FlpcgOf, EdgcgOf, FlpEAOf, EdgEAOf) are used;
-        they are by default.
+        Use the offset columns of a FAST 7 table (PrecrvRef, PreswpRef, FlpcgOf, EdgcgOf, FlpEAOf, EdgEAOf). Default: yes.
     """
 
     main: Path | None = None

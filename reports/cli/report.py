@@ -7,22 +7,23 @@ from ...cases.verify import journal
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
-from .arguments import RESULTS, Flag, UsageError, found, writing
+from .arguments import RESULTS, Flag, found, writing
+from .errors import UsageError
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
-    """Write report.md and figures anew from the results.jsonl in a folder.
+    """Rewrite the report of a finished run from its results.jsonl.
 
     Of a run that was stopped, what there is of it is shown, with status 3; the report of an earlier complete run is kept.
 
     Parameters
     ----------
     folder
-        What `southwell verify --out` was given.
+        Output folder of `southwell verify`.
     html
-        Also report.html, one file with the figures inside it.
+        Also write report.html, one file with its figures.
     pdf
-        Also report.pdf; needs the extra `pdf` (WeasyPrint).
+        Also write report.pdf; requires the extra `pdf` (WeasyPrint).
     """
     run = found(folder if folder.is_dir() else folder / RESULTS)
     with writing(folder):
@@ -43,7 +44,7 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
 
 
 def show(run: Run, folder: Path) -> Path | None:
-    """Print what the report says first, and write it; the report's path.
+    """Write the report and print its summary; the path of the report.
 
     None, and nothing is written, if the run is unfinished and the report there is of a complete one.
     """

@@ -1,4 +1,4 @@
-"""``southwell show``: what a blade is, in numbers and a figure, and how its file was read."""
+"""``southwell show``: the properties of a blade in numbers and a figure, and how its file was read."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,6 +31,9 @@ COLUMNS = (
     *("s [m]", "mass [kg/m]", "EI flap [N m²]", "EI edge [N m²]", "GJ [N m²]", "EA [N]", "twist [deg]"),
     *("mass y [m]", "mass z [m]", "tension y [m]", "tension z [m]", "shear y [m]", "shear z [m]"),
 )
+PROPERTIES = 7
+"""Columns before those of the centres."""
+
 MORE = ("principal axes [deg]", "mass axes [deg]", "axis x [m]", "axis y [m]", "axis z [m]")
 """Further columns of the CSV: axes from the section's own y and z, empty where there are none; the reference axis."""
 
@@ -48,23 +51,26 @@ def command(
     all: Annotated[bool, Parameter(negative=())] = False,
     mounting: Mounting | None = None,
 ) -> int:
-    """A blade's mass, centre, moments, sections and axes, and how its file was read.
+    """Show the mass, sections and axes of a blade, and how its file was read.
+
+    Lists every non-zero quantity of the file that is not used.
 
     Parameters
     ----------
     blade
-        A blade file (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, TOML, CSV), or a case (`southwell cases`).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
     out
-        Folder for a figure of the properties along the span (SVG, PNG) and a CSV of all stations.
+        Output folder for a figure of the properties along the span (SVG, PNG) and a CSV table of all stations.
     all
-        Every station in the table.
+        Print all stations.
     """
     subjects = find_subjects(blade, (mounting or Mounting()).mount())
     console = output()
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))
         not_used.show(subject.unused, console)
-        console.print(stations(subject.blade, None if all else ROWS))
+        for table in stations(subject.blade, None if all else ROWS):
+            console.print(table)
         if out is not None:
             folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             try:
@@ -97,7 +103,7 @@ def facts(blade: Blade) -> dict[str, str]:
         "hub radius": f"{blade.hub_radius:.6g} m",
         "precone": f"{np.degrees(blade.precone):.5g}° (positive downwind)",
         "pitch": f"{pitch:.5g}° (positive with the leading edge downwind; as OpenFAST's BlPitch: {0.0 - pitch:.5g}°)",
-        "root": "clamped" if not loose else f"{', '.join(loose)}; the rest held",
+        "root": "clamped" if not loose else f"{', '.join(loose)}; otherwise clamped",
         "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,
     }
@@ -132,18 +138,24 @@ def rows(blade: Blade, found: Sections) -> Array:
     return np.column_stack([blade.stations, *stiff, found.mass_centre, found.tension_centre, found.shear_centre])
 
 
-def stations(blade: Blade, most: int | None) -> Table:
-    """The sections in a table: at most so many stations, evenly picked, first and last among them."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in COLUMNS:
-        table.add_column(column.replace(" [", "\n").replace("]", ""), justify="right", no_wrap=True)
+def stations(blade: Blade, most: int | None) -> tuple[Table, Table]:
+    """The sections in two tables, properties and centres: at most ``most`` stations, evenly spaced, with both ends."""
     values = rows(blade, sections(blade))
     n = len(values)
     picked = np.unique(np.linspace(0, n - 1, min(n, most or n)).round().astype(int))
-    for row in values[picked]:
-        table.add_row(*(_cell(k, x) for k, x in enumerate(row)))
+    properties = _table(values[picked], range(PROPERTIES))
+    centres = _table(values[picked], (0, *range(PROPERTIES, len(COLUMNS))))
     if len(picked) < n:
-        table.caption = f"{len(picked)} of {n} stations; --all shows every one"
+        centres.caption = f"{len(picked)} of {n} stations; --all shows all"
+    return properties, centres
+
+
+def _table(values: Array, columns: Sequence[int]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for column in columns:
+        table.add_column(COLUMNS[column].replace(" [", "\n").replace("]", ""), justify="right", no_wrap=True)
+    for row in values:
+        table.add_row(*(_cell(column, row[column]) for column in columns))
     return table
 
 

@@ -1,10 +1,12 @@
 """Which blades a command is asked for: a blade's file in any format that is read, or a case's blades."""
 
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ...cases.input import library, readers
+from ...cases.input import changes, library, readers
+from ...cases.input.changes import Change
 from ...cases.input.errors import CaseError
 from ...cases.input.library import select
 from ...cases.input.readers import Mount, Unused, southwell_toml
@@ -37,13 +39,35 @@ class Subject:
     unused: tuple[Unused, ...] = ()
 
 
+def changed(found: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
+    """The subjects with properties changed; the changes are listed with their sources.
+
+    Raises:
+        CaseError: a change that a blade does not allow.
+    """
+    lines = tuple(f"changed: {change}" for change in given)
+    return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in found]
+
+
+def single(name: str, mount: Mount) -> Subject:
+    """The one blade of a file or case.
+
+    Raises:
+        CaseError: as ``subjects``, or if the case has several.
+    """
+    found = subjects(name, mount if is_blade_file(name) else Mount())
+    if len(found) > 1:
+        raise CaseError(f"{name}: {len(found)} blades ({', '.join(s.blade.name for s in found)}): name one of them")
+    return found[0]
+
+
 def subjects(name: str, mount: Mount) -> list[Subject]:
     """The blade of a file, mounted so, or the blades of a case, which say themselves how they are mounted.
 
     Raises:
         CaseError: if there is no such file or case, or the file is at fault.
     """
-    if _is_blade_file(name):
+    if is_blade_file(name):
         found = readers.reading(Path(name), mount)
         files = ", ".join(path.name for path in found.source.files)
         about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
@@ -64,7 +88,8 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
     return out
 
 
-def _is_blade_file(name: str) -> bool:
+def is_blade_file(name: str) -> bool:
+    """Whether a name is that of a blade's file, and not of a case."""
     path = Path(name)
     if (
         name in library.names()

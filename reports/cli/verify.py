@@ -12,8 +12,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from msgspec.structs import replace as replaced
+
 from ...cases.faults import table
 from ...cases.input import atomic, library, mechanisms
+from ...cases.input import changes as blade_changes
+from ...cases.input.changes import Change, parse
+from ...cases.input.default_case import default_case
+from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Level, Planned, Run, Setting
@@ -30,8 +36,13 @@ from ...references.protocol.process import Limits
 from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
-from .arguments import CONTINUE, RESULTS, Count, Positive, UsageError, Workers, writing
+from ..shared.units import RPM, Units
+from . import campbell_options
+from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, writing
+from .errors import UsageError
+from .mounting import Mounting
 from .report import show
+from .subjects import is_blade_file, subjects
 
 SCRATCH = "results.partial.tmp"
 """Folder in ``--out`` for temporary files of this run and of the codes it runs."""
@@ -48,51 +59,70 @@ def command(
     witnesses: Count | None = None,
     time_limit: Positive | None = None,
     memory_limit: Positive = Limits.memory / 2**30,
+    rpm: str | None = None,
+    omega: str | None = None,
+    changes: Changes = (),
+    mounting: Mounting | None = None,
 ) -> int:
-    """Solve cases with every code, compare, judge, and write a report.
+    """Solve blades with every code, compare the results and write a report.
 
-    Writes results.jsonl (a row a cell), report.md and figures. Status 1 if any cell fails or is inconclusive, if nothing was
-    compared, if a blade is confirmed by fewer independent groups than its case requires, or if a seeded fault is not detected.
+    Writes results.jsonl (one row per cell), report.md and figures. Status 1 if a cell fails or is inconclusive, if nothing was
+    compared, if fewer independent groups confirm a blade than its case requires, or if a seeded fault is not detected.
 
-    Answers are kept as they come: interrupted (status 130), killed or short of disk space (status 3), the same command
-    continues. Earlier results are replaced once the new ones are complete.
+    Answers are stored as they are computed. After an interruption (status 130), or if the run was killed or the disk is full
+    (status 3), the same command continues. Earlier results are replaced when the new ones are complete.
 
     Parameters
     ----------
     case
-        A case by name (`southwell cases`), one of its blades as `case/blade`, or a TOML file; all cases by default.
+        Blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name (`southwell cases`), one blade of a case as
+        `case/blade`, or case files (TOML). Default: all cases. Of a blade file, the lowest six modes are compared.
     codes
-        Names separated by commas (`southwell codes`), or import paths `module:attribute`; all codes by default.
+        Names separated by commas (`southwell codes`), or import paths `module:attribute`. Default: all codes.
     out
-        Folder for the report; only one run at a time may write in it.
+        Output folder; only one run at a time may write in it.
     workers
-        Processes to use; one a processor by default.
+        Worker processes (default: one per processor).
     add
-        `NAME=FILE.csv`, as often as wanted: results of any other program or of a test rig, as one more column. The file's
-        columns: `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
+        `NAME=FILE.csv`: results of another program or of a test rig as one more column; may be repeated. Columns of the file:
+        `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
     junit
-        File for the same as JUnit's XML: a test case a cell, for a CI that shows it.
+        Output file for JUnit XML, one test case per cell.
     faults
-        Seeded faults to run through the whole pipeline: `fast` (seven), `all`, `none`, or names separated by commas.
+        Seeded faults to run: `fast` (seven), `all`, `none`, or names separated by commas.
     witnesses
-        How many independent groups must confirm each blade. By default what its case says, where all codes take part; a run
-        with `--codes` requires none.
+        Number of independent groups that must confirm each blade. Default: as the case says; none with `--codes`.
     time_limit
-        Seconds that one solution by another code may take; by default what each case says, 300 if it says nothing.
+        Seconds for one solution by another code. Default: as the case says, otherwise 300.
     memory_limit
-        Memory that one solution by another code may take, in GiB, with all the processes that it starts.
+        Memory in GiB for one solution by another code, including the processes that it starts.
+    rpm
+        Rotor speeds of a blade file in rpm: a range `first:last:step` or a list `0,5,10`.
+    omega
+        Rotor speeds of a blade file in rad/s, in the same form.
+    changes
+        Change a property of every blade: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone,
+        pitch. May be repeated.
     """
-    chosen = [_chosen(name) for name in dict.fromkeys(case or everything())]
+    decks = _Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
+    given = [parse(text) for text in changes]
+    chosen = [_changed(_chosen(name, decks), given) for name in dict.fromkeys(case or everything())]
+    if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
+        raise UsageError(
+            "--rpm, --omega, --length and the like are for blade files: a case says its own speeds and mounting"
+        )
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
     known = describe(names, [v.blade for v in blades])
     files = [_added(text) for text in add]
     user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
+    plain = not (rpm or omega or changes or decks.mount != Mount())
+    line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
     about = Run(
         cells=(),
         versions=matrix.versions(known, files),
-        command=shlex.join(["southwell", "verify", *case, *options]),
+        command=shlex.join(line),
         settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
     )
     seeded = table.chosen(faults)
@@ -181,7 +211,8 @@ def _solve(
     except KeyboardInterrupt:
         stopped = Stopped("interrupted", INTERRUPTED)
     except BrokenProcessPool:
-        stopped = Stopped("a worker process was killed, probably out of memory (try fewer --workers)", INCOMPLETE)
+        why = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
+        stopped = Stopped(why, INCOMPLETE)
     except OSError as error:
         stopped = Stopped(_said(error), INCOMPLETE)
     finally:
@@ -200,15 +231,48 @@ def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
     return [names[k : k + size] for k in range(0, len(names), size)] if names else []
 
 
-def _chosen(name: str) -> Case | MechanismCase:
-    """A case of blades or of a mechanism, by name or file."""
+@dataclass(frozen=True)
+class _Decks:
+    """What is said of blade files beside their names: rotor speeds and their unit, and how they are mounted."""
+
+    speeds: tuple[tuple[float, ...], Units] | None
+    mount: Mount
+
+
+def _chosen(name: str, decks: _Decks) -> Case | MechanismCase:
+    """A case of blades or of a mechanism, by name or file; or the default case of a blade file."""
+    if is_blade_file(name):
+        (subject,) = subjects(name, decks.mount)
+        speeds, units = decks.speeds or (subject.speeds, subject.units)
+        if not speeds:
+            raise UsageError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
+        return default_case(
+            subject.blade, speeds, rpm=units is RPM, source="; ".join(subject.about), unused=subject.unused
+        )
     if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
         return mechanism_case.case(library.mechanism(name))
     return library.select(name)
 
 
+def _changed(case: Case | MechanismCase, given: Sequence[Change]) -> Case | MechanismCase:
+    """The case with properties of its blades changed, which its printed tables are not about."""
+    if not given:
+        return case
+    if not isinstance(case, Case):
+        raise UsageError(f"--set {given[0]}: {case.name} is a mechanism, not a blade: leave it out")
+    told = "changed: " + ", ".join(str(change) for change in given)
+    text = replaced(
+        case.text,
+        title=f"{case.text.title}; {told}",
+        compare=replaced(case.text.compare, tables=()),
+        discretisation=None,
+    )
+    variants = tuple(replace(v, blade=blade_changes.apply(v.blade, given)) for v in case.variants)
+    return replace(case, text=text, variants=variants)
+
+
 def everything() -> tuple[str, ...]:
-    """Every case and mechanism whose files are there; what is not is said."""
+    """Every case and mechanism whose files are present; the others are reported as not run."""
     absent = library.absent()
     for name, why in absent.items():
         print(f"southwell: {name}: not run: {why}", file=sys.stderr)

@@ -19,6 +19,7 @@ from ...references.protocol import registry as registry
 from ..cli import app, arguments
 from ..shared.markdown import plain, table
 from ..verification import closed_forms_page, code_pages
+from . import readme
 
 Pages = dict[str, str]
 
@@ -42,7 +43,15 @@ def pages(folder: Path) -> Pages:
     """
     path = folder / arguments.RESULTS
     run = results.read(path) if path.exists() else Run(())
-    return {**cases(), **codes(run), "cli.md": command_line(), **api(), **closed_forms_page.pages(), **report(folder)}
+    return {
+        **cases(),
+        **codes(run),
+        "results.md": readme.results_page(),
+        "cli.md": command_line(),
+        **api(),
+        **closed_forms_page.pages(),
+        **report(folder),
+    }
 
 
 def report(folder: Path) -> Pages:

@@ -1,13 +1,17 @@
-"""The README's tables, written from a run by a command: ``python -m southwell.reports.site.readme [results.jsonl]``.
+"""The generated parts of the README and of the site's page of results.
 
-The few rows that the tables need, and what a measurement of cost beside the results found, are kept beside this module, so
-that anyone can see that the tables say what they say.
+``python -m southwell.reports.site.readme [results.jsonl]`` writes the README and its figure.
+The rows that the tables need, and the measurement of cost beside the results found, are kept beside this module, so that the
+tables can be checked without a run.
 """
 
+import shlex
 import shutil
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ...cases.bench import cost as measure
 from ...cases.input import atomic
@@ -15,21 +19,42 @@ from ...cases.judge import results
 from ...cases.judge.results import Cell, Run
 from ...cases.verify.lumping import CASE, OMEGA
 from ..shared import summary
+from ..shared.markdown import plain, table
 from ..shared.summary import broad, columns
 from ..verification import bench
 from ..verification.report import LEGEND, comparison, heat, unasked, units
 
 ROWS = Path(__file__).with_name("readme.jsonl")
-README = Path(__file__).parents[2] / "README.md"
+ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
+FIGURE = ROOT / "docs" / "figures" / "campbell.svg"
 
 COST = Path(__file__).with_name("readme-bench.json")
 
+COMMAND = (
+    "southwell campbell examples/nrel-5mw-blade.dat --length 61.5 --hub-radius 1.5 "
+    "--rpm 0:12.1:1.1 --operating 6.9:12.1 --modes 4"
+)
+"""The command of the README, typed in a checkout."""
+
+LINES = 10
+"""Lines of its output in the README."""
+
+SHOWN = {
+    "park-cantilever": "uniform cantilever of Park et al. (2010)",
+    "hodges-rutkowski": "tapered beam of Hodges and Rutkowski (1981)",
+    "nrel-5mw": "NREL 5-MW blade",
+    "park-blade/windpact": "WindPACT 3.0-MW blade",
+    "tip-mass": "beam with a tip mass",
+}
+"""Rows of the README's table of results."""
+
 BEGIN, END = "<!-- {}: begin, written by `make readme` -->", "<!-- {}: end -->"
-"""Round what is written: ``table`` and ``cost``."""
+"""Enclose what is written: ``command`` and ``results``."""
 
 
 def condense(run: Run) -> Run:
-    """The rows that ``block`` needs: of each case and column the worst cell, and all of the paper's Table 1."""
+    """The rows that the tables need: of each case and column the worst cell, and all of the paper's Table 1."""
     cells: list[Cell] = []
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case]
@@ -42,25 +67,79 @@ def condense(run: Run) -> Run:
     return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings)
 
 
+def five(run: Run) -> str:
+    """The README's table: of each case in ``SHOWN`` the independent codes of which every answer passes, and their largest
+    difference; and the worst difference of a published table."""
+    rows = []
+    for case, what in SHOWN.items():
+        codes = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
+        short = {c.code for c in codes if c.verdict != "pass"}
+        codes = [c for c in codes if c.code not in short]
+        worst = max(codes, key=lambda c: abs(c.difference or 0.0))
+        printed = summary.worst(c for c in run.cells if c.case == case and c.role == "table")
+        rows.append(
+            {
+                "blade": what,
+                "agree with core": ", ".join(dict.fromkeys(plain(c.code) for c in codes)),
+                "largest difference": summary.plus_minus(worst),
+                "published table": _published(printed) if printed else "–",
+            }
+        )
+    return f"{table(rows)}\n"
+
+
+def _published(cell: Cell) -> str:
+    return (
+        f"{summary.SYMBOL[cell.verdict]} {summary.amount(summary.size(cell) or 0.0, cell.target)}{summary.wide(cell)}"
+    )
+
+
 def block(run: Run) -> str:
-    """The README's part between its markers."""
+    """The site's page of results: every case by every code, and Table 1 of the paper."""
     table1 = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
     made = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     none = unasked(run)
     return f"""{heat(run)}
 
-In each field the gravest verdict of all modes and speeds, and the largest difference from core behind it (of a known
-difference: from core with all effects). {LEGEND}.{f" No answer in this run: {none}." if none else ""}
+Each field has the worst verdict of all modes and speeds and the largest difference from core behind it (of a known
+difference: from core with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
 
-`{CASE}` at {units(run, CASE).at(OMEGA)}, Table 1 of the paper:
+## {CASE} at {units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
 {comparison(table1, units(run, CASE))}
 
-From `{run.command}` with {made}.
+Made by `{run.command}` with {made}.
 """
 
 
-def put(text: str, new: str, what: str = "table") -> str:
+def results_page() -> str:
+    """The site's page of results, from the rows and the measurement kept here."""
+    return f"""# Results
+
+What `make verify` finds. A row is a blade, a column a code or a published table; [how to read a
+verdict](reading-a-verdict.md) explains the signs. The column *core, velocity transformation* checks core's fast solver against
+the method of Park et al. (2010).
+
+{block(results.read(ROWS))}
+## Run time
+
+{bench.render(measure.read(COST))}
+"""
+
+
+def example(folder: Path) -> str:
+    """Standard output of ``COMMAND``, whose files go to ``folder``."""
+    words = [sys.executable, "-m", *shlex.split(COMMAND), "--out", str(folder)]
+    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+
+
+def console(output: str) -> str:
+    """The README's block: the command and the first lines of its output."""
+    lines = [line.rstrip() for line in output.splitlines()[:LINES]]
+    return "\n".join(["```console", f"$ {COMMAND}", *lines, "…", "```", ""])
+
+
+def put(text: str, new: str, what: str) -> str:
     """``text`` with ``new`` between the markers of ``what``.
 
     Raises:
@@ -70,18 +149,17 @@ def put(text: str, new: str, what: str = "table") -> str:
     head, begin, rest = text.partition(first)
     _, end, tail = rest.partition(last)
     if not (begin and end):
-        raise ValueError(f"README: the markers {first} and {last} are missing: put them where the table shall stand")
+        raise ValueError(f"README: the markers {first} and {last} are missing: put them where the part belongs")
     return f"{head}{first}\n\n{new}\n{last}{tail}"
 
 
 def written(text: str) -> str:
-    """The README with what the rows and the measurement kept here say."""
-    text = put(text, block(results.read(ROWS)))
-    return put(text, bench.render(measure.read(COST)), "cost")
+    """The README with the table of results that the rows kept here give."""
+    return put(text, five(results.read(ROWS)), "results")
 
 
 def main() -> None:
-    """Take the rows from a results file, if one is given, and the measurement beside it, and write the README's tables."""
+    """Take the rows from a results file, if one is given, and the measurement beside it; write the README and its figure."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
         run = results.read(path)
@@ -90,7 +168,12 @@ def main() -> None:
         results.write(ROWS, condense(run))
         if (measured := path.with_name(bench.FILE)).exists():
             shutil.copyfile(measured, COST)
-    atomic.write(README, written(README.read_text(encoding="utf-8")))
+    with TemporaryDirectory() as folder:
+        output = example(Path(folder))
+        FIGURE.parent.mkdir(exist_ok=True)
+        shutil.copyfile(Path(folder) / FIGURE.name, FIGURE)
+    text = put(README.read_text(encoding="utf-8"), console(output), "command")
+    atomic.write(README, written(text))
 
 
 if __name__ == "__main__":

@@ -27,14 +27,15 @@ which core is as accurate as that code, and the code's time over core's with tho
 
 
 def command(*, out: Path = Path("southwell-report")) -> int:
-    """Time core and the other codes side by side, and core with up to thousands of elements; takes minutes.
+    """Measure the run time of core and of the other codes.
 
-    Writes bench.json and bench.md. Ratios of one run are what to quote: times are this machine's.
+    Takes minutes. Writes bench.json and bench.md, which `southwell report` includes if they are in the folder of the report.
+    Quote ratios of one run: times depend on the machine.
 
     Parameters
     ----------
     out
-        Folder for the two files; `southwell report` takes them up from the folder of a report.
+        Output folder.
     """
     try:
         out.mkdir(parents=True, exist_ok=True)

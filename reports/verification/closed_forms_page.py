@@ -22,14 +22,15 @@ FOLDER = "closed-forms"
 
 
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
-    """Hold core to mechanisms known in closed form: pendulums, a top, a turntable, linkages, a spinning ring.
+    """Compare core with mechanisms that have closed-form solutions.
 
-    Writes closed-forms.md and its figures; `southwell report` takes them up from the folder of a report. Takes ten seconds.
+    Pendulums, a top, a turntable, linkages and a spinning ring. Takes ten seconds. Writes closed-forms.md and its figures,
+    which `southwell report` includes if they are in the folder of the report.
 
     Parameters
     ----------
     out
-        Folder for the page.
+        Output folder.
     """
     found = [(form, *solved(form)) for form in FORMS]
     try:

@@ -16,6 +16,7 @@ from markdown_it.token import Token
 
 from ...cases.input import atomic
 from ...core.regular_files import read_bytes
+from ...references.protocol import install
 from ..shared.markdown import anchor
 from ..shared.summary import SYMBOL
 
@@ -92,7 +93,7 @@ def pdf(report: Path) -> Path:
         from weasyprint import HTML  # pyright: ignore[reportMissingImports]
     except (ImportError, OSError) as error:
         raise PdfError(
-            f"--pdf: WeasyPrint cannot be used ({error}): pip install 'southwell[pdf]', and the system's Pango; or print "
+            f"--pdf: WeasyPrint cannot be used ({error}): {install.extra('pdf')}, and the system's Pango; or print "
             "report.html from a browser"
         ) from error
     path = report.with_suffix(".pdf")

@@ -100,14 +100,33 @@ def _short(size: float, target: float) -> str:
     return text.replace("e-0", "e-")
 
 
-def frequencies(rows: Sequence[Named], title: str, units: Units) -> Table:
-    """Modes × speeds, rows by name, in the order of the first speed, and the largest uncertainty of each."""
-    out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
+RELATIVE = "± relative"
+"""Head of the column of uncertainties."""
+
+DIGITS = 7
+"""Of a frequency, at most."""
+
+
+def frequencies(rows: Sequence[Named], title: str, units: Units, width: int) -> Iterator[Table]:
+    """Modes × speeds, rows by name, in the order of the first speed, and the largest uncertainty of each.
+
+    As many tables as the ``width`` in characters requires.
+    """
     speeds = list(dict.fromkeys(r.omega for r in rows))
-    out.add_column(units.frequency_label)
+    first = max(len(name) for name in (units.frequency_label, *(r.name for r in rows)))
+    column = 3 + max(DIGITS + 2, *(len(units.at(omega)) for omega in speeds))
+    count = max(1, (width - first - len(RELATIVE) - 8) // column)
+    for k in range(0, len(speeds), count):
+        part = speeds[k : k + count]
+        yield _frequencies([r for r in rows if r.omega in part], "" if k else title, units, part)
+
+
+def _frequencies(rows: Sequence[Named], title: str, units: Units, speeds: Sequence[float]) -> Table:
+    out = Table(box=box.SIMPLE_HEAD, title=title or None, title_justify="left", title_style="bold")
+    out.add_column(units.frequency_label, no_wrap=True)
     for omega in speeds:
-        out.add_column(units.at(omega), justify="right")
-    out.add_column("± relative", justify="right")
+        out.add_column(units.at(omega), justify="right", no_wrap=True)
+    out.add_column(RELATIVE, justify="right", no_wrap=True)
     for name in dict.fromkeys(r.name for r in sorted(rows, key=lambda r: (r.omega, r.mode))):
         mine = [r for r in rows if r.name == name]
         at = {r.omega: certain(r.frequency * units.frequencies, r.uncertainty) for r in mine}

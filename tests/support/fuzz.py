@@ -25,6 +25,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -188,7 +189,7 @@ def seeds(folder: Path) -> dict[str, Path]:
     shutil.copytree(DATA / "fuzz", folder, dirs_exist_ok=True)
     shutil.copy(DATA / "calculix_substructure.mtx", folder)
     run = _run()
-    results.append(folder / "results.jsonl", run.cells, run.levels, run)
+    results.write(folder / "results.jsonl", run)
     history.append(folder / "history.jsonl", history.entry(run, "abc", "here"))
     condensed.write(folder / "segments.json", condensing.condense(folder / "bar.toml").blade)
     for name in ("pipe", "folder", "loop"):  # what a mutated name may lead to
@@ -234,10 +235,10 @@ BESIDE = {
 
 
 def _run():
-    from southwell.cases.judge.results import Cell, Control, Level, Origin, Run, Setting, Share
+    from southwell.cases.judge.results import Cell, Control, Level, Origin, Planned, Run, Setting, Share
 
     def cell(mode: int, code: str, **more: object) -> Cell:
-        row: dict = {
+        row: dict[str, Any] = {
             "case": "beam",
             "omega": 10.0,
             "mode": mode,
@@ -280,6 +281,7 @@ def _run():
         (Control("no Coriolis", "core", "leaves it out", "1 %", "beam", 10.0, ("a: flapwise 1",), 0.01),),
         (Share("beam", 10.0, "flapwise 1", "discretisation", "lumped mass", 1e-3),),
         (Origin("beam", "a", "e", "t", "r", "s", "q"),),
+        (Planned("beam", "a", 1, 2), Planned("beam", "b", 1, 1), Planned("beam", "c", 1, 2)),
     )
 
 
@@ -357,7 +359,7 @@ def _shown(run, folder: Path) -> None:
     from southwell.reports.cli import report
     from southwell.reports.dashboard import data
     from southwell.reports.shared import summary
-    from southwell.reports.shared.console import LogSafe
+    from southwell.reports.shared.log_safe import LogSafe
     from southwell.reports.verification import html
     from southwell.reports.verification import report as matrix_report
 

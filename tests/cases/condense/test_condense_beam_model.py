@@ -13,10 +13,10 @@ from southwell.cases.input.errors import CaseError
 
 EA, GJ, EI, MASS, SPAN, NODES = 1e9, 1e7, 2e7, 50.0, 8.0, 9
 
-README = (Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "condense.md").read_text(encoding="utf-8")
 
-(FILE,) = (block for block in re.findall(r"^```toml\n(.*?)^```", README, re.M | re.S) if "stiffness =" in block)
-"""The example in the README."""
+(FILE,) = (block for block in re.findall(r"^```toml\n(.*?)^```", PAGE, re.M | re.S) if "stiffness =" in block)
+"""The example on the site."""
 
 
 def matrices() -> tuple[np.ndarray, np.ndarray]:

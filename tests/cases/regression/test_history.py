@@ -139,7 +139,7 @@ def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     with file.open("a") as cut:
         cut.write('{"commit"')
     status, out, err = southwell(f"history list {file}", capsys)
-    assert (status, err) == (0, f"southwell: {file}: line 3: cut short, left out\n")
+    assert (status, err) == (0, f"southwell: {file}: line 3: truncated, ignored\n")
     assert out.count("quiet") == 2
 
 

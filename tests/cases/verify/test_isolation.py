@@ -15,8 +15,8 @@ from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.process import Limits
 from southwell.reports.cli import app as cli
-from southwell.reports.cli.arguments import LOST
 from southwell.reports.shared import summary
+from southwell.reports.shared.statuses import INCOMPLETE
 
 from ...support.misdeeds import TABLE
 
@@ -140,7 +140,7 @@ def test_a_lost_pool_worker_is_no_interruption(
     with pytest.raises(SystemExit) as ended:
         cli.main(["verify", case.path, "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
     said = capsys.readouterr().err
-    assert ended.value.code == LOST == 3
+    assert ended.value.code == INCOMPLETE
     assert "a worker process was killed" in said
     assert "interrupted" not in said
 

@@ -16,7 +16,7 @@ from southwell.core.multibody.mechanism import Body, Mechanism, inertia
 from southwell.core.multibody.tree import compile_tree
 from southwell.core.space import spatial as sp
 
-pin = pytest.importorskip("pinocchio", reason="not run: pip install 'southwell[codes]'")
+pin = pytest.importorskip("pinocchio", reason="not run: pip install '.[codes]'")
 
 KINDS: list[Kind] = ["revolute", "prismatic", "cylindrical", "universal", "spherical", "planar", "free", "elastic"]
 

@@ -154,7 +154,10 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     file, out = tmp_path / "blade.toml", tmp_path / "out"
     file.write_text("name = 'own'\n" + BEAM[BEAM.index("[blade]") : BEAM.index("[speeds]")])
     status, _, err = southwell(f"campbell {file} -o {out}", capsys)
-    assert (status, err) == (2, f"southwell: --rpm: missing: {file} says no speeds: give them, as in 0:15:0.5\n")
+    assert (status, err) == (
+        2,
+        f"southwell: --rpm: missing: {file} does not define rotor speeds: give them, as in 0:15:0.5\n",
+    )
     status, shown, _ = southwell(f"campbell {file} --omega 0:20:10 --hub-radius 3 --elements 8 -o {out}", capsys)
     assert status == 0
     assert "Southwell TOML: blade.toml" in shown
@@ -264,7 +267,7 @@ def test_progress_counts_what_was_asked_for_and_names_what_is_between() -> None:
     assert told.bar.tasks[0].completed == 1
     told(0.5)
     assert told.bar.tasks[0].completed == 1
-    assert "looking closer at 4.77465 rpm" in told.bar.tasks[0].description
+    assert "inserting 4.77465 rpm" in told.bar.tasks[0].description
 
 
 def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:

@@ -399,7 +399,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
         ("modes park-cantilever --elements 100000000", "--elements. Must be <= 20000"),
         ("modes park-cantilever --rpm 0:30:1e-9", "steps: a step too short"),
         ("modes park-cantilever --rpm 0:1e9:1e8", "faster than any rotor turns"),
-        ("cases all", "all: not understood here"),
+        ("cases all", "all: unexpected argument"),
         ("verify park-cantilever --codes :CODE", "ValueError: Empty module name"),
         ("bench --out {file}", "cannot be written (File exists)"),
         ("report {file}", "cannot be read (Not a directory)"),

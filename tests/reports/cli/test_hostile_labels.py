@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from southwell.reports.cli import app as cli
-from southwell.reports.shared.console import LogSafe
+from southwell.reports.shared.log_safe import LogSafe
 from southwell.reports.shared.paths import file_name
 from southwell.tests.support import fuzz
 

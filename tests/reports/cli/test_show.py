@@ -53,7 +53,7 @@ def test_a_uniform_beam_with_a_tip_mass(capsys: pytest.CaptureFixture[str], tmp_
     assert f"{first:.7g} kg m about the rotor's axis, {first - 9.2 * 0.3:.7g} kg m about the root" in out
     assert f"{second:.7g} kg m² about the rotor's axis" in out
     assert f"x {first / 9.2:.6g}, y 0, z 0 m" in out
-    assert "flap free, lag spring 100000; the rest held" in out
+    assert "flap free, lag spring 100000; otherwise clamped" in out
     path.write_text(
         BEAM.replace("mass = 2.0", "mass = 2.0, offset = [0.1, -0.2, 0.0], inertia = [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]")
     )
@@ -149,4 +149,4 @@ def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str])
         with pytest.raises(SystemExit) as left:
             cli.main([command, table, "--length", "40"])
         assert left.value.code == 2
-        assert "says no speeds: give them" in capsys.readouterr().err
+        assert "does not define rotor speeds: give them" in capsys.readouterr().err

@@ -54,12 +54,10 @@ def test_every_cell_is_there_and_the_first_page_is_small(tmp_path: Path) -> None
 
 
 def test_the_worst_cell_of_many_is_the_worst_of_the_readmes(tmp_path: Path) -> None:
-    """README's table, written by other code, against what a code's page says."""
+    """The table of all results, written by other code, against what a code's page says."""
     write({"a run": run()}, None, tmp_path)
     worst = {case: text for case, *_, text, _, _ in data(tmp_path / page("southwell-equation", "code"))["worst"]}
-    row = next(
-        line for line in readme.README.read_text(encoding="utf-8").splitlines() if line.startswith("| tip-mass ")
-    )
+    row = next(line for line in readme.results_page().splitlines() if line.startswith("| tip-mass "))
     assert worst["tip-mass"].split(" ± ")[0].lstrip("+−") in row
 
 
@@ -266,7 +264,7 @@ def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys:
         str(folder), "--history", str(kept(tmp_path / "h.jsonl")), "--out", str(tmp_path / "site")
     )
     assert (status, out.strip()) == (0, str(tmp_path / "site" / "index.html"))
-    assert "line 8: cut short" in err
+    assert "line 8: truncated" in err
     for words in ([], [str(tmp_path / "nowhere")], [str(folder), "--history", str(tmp_path / "none.jsonl")]):
         status, out, err = southwell(*words, "--out", str(tmp_path / "other"))
         assert (status, out, err.count("\n")) == (2, "", 1)

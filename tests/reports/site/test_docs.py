@@ -1,8 +1,11 @@
 """The site: every page is in it, it builds without a warning, nothing is fetched to read it, and what it says to type works."""
 
 import importlib.util
+import json
 import os
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -52,7 +55,7 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
     made = site.cases() | site.api()
     named = leaves(configuration()["nav"])
     assert set(PAGES) <= set(named), "add it to the nav of mkdocs.yml"
-    there = {*PAGES, *made, "codes/index.md", "cli.md", "closed-forms.md"}
+    there = {*PAGES, *made, "codes/index.md", "cli.md", "closed-forms.md", "results.md"}
     assert set(named) <= there
     assert len(named) == len(set(named))
 
@@ -103,10 +106,11 @@ def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
     run = samples.run()
     (tmp_path / "reports" / "out").mkdir(parents=True)
     results.write(tmp_path / "reports" / "out" / RESULTS, run)
+    shutil.copyfile(ROOT / "examples" / "nrel-5mw-blade.dat", tmp_path / "blade.dat")
     for text in blocks(page, "toml"):
         (tmp_path / f"{tomllib.loads(text)['name']}.toml").write_text(text, encoding="utf-8")
     for line in (line for block in blocks(page, "console") for line in block.splitlines()):
-        program, *arguments = line.split()
+        program, *arguments = shlex.split(line)
         if program == "southwell":
             done = typed([sys.executable, "-m", program, *arguments], tmp_path)
             assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
@@ -118,6 +122,28 @@ def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
 def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=300)
+
+
+def test_the_cells_of_the_notebook_run_in_their_order(tmp_path: Path) -> None:
+    """Without a kernel; the last line of each is shown by its HTML or its text."""
+    cells = json.loads((DOCS / "first-blade.ipynb").read_text(encoding="utf-8"))["cells"]
+    sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    assert not any(cell.get("outputs") for cell in cells), "clear the outputs before committing"
+    shown = "print(f\"shown: {value._repr_html_()[:3] if hasattr(value, '_repr_html_') else type(value).__name__}\")"
+    lines = ["import matplotlib", 'matplotlib.use("agg")']
+    for source in sources:
+        *head, last = source.rstrip(";").splitlines()
+        lines += [*head, f"value = {last}" if "=" not in last.split("(")[0] else f"{last}; value = None", shown]
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(lines)], cwd=DOCS, capture_output=True, text=True, env=environment, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    kinds = re.findall(r"^shown: (.*)$", done.stdout, re.M)
+    assert len(kinds) == len(sources)
+    assert kinds.count("Axes") == 3
+    assert "<p>" in kinds
+    assert "flap 1 meets 4P" in done.stdout
 
 
 # ------------------------------------------------------------------------------------------------------------ the site
@@ -145,7 +171,7 @@ class Page(HTMLParser):
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for needed in ("mkdocs", "material", "mkdocstrings", "latex2mathml"):
         if importlib.util.find_spec(needed) is None:
-            pytest.skip(f"{needed} is not installed: pip install 'southwell[docs]'")
+            pytest.skip(f"{needed} is not installed: pip install '.[docs]'")
     out = tmp_path_factory.mktemp("site")
     done = typed([sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(out)], ROOT)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1,15 +1,13 @@
-"""The README says what is so: its table is that of a run, its examples work."""
+"""The README and the page of results: their tables are those of a run, their command and its output are real."""
 
 import re
 import shlex
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.input.schema import decode
 from southwell.cases.judge import results
 from southwell.cases.verify import core_solver
 from southwell.cases.verify.lumping import CASE, OMEGA
@@ -29,8 +27,49 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.S)
 
 
-def test_the_tables_are_those_of_the_rows_beside_them() -> None:
+def test_the_table_is_that_of_the_rows_beside_it() -> None:
     assert readme.written(TEXT) == TEXT, "run `make readme`"
+
+
+def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_throughout() -> None:
+    run = results.read(readme.ROWS)
+    rows = [line.strip("| ").split(" | ") for line in readme.five(run).splitlines()[2:]]
+    assert len(rows) == len(readme.SHOWN) == 5
+    for (_, codes, largest, _), case in zip(rows, readme.SHOWN, strict=True):
+        mine = [c for c in run.cells if c.case == case and c.code in codes.split(", ") and c.role == "code"]
+        assert {c.verdict for c in mine} == {"pass"}
+        assert {c.shares for c in mine} == {"nothing"}
+        worst = max(mine, key=lambda c: abs(c.difference or 0.0))
+        assert largest == summary.plus_minus(worst)
+        foreign = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
+        left = {c.code for c in foreign if c.verdict == "pass"} - set(codes.split(", "))
+        assert left <= {c.code for c in foreign if c.verdict != "pass"}
+
+
+def test_the_output_of_the_command_is_what_it_prints(tmp_path: Path) -> None:
+    """As southwell is run here; the figure is the one it draws."""
+    output = readme.example(tmp_path)
+    assert readme.put(TEXT, readme.console(output), "command") == TEXT, "run `make readme`"
+    assert (tmp_path / readme.FIGURE.name).is_file()
+    assert readme.FIGURE.relative_to(readme.ROOT).as_posix() in TEXT
+    assert readme.FIGURE.is_file()
+
+
+def test_one_screen_comes_before_what_may_be_skipped() -> None:
+    """Sentence, figure, installation, command with its output and results: before the links, in sixty lines of text."""
+    head, links, _ = TEXT.partition("## Where to go on")
+    assert links
+    assert len(head.splitlines()) <= 60
+    places = [head.index(part) for part in ("computes the natural", "![", "pip install", "$ southwell", "| blade |")]
+    assert places == sorted(places)
+    for path in re.findall(r"\]\((?!https?:)([^)#]+)\)", TEXT):
+        assert (readme.ROOT / path).is_file(), path
+
+
+def test_the_page_of_results_has_every_case_and_the_run_times() -> None:
+    page = readme.results_page()
+    assert all(f"| {case} |" in page for case in summary.cases(results.read(readme.ROWS)))
+    assert "| 5000 " in page
 
 
 def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,30 +122,18 @@ def test_condensed_rows_give_the_same_heat_table_as_all_rows() -> None:
 
 def test_without_markers_there_is_no_place_for_a_table() -> None:
     with pytest.raises(ValueError, match="markers"):
-        readme.put("# A README without them", "table")
-
-
-def test_the_example_of_a_case_is_one() -> None:
-    (text,) = (b for b in blocks("toml") if "[blade]" in b)
-    case = decode(tomllib.loads(text), "README.md", Path())
-    assert case.name == "my-beam"
-    assert len(case.variants[0].speeds) == 4
-
-
-def test_the_entry_point_of_the_readme_is_the_one_that_is_read() -> None:
-    assert any(registry.GROUP in b for b in blocks("toml"))
+        readme.put("# A README without them", "table", "results")
 
 
 def test_the_commands_of_the_readme_are_commands() -> None:
-    lines = [line for b in blocks("console") for line in b.splitlines() if line.startswith("southwell ")]
-    assert len(lines) >= 6
-    for line in lines:
-        command, *_ = cli.app.parse_args(shlex.split(line)[1:], exit_on_error=False, print_error=False)
-        assert command.__name__ in (*line.split()[1:3], "command")
+    lines = [line[2:] for b in blocks("console") for line in b.splitlines() if line.startswith("$ southwell ")]
+    assert lines == [readme.COMMAND]
+    command, *_ = cli.app.parse_args(shlex.split(readme.COMMAND)[1:], exit_on_error=False, print_error=False)
+    assert command.__module__.endswith("cli.campbell")
 
 
 def test_targets_of_make_in_the_readme_are_in_the_makefile() -> None:
     makefile = (readme.README.parent / "Makefile").read_text(encoding="utf-8")
-    targets = re.findall(r"^make (\w+)", "\n".join(blocks("console")), re.M)
+    targets = re.findall(r"`make (\w+)`", TEXT.replace("written by `make readme`", ""))
     assert targets
     assert all(re.search(rf"^{t}:", makefile, re.M) for t in targets)

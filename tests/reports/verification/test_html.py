@@ -139,7 +139,7 @@ def test_a_pdf_or_what_is_missing_for_it(folder: Path) -> None:
         assert (folder / "report.pdf").read_bytes().startswith(b"%PDF-")
     else:
         assert done.returncode == 2
-        assert "pip install 'southwell[pdf]'" in done.stderr
+        assert "pip install '.[pdf]'" in done.stderr
 
 
 def test_without_weasyprint_it_says_what_to_install(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,70 @@
+"""Which independent codes confirm each line of a Campbell diagram, from a matrix run of the same blade."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..judge.results import Cell, Run
+from .diagram import Campbell
+
+SAME = 1e-3
+"""Largest relative difference between a line's frequency and the run's, for both to be the same mode."""
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """One line of the diagram at one speed.
+
+    Attributes:
+        track: its place in the diagram.
+        omega: rotor speed, rad/s.
+        frequency: the diagram's, rad/s.
+        uncertainty: relative, of the discretisation and of rounding; infinite where it is not known.
+        codes: names of the codes that share nothing with core and agree with it within the target.
+        difference: the largest relative difference among those; NaN without any.
+        others: codes that share nothing with core and were judged without agreeing, each with its verdict.
+    """
+
+    track: int
+    omega: float
+    frequency: float
+    uncertainty: float
+    codes: tuple[str, ...]
+    difference: float
+    others: tuple[str, ...]
+
+
+def speeds(diagram: Campbell) -> tuple[float, ...]:
+    """Speeds (rad/s) at which lines are confirmed: of those asked for, the ones nearest the ends of the operating range, or
+    the first and the last without one."""
+    asked = np.array(diagram.wanted.speeds)
+    ends = diagram.wanted.operating or (asked[0], asked[-1])
+    return tuple(sorted({float(asked[np.abs(asked - end).argmin()]) for end in ends}))
+
+
+def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
+    """Every line at the speeds of ``run``, a matrix run of the diagram's blade; lines that do not exist there are left out."""
+    tracks = diagram.tracks
+    out = []
+    for omega in sorted({c.omega for c in run.cells if c.mode}):
+        k = int(np.abs(tracks.omega - omega).argmin())
+        for t in np.flatnonzero(tracks.place[k] >= 0):
+            mode = int(tracks.place[k, t])
+            solved, frequency = tracks.solved[k], float(tracks.frequencies[k, t])
+            sure = float(solved.uncertainty[mode]) if len(solved.uncertainty) else np.inf
+            cells = [c for c in run.cells if c.omega == omega and c.shares == "nothing" and _is(c, frequency, run)]
+            agree = [c for c in cells if c.verdict == "pass"]
+            rest = tuple(f"{c.code} ({c.verdict})" for c in cells if c.verdict not in ("pass", "estimate"))
+            largest = max((abs(c.difference) for c in agree if c.difference is not None), default=np.nan)
+            codes = tuple(dict.fromkeys(c.code for c in agree))
+            out.append(Confirmed(int(t), omega, frequency, sure, codes, largest, rest))
+    return tuple(out)
+
+
+def _is(cell: Cell, frequency: float, run: Run) -> bool:
+    """Whether a cell is about the mode of this frequency: the run's nearest mode, within ``SAME``."""
+    if not (cell.mode and cell.full and cell.role == "code"):
+        return False
+    every = {c.full for c in run.cells if c.omega == cell.omega and c.full}
+    nearest = min(every, key=lambda f: abs(f - frequency))
+    return cell.full == nearest and abs(nearest / frequency - 1.0) < SAME

@@ -1,0 +1,51 @@
+"""The case that verifies a blade of which only a file is given."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...core.blade import Blade
+from .readers.sections import FromFile
+from .readers.source import Unused
+from .schema import Case, CaseFile, Compare, Speeds, Variant
+
+MODES, TARGET = 6, 1e-3
+"""Modes compared, from the lowest, and the largest relative difference."""
+
+
+def default_case(
+    blade: Blade,
+    speeds: Sequence[float],
+    *,
+    rpm: bool,
+    source: str,
+    title: str = "",
+    modes: int = MODES,
+    unused: Sequence[Unused] = (),
+) -> Case:
+    """A blade at given speeds as a case: the lowest modes, within 0.1 %, confirmed by at least one independent group.
+
+    Args:
+        blade: as every code is given it.
+        speeds: rotor speeds, rad/s, ascending.
+        rpm: whether reports give speeds in rpm and frequencies in Hz; otherwise both in rad/s.
+        source: the files, and how they were read.
+        title: one line over the report.
+        modes: how many modes are compared.
+        unused: non-zero quantities of the files that the blade does not hold.
+    """
+    name = re.sub(r"[^a-z0-9.-]+", "-", Path(blade.name).stem.lower()).strip("-.") or "blade"
+    omega = np.asarray(speeds, dtype=float)
+    typed = np.round(omega * 30 / np.pi, 9).tolist() if rpm else omega.tolist()
+    text = CaseFile(
+        name=name,
+        title=title or f"The blade {blade.name}",
+        description=f"The lowest {modes} modes, each to be confirmed within {100 * TARGET:g} %.",
+        source=source,
+        blade=FromFile(file=blade.name),
+        speeds=Speeds(rpm=typed) if rpm else Speeds(rad_s=typed),
+        compare=Compare(modes=modes, target=TARGET),
+    )
+    return Case(source, text, (Variant(name, blade, omega, tuple(unused)),))

@@ -1,0 +1,6 @@
+"""How to install what the codes need: from a checkout, until the package is published."""
+
+
+def extra(name: str) -> str:
+    """The command that installs an extra of this package."""
+    return f"pip install '.[{name}]' in a checkout of Southwell"

@@ -1,0 +1,39 @@
+"""The table of independent confirmations of a Campbell diagram's lines."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+from ...cases.campbell.confirmation import Confirmed
+from ...cases.campbell.diagram import Campbell
+from ..shared.units import Units
+from .tables import TOO_NEAR, Sheet
+
+
+def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
+    """One row per line and speed: frequency ± u, and the codes that confirm it."""
+    rows = tuple(
+        (
+            diagram.label_at(row.track, row.omega),
+            f"{row.omega * units.speeds:.6g}",
+            _with_uncertainty(row, units),
+            ", ".join(row.codes) or f"{TOO_NEAR} none",
+            f"{100 * row.difference:.2g} %" if row.codes else "–",
+        )
+        for row in found
+    )
+    rest = dict.fromkeys(
+        f"{diagram.label_at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}" for r in found if r.others
+    )
+    note = (
+        "± is the numerical uncertainty of the in-house solver; codes are those that share nothing with it and agree within "
+        f"0.1 %; the last column has their largest difference.{' Without agreement: ' + '; '.join(rest) + '.' if rest else ''}"
+    )
+    head = ("mode", units.speed, f"{units.frequency} ± u", "confirmed by", "difference")
+    return Sheet("Independent confirmation", head, rows, note)
+
+
+def _with_uncertainty(row: Confirmed, units: Units) -> str:
+    value = f"{row.frequency * units.frequencies:.5g}"
+    if not isfinite(row.uncertainty):
+        return f"{value} ± unknown"
+    return f"{value} ± {row.uncertainty * row.frequency * units.frequencies:.1g}"

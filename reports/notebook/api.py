@@ -1,0 +1,204 @@
+"""``southwell.read``, ``.modes``, ``.campbell`` and ``.verify``."""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from math import radians
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...cases.campbell import diagram
+from ...cases.campbell.diagram import Wanted
+from ...cases.input import library, readers
+from ...cases.input.default_case import MODES, default_case
+from ...cases.input.errors import CaseError
+from ...cases.input.readers import Mount
+from ...cases.input.schema import Case, speed_range
+from ...cases.judge.results import Run
+from ...cases.verify import matrix
+from ...core import solve
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from ...core.element.discretize import Mass
+from ...core.element.measures import Measure
+from ...references.protocol import registry
+from ..shared.units import RAD_S, RPM, Units
+from .results import CampbellResult, ModesResult, VerifyResult
+
+Array = NDArray[np.float64]
+
+Speeds = str | ArrayLike
+"""Rotor speeds: a number, a sequence, a range ``"first:last:step"``, or a list ``"0,5,10"``."""
+
+
+def read(
+    path: str | Path,
+    *,
+    main: str | Path | None = None,
+    length: float | None = None,
+    hub_radius: float | None = None,
+    precone: float | None = None,
+    pitch: float | None = None,
+) -> Blade:
+    """The blade in a file, or the blade of a case that comes with the package.
+
+    Args:
+        path: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML or CSV; or a case, ``"nrel-5mw"`` or
+            ``"park-blade/windpact"``.
+        main: the main file that says how the blade sits on the hub.
+        length: from root to tip, m, where no file says it.
+        hub_radius: from the rotor axis to the root, m.
+        precone: degrees, positive downwind.
+        pitch: degrees, positive with the leading edge downwind (the opposite sign of OpenFAST's BlPitch).
+
+    Raises:
+        CaseError: one line with file and line, value, likely cause and remedy.
+    """
+    known = (*library.names(), *library.mechanisms())
+    mount = Mount(
+        main=None if main is None else Path(main),
+        length=length,
+        hub_radius=hub_radius,
+        precone=None if precone is None else radians(precone),
+        pitch=None if pitch is None else radians(pitch),
+    )
+    if str(path).partition("/")[0] not in known:
+        return readers.read(Path(path), mount)
+    if mount != Mount():
+        raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")
+    case = library.select(str(path))
+    if len(case.variants) > 1:
+        raise CaseError(f"{path}: several blades: name one of {', '.join(v.name for v in case.variants)}")
+    return case.variants[0].blade
+
+
+def modes(
+    blade: Blade,
+    omega: float,
+    elements: int | None = None,
+    count: int = 10,
+    *,
+    accuracy: float = 1e-6,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    model: Model = FULL,
+    gravity: Array = solve.NO_GRAVITY,
+    load: Array | None = None,
+    allow_large_strain: bool = False,
+) -> ModesResult:
+    """The lowest modes of a blade at one rotor speed, by the in-house solver; see ``core.solve.modes``.
+
+    Args:
+        blade: the blade.
+        omega: rotor speed, rad/s.
+        elements: number of beam elements of equal length; by default as many as ``accuracy`` requires.
+        count: number of modes.
+        accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given.
+        mass: ``consistent``, or ``half_end`` (lumped, Park et al. 2010).
+        stiffness: ``corotational``, or ``parent`` (Park et al. 2010).
+        model: physical effects kept.
+        gravity: (3,) m/s², in hub axes.
+        load: (n, 3) steady force per length at the blade's stations, N/m, in hub axes.
+        allow_large_strain: accept steady strains above 20 %.
+
+    Raises:
+        ValueError, SteadyStateError, UnstableError, EigensolverError: as ``core.solve.modes``.
+    """
+    found = solve.modes(
+        blade,
+        omega,
+        elements,
+        count,
+        accuracy=accuracy,
+        mass=mass,
+        stiffness=stiffness,
+        model=model,
+        gravity=gravity,
+        load=load,
+        allow_large_strain=allow_large_strain,
+    )
+    return ModesResult(**vars(found), blade=blade)
+
+
+def campbell(
+    blade: Blade,
+    *,
+    rpm: Speeds | None = None,
+    omega: Speeds | None = None,
+    modes: int = 6,
+    per_rev: Sequence[int] = (1, 2, 3, 4, 5, 6),
+    operating: tuple[float, float] | None = None,
+    margin: float = 0.1,
+    elements: int = 50,
+) -> CampbellResult:
+    """The Campbell diagram of a blade: its modes followed along rotor speed, and their margins.
+
+    Args:
+        blade: the blade.
+        rpm: rotor speeds in rpm; results are then in rpm and Hz.
+        omega: rotor speeds in rad/s, instead; results are then in rad/s.
+        modes: number of modes, from the lowest.
+        per_rev: excitation orders n (nP).
+        operating: lowest and highest operating speed, in the unit of the speeds.
+        margin: required distance from nP over the operating range, relative to nP.
+        elements: number of beam elements.
+
+    Raises:
+        CaseError: no speeds or fewer than two, an operating range outside them, or no steady state at a speed.
+    """
+    speeds, units = _speeds(rpm, omega)
+    low_high = None if operating is None else (operating[0] / units.speeds, operating[1] / units.speeds)
+    wanted = Wanted(tuple(speeds.tolist()), modes, tuple(per_rev), low_high, margin, elements)
+    return CampbellResult(diagram.campbell(blade, wanted, diagram.solver(blade, wanted, at=units.at)), units)
+
+
+def verify(
+    blade: Blade | str,
+    *,
+    rpm: Speeds | None = None,
+    omega: Speeds | None = None,
+    codes: Sequence[str] | None = None,
+    modes: int = MODES,
+    workers: int = 2,
+) -> VerifyResult:
+    """The blade solved by every code, compared mode by mode with the in-house solver, and judged.
+
+    Args:
+        blade: a blade, or the name or TOML file of a case, which has its own speeds.
+        rpm: rotor speeds in rpm.
+        omega: rotor speeds in rad/s, instead.
+        codes: names (``southwell codes``); by default all. Codes that are not installed are reported as not run.
+        modes: number of modes compared, from the lowest; of a blade.
+        workers: codes that run at the same time.
+
+    Raises:
+        CaseError: no speeds for a blade, speeds for a case, or a blade that the in-house solver cannot solve.
+        UnknownCodeError: a code that is not known.
+    """
+    with ThreadPoolExecutor(workers) as executor:
+        run: Run = matrix.run([_case(blade, rpm, omega, modes)], codes or registry.names(), executor)
+    return VerifyResult(run)
+
+
+def _case(blade: Blade | str, rpm: Speeds | None, omega: Speeds | None, modes: int) -> Case:
+    if isinstance(blade, Blade):
+        speeds, units = _speeds(rpm, omega)
+        return default_case(blade, speeds.tolist(), rpm=units is RPM, source="given in Python", modes=modes)
+    if rpm is not None or omega is not None:
+        raise CaseError(f"{blade}: a case has its own speeds: leave out rpm and omega, or give a blade")
+    return library.select(blade)
+
+
+def _speeds(rpm: Speeds | None, omega: Speeds | None) -> tuple[Array, Units]:
+    """Speeds (k,) in rad/s, ascending, and the unit in which they were given."""
+    if (rpm is None) == (omega is None):
+        raise CaseError("speeds: give rpm or omega, one of them, as in rpm='0:12:1'")
+    given, units = (rpm, RPM) if omega is None else (omega, RAD_S)
+    try:
+        values = speed_range(given) if isinstance(given, str) else np.atleast_1d(np.asarray(given, dtype=float))
+    except (ValueError, TypeError) as error:
+        raise CaseError(f"{units.speed}: {error}") from error
+    if values.ndim != 1 or not (np.isfinite(values).all() and (values >= 0).all() and (np.diff(values) > 0).all()):
+        raise CaseError(f"{units.speed}: {given}: speeds are finite, not negative, and ascend: correct them")
+    return values / units.speeds, units

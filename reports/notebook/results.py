@@ -1,0 +1,227 @@
+"""Results that show themselves: a short text, a table in a notebook, a pandas table, a figure."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from ...cases.campbell.diagram import Campbell
+from ...cases.judge.pairing import MOTIONS, aligned, families, weights
+from ...cases.judge.results import Run
+from ...core.blade import Blade
+from ...core.modes import STATIONS, Modes
+from ..campbell import page, tables
+from ..campbell.figure import lines
+from ..shared import summary
+from ..shared.units import RAD_S, Units
+
+SIGNIFICANT = 6
+"""Digits of a frequency in a notebook's table; ``to_frame`` has all of them."""
+
+
+def _html(title: str, frame: pd.DataFrame) -> str:
+    return f"<p>{title}</p>{frame.to_html(index=False, border=0, float_format=f'%.{SIGNIFICANT}g')}"
+
+
+def _axes(width: float, height: float) -> Axes:
+    """Axes of a new figure, inches."""
+    import matplotlib.pyplot as plt  # chooses a backend, which reading and solving must not
+
+    return plt.subplots(figsize=(width, height), layout="constrained")[1]
+
+
+@dataclass(frozen=True, repr=False)
+class ModesResult(Modes):
+    """Modes of a blade at one rotor speed.
+
+    Attributes:
+        blade: what was solved; the others as in ``Modes``.
+    """
+
+    blade: Blade = field(kw_only=True)
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per mode: ``mode``, ``name``, ``frequency_hz``, ``frequency_rad_s``, ``uncertainty`` (relative),
+        ``damping_ratio``."""
+        sure = self.uncertainty if len(self.uncertainty) else np.full(len(self.frequencies), np.nan)
+        return pd.DataFrame(
+            {
+                "mode": np.arange(1, len(self.frequencies) + 1),
+                "name": self.names,
+                "frequency_hz": self.frequencies / (2 * np.pi),
+                "frequency_rad_s": self.frequencies,
+                "uncertainty": sure,
+                "damping_ratio": self.damping,
+            }
+        )
+
+    @property
+    def names(self) -> list[str]:
+        """Of each mode: its family and its number within it, ``flapwise 2``."""
+        weight = weights(self.blade)
+        seen: Counter[str] = Counter()
+        out = []
+        for family in families(aligned(self, weight), weight):
+            seen[family] += 1
+            out.append(f"{family} {seen[family]}")
+        return out
+
+    def plot(self, modes: int = 4, axes: Axes | None = None) -> Axes:
+        """Draw the shapes of the lowest ``modes`` along the span: of each, the motion that is largest, scaled to 1."""
+        axes = axes or _axes(6.4, 4.8)
+        for k, name in enumerate(self.names[:modes]):
+            shape = self.shapes[k] * (1, 1, 1, self.blade.length / 10)  # a rotation by its displacement at a tenth of L
+            part = int(np.abs(shape).max(axis=0).argmax())
+            tip = shape[np.abs(shape[:, part]).argmax(), part]
+            axes.plot(STATIONS * self.blade.length, (shape[:, part] / tip).real, label=f"{name} ({MOTIONS[part]})")
+        axes.set_xlabel("distance from the root, m")
+        axes.set_ylabel("mode shape, scaled")
+        axes.legend()
+        return axes
+
+    def __repr__(self) -> str:
+        hertz = ", ".join(f"{f:.4g}" for f in self.frequencies[:4] / (2 * np.pi))
+        more = ", …" if len(self.frequencies) > 4 else ""
+        return f"<{len(self.frequencies)} modes of {self.blade.name} at {RAD_S.at(self.omega)}: {hertz}{more} Hz>"
+
+    def _repr_html_(self) -> str:
+        return _html(f"{self.blade.name} at {RAD_S.at(self.omega)}", self.to_frame())
+
+
+@dataclass(frozen=True, repr=False)
+class CampbellResult:
+    """A Campbell diagram.
+
+    Attributes:
+        diagram: tracks, crossings, resonances and margins; in rad/s.
+        units: of the tables and figures: those in which the speeds were given.
+    """
+
+    diagram: Campbell
+    units: Units
+
+    def to_frame(self) -> pd.DataFrame:
+        """Frequencies (k, t): one row per rotor speed, one column per mode, NaN where a mode was not found; the index and
+        ``attrs["frequency"]`` name the units."""
+        tracks = self.diagram.tracks
+        frame = pd.DataFrame(
+            tracks.frequencies * self.units.frequencies,
+            index=pd.Index(tracks.omega * self.units.speeds, name=self.units.speed_label),
+            columns=[self.diagram.label(t) for t in range(tracks.count)],
+        )
+        frame.attrs["frequency"] = self.units.frequency
+        return pd.DataFrame(frame.loc[tracks.asked])
+
+    def margins(self) -> pd.DataFrame:
+        """One row per mode and order n: ``mode``, ``per_rev``, ``low``, ``high`` (margins at both ends of the operating range),
+        ``kept``; relative to n per revolution. Empty without an operating range."""
+        rows = [
+            {"mode": self.diagram.label(m.track), "per_rev": m.per_rev, "low": m.low, "high": m.high, "kept": m.kept}
+            for m in self.diagram.margins
+        ]
+        return pd.DataFrame(rows, columns=["mode", "per_rev", "low", "high", "kept"])
+
+    @property
+    def verdict(self) -> str:
+        """The margins in one line."""
+        return tables.verdict(self.diagram, self.units)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw frequencies along rotor speed, the lines of n per revolution and the operating range."""
+        axes = axes or _axes(7.0, 4.5)
+        return lines(axes, self.diagram, self.units)
+
+    def write(self, folder: str | Path) -> tuple[Path, ...]:
+        """Write campbell.md, figures (SVG, PNG) and CSV tables, as ``southwell campbell`` does; their paths."""
+        return page.write(self.diagram, Path(folder), self.units, "from Python")
+
+    def __repr__(self) -> str:
+        speeds = np.array(self.diagram.wanted.speeds) * self.units.speeds
+        over = f"{len(speeds)} speeds from {speeds[0]:g} to {speeds[-1]:g} {self.units.speed}"
+        return f"<Campbell diagram of {self.diagram.blade.name}: {self.diagram.tracks.count} modes, {over}>"
+
+    def _repr_html_(self) -> str:
+        return _html(f"{self!r}".strip("<>") + f", in {self.units.frequency}", self.to_frame().reset_index())
+
+
+@dataclass(frozen=True, repr=False)
+class VerifyResult:
+    """What other codes found, compared with the in-house solver.
+
+    Attributes:
+        run: every cell, refinement and origin; see ``cases.judge.results``.
+    """
+
+    run: Run
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per code, speed and mode: ``case``, ``omega_rad_s``, ``mode``, ``code``, ``frequency`` and
+        ``reference`` (rad/s), ``difference``, ``uncertainty``, ``target`` (relative), ``verdict``, ``shares`` (what the code
+        has in common with the in-house solver), ``reason``."""
+        labels = summary.labels(self.run.cells)
+        rows = [
+            {
+                "case": c.case,
+                "omega_rad_s": c.omega,
+                "mode": labels.get(c, ""),
+                "code": summary.column(c),
+                "frequency": c.frequency,
+                "reference": c.reference,
+                "difference": c.difference,
+                "uncertainty": c.uncertainty,
+                "target": c.target,
+                "verdict": c.verdict,
+                "shares": c.shares,
+                "reason": c.reason,
+            }
+            for c in self.run.cells
+        ]
+        return pd.DataFrame(rows)
+
+    def evidence(self) -> pd.DataFrame:
+        """One row per code that answered: ``code``, ``shares`` (with the in-house solver), ``verdict`` (the worst),
+        ``difference`` (the largest, relative), ``modes`` (compared)."""
+        frame = self.to_frame()
+        rows = []
+        for code, cells in pd.DataFrame(frame[frame["frequency"].notna()]).groupby("code", sort=False):
+            verdicts = set(cells["verdict"])
+            rows.append(
+                {
+                    "code": code,
+                    "shares": cells["shares"].iloc[0],
+                    "verdict": next(v for v in summary.GRAVEST_FIRST if v in verdicts),
+                    "difference": cells["difference"].abs().max(),
+                    "modes": len(cells),
+                }
+            )
+        return pd.DataFrame(rows, columns=["code", "shares", "verdict", "difference", "modes"])
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing fails or is inconclusive and every blade has the independent confirmations it requires."""
+        return summary.status(self.run) == 0
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the size of every difference with its uncertainty, one row per code; the target is a line."""
+        axes = axes or _axes(7.0, 3.5)
+        frame = self.to_frame().dropna(subset=["difference"])
+        codes = list(dict.fromkeys(frame["code"]))
+        size = (frame["difference"].abs() + frame["uncertainty"].fillna(0.0)).clip(lower=1e-16)
+        axes.plot(size, [codes.index(code) for code in frame["code"]], "o", alpha=0.6)
+        for target in sorted(set(frame["target"])):
+            axes.axvline(target, color="0.5", lw=1, ls="--")
+        axes.set_xscale("log")
+        axes.set_yticks(range(len(codes)), codes)
+        axes.invert_yaxis()
+        axes.set_xlabel("|difference from core| + uncertainty, relative")
+        return axes
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n} {v}" for v, n in summary.counts(self.run.cells).items() if n)
+        return f"<verification of {', '.join(summary.cases(self.run))}: {counts}>"
+
+    def _repr_html_(self) -> str:
+        return _html(f"{self!r}".strip("<>"), self.evidence())

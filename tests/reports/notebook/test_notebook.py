@@ -1,0 +1,96 @@
+"""What a notebook gets: the same numbers as core's, in tables and figures that show themselves."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+import southwell
+from southwell.cases.input.errors import CaseError
+from southwell.core import solve
+
+mpl.use("agg")
+
+OMEGA = 10.0
+
+
+@pytest.fixture(scope="module")
+def blade() -> southwell.Blade:
+    return southwell.read("park-cantilever")
+
+
+def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) -> None:
+    found, core = southwell.modes(blade, OMEGA, count=3), solve.modes(blade, OMEGA, count=3)
+    frame = found.to_frame()
+    assert isinstance(found, southwell.Modes)
+    assert frame["name"].tolist() == ["chordwise 1", "flapwise 1", "chordwise 2"]
+    np.testing.assert_allclose(frame["frequency_rad_s"], core.frequencies, rtol=1e-12)
+    np.testing.assert_allclose(frame["frequency_hz"] * 2 * np.pi, core.frequencies, rtol=1e-12)
+    assert frame["uncertainty"].max() <= 1e-6
+    assert repr(found) == "<3 modes of park-cantilever at 10 rad/s: 1.864, 2.451, 11.21 Hz>"
+    assert "<table" in found._repr_html_()
+    axes = found.plot(modes=2)
+    assert isinstance(axes, Axes)
+    assert [np.asarray(line.get_xydata())[-1].tolist() for line in axes.lines] == [
+        [blade.length, pytest.approx(1.0)]
+    ] * 2
+
+
+def test_a_diagram_has_the_frequencies_of_each_speed_in_the_unit_given(blade: southwell.Blade) -> None:
+    found = southwell.campbell(blade, rpm="0:60:30", modes=2, operating=(30, 60), elements=20)
+    frame = found.to_frame()
+    assert frame.index.name == "rotor speed, rpm"
+    assert frame.index.tolist() == pytest.approx([0.0, 30.0, 60.0])
+    for rpm, row in frame.iterrows():
+        core = solve.modes(blade, float(str(rpm)) * np.pi / 30, 20, 2).frequencies / (2 * np.pi)
+        np.testing.assert_allclose(np.sort(row), core, rtol=1e-9)
+    margins = found.margins()
+    assert len(margins) == 2 * 6
+    first = frame.columns[0]
+    ends = np.asarray(margins.query("mode == @first and per_rev == 2")[["low", "high"]])[0]
+    np.testing.assert_allclose(ends, frame[first].loc[[30.0, 60.0]] / [1.0, 2.0] - 1.0, rtol=1e-6)
+    assert repr(found) == "<Campbell diagram of park-cantilever: 2 modes, 3 speeds from 0 to 60 rpm>"
+    assert found.verdict
+    assert "<table" in found._repr_html_()
+    assert found.plot().get_xlabel() == "rotor speed, rpm"
+
+
+def test_a_verification_has_a_row_for_every_cell_and_a_verdict(blade: southwell.Blade) -> None:
+    found = southwell.verify(blade, omega=[0.0, OMEGA], codes=["exact-beam"], modes=2)
+    frame = found.to_frame()
+    mine = frame[frame["code"] == "exact-beam"]
+    assert len(mine) == 4
+    assert set(mine["verdict"]) == {"pass"}
+    assert set(mine["omega_rad_s"]) == {0.0, OMEGA}
+    np.testing.assert_allclose(mine["frequency"] / mine["reference"] - 1.0, mine["difference"], atol=1e-12)
+    assert found.passed
+    evidence = found.evidence().set_index("code")
+    assert evidence.loc["exact-beam", "modes"] == 4
+    assert evidence.loc["exact-beam", "difference"] == np.abs(mine["difference"]).max()
+    assert "pass" in repr(found)
+    assert "<table" in found._repr_html_()
+    assert found.plot().get_xscale() == "log"
+
+
+def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blade) -> None:
+    assert not southwell.verify(blade, omega=OMEGA, codes=["southwell-equation"], modes=2).passed
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda b: southwell.read("no-such.dat"), "no-such.dat"),
+        (lambda b: southwell.read("park-blade"), "name one of"),
+        (lambda b: southwell.read("park-cantilever", length=3.0), "leave out"),
+        (lambda b: southwell.campbell(b), "give rpm or omega"),
+        (lambda b: southwell.campbell(b, rpm="0:9:3", omega="0:9:3"), "give rpm or omega"),
+        (lambda b: southwell.campbell(b, rpm=[3.0, 1.0]), "ascend"),
+        (lambda b: southwell.campbell(b, rpm="fast"), "neither a speed"),
+        (lambda b: southwell.verify("park-cantilever", rpm=3.0), "own speeds"),
+    ],
+)
+def test_what_cannot_be_is_one_line(call, told: str, blade: southwell.Blade) -> None:
+    with pytest.raises(CaseError) as raised:
+        call(blade)
+    assert told in str(raised.value)
+    assert "\n" not in str(raised.value)
