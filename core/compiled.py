@@ -65,7 +65,7 @@ class _FirstUse(event.Listener):
 
     announced = False
 
-    def on_start(self, event: event.Event) -> None:
+    def on_start(self, event: Any) -> None:
         """Numba begins to compile a function that is not in the cache."""
         ours = event.data["dispatcher"].py_func.__module__.startswith(__package__ or "")
         if ours and not self.announced:
@@ -73,7 +73,7 @@ class _FirstUse(event.Listener):
             if parent_process() is None or _first_worker():
                 logging.getLogger("southwell").warning(ANNOUNCEMENT)
 
-    def on_end(self, event: event.Event) -> None:
+    def on_end(self, event: Any) -> None:
         """Nothing to do."""
 
 

@@ -42,7 +42,8 @@ def changes(
 ) -> tuple[Changed, ...]:
     """The lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s), paired with those of ``against``.
 
-    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` takes; shapes are compared by MAC with the mass of ``blade``.
+    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` takes. Shapes are compared by MAC with
+    the mass of ``blade``.
 
     Raises:
         CaseError: if a speed has no stable steady state for one of them.

@@ -70,7 +70,7 @@ def read(
     case = library.select(str(path))
     if len(case.variants) > 1:
         raise CaseError(f"{path}: several blades: name one of {', '.join(v.name for v in case.variants)}")
-    return case.variants[0].blade
+    return next(iter(case.variants)).blade
 
 
 def modes(

@@ -237,7 +237,7 @@ BESIDE = {
 def _run():
     from southwell.cases.judge.results import Cell, Control, Level, Origin, Planned, Run, Setting, Share
 
-    def cell(mode: int, code: str, **more: object) -> Cell:
+    def cell(mode: int, code: str, **more: Any) -> Cell:
         row: dict[str, Any] = {
             "case": "beam",
             "omega": 10.0,
