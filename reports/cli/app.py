@@ -38,6 +38,12 @@ COMMANDS = (
         "List the codes: version, what they share with core, how to install them.",
     ),
     (VERIFY, "conform", "cli.conform:command", "Run the conformance checks on a code."),
+    (
+        VERIFY,
+        "validate",
+        "verification.validation_page:command",
+        "Compare the model of a measured rotor with its measurements.",
+    ),
     (VERIFY, "bench", "verification.bench:command", "Measure the run time of core and of the other codes."),
     (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
     (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),
