@@ -14,11 +14,14 @@ settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the property tests; leave out what is for the night, unless it is asked for."""
+    night = "nightly" in str(config.getoption("-m"))
     for item in items:
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker("random")
-        if item.get_closest_marker("nightly") and "nightly" not in str(config.getoption("-m")):
-            item.add_marker(pytest.mark.skip(reason="for the night: pytest -m nightly"))
+    left = [item for item in items if item.get_closest_marker("nightly") and not night]
+    if left:
+        config.hook.pytest_deselected(items=left)
+        items[:] = [item for item in items if item not in set(left)]
 
 
 __all__ = ["every_steady_state_again"]

@@ -64,7 +64,7 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
         try:
             shape = rest(chain) if found is None else found.shape
             found = _newton(chain, shape, omega * load**0.5, gravity * load)
-            done = load
+            done, step = load, 2.0 * step
         except SteadyStateError:
             step *= 0.5
             if step < _SMALLEST_RAMP:

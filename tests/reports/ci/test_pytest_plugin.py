@@ -211,7 +211,7 @@ def test_other_projects_tests_are_left_alone(pytester: pytest.Pytester) -> None:
     pytester.runpytest().assert_outcomes(passed=1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_installed_in_a_clean_environment(tmp_path: Path) -> None:
     """``pip install`` of a copy of the checkout and of the example, nothing else."""
     for path in tracked():

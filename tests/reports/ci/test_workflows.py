@@ -130,6 +130,7 @@ CASE = (ROOT / "cases" / "data" / "rotating-cable.toml").read_text(encoding="utf
 FEW = {"cases": "mine.toml", "codes": "southwell-equation,scikit-fem", "out": "out"}
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(BASH is None, reason="no bash")
 def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
     case = tmp_path / "mine.toml"

@@ -80,6 +80,7 @@ def test_it_is_in_the_matrix(folder: Path) -> None:
     assert sum(c.verdict == "pass" for c in found) > 38
 
 
+@pytest.mark.nightly
 def test_once_installed_it_goes_by_its_name(folder: Path) -> None:
     found = cells(folder, "--codes my-code", installed=True)
     assert len(found) == 21
