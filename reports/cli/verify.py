@@ -115,6 +115,7 @@ def command(
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
     known = describe(names, [v.blade for v in blades])
     files = [_added(text) for text in add]
+    names_of.unique(chosen, known, files)
     user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     plain = not (rpm or omega or changes or decks.mount != Mount())
@@ -129,7 +130,6 @@ def command(
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    names_of.unique(chosen, known, files)
     limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
     with writing(out), _journal(out) as kept:
         run, stopped = _solve(chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits)

@@ -68,7 +68,7 @@ for k in range(int(times)):
 
 def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     # some 150 KB: more than a pipe or a block of a disk takes at once
-    cells = tuple(replace(CELL, mode=k, frequency=1 / (k + 3)) for k in range(1500))
+    cells = tuple(replace(CELL, mode=k, frequency=1 / (k + 3)) for k in range(1, 1501))
     source = tmp_path / "source.jsonl"
     history.append(source, history.entry(replace(RUN, cells=cells), "source", "a machine", MADE))
     assert source.stat().st_size > 100_000
@@ -170,10 +170,10 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert re.search(told.replace("(", r"\("), err)
 
 
-@pytest.mark.parametrize("lines", [0, 2, -1])
-@pytest.mark.parametrize(
-    "line", ["history add {0}/cut --history {0}/h.jsonl --commit a", "gate {0}/good --against {0}/cut"]
-)
+ADD, GATE = "history add {0}/cut --history {0}/h.jsonl --commit a", "gate {0}/good --against {0}/cut"
+
+
+@pytest.mark.parametrize(("line", "lines"), [(ADD, 0), (ADD, 2), (ADD, -1), (GATE, 2), (GATE, -1)])
 def test_an_incomplete_run_is_not_what_others_are_compared_with(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, lines: int
 ) -> None:

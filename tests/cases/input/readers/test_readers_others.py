@@ -317,8 +317,8 @@ def test_bad_sections(tmp_path: Path) -> None:
     southwell_toml.write(readers.read(HTC), tmp_path / "b.toml")
     text = (tmp_path / "b.toml").read_text()
     for old, new, message in (
-        ("twist_deg = [", "twist_deg = [1.0, ", r"b.toml: blade.twist_deg: 4 entries for 3 stations"),
-        ("s = [0.0, ", "s = [0.0, 0.0, ", r"b.toml: blade.stiffness: 3 entries for 4 stations"),
+        ("twist_deg = [", "twist_deg = [1.0, ", r"b.toml: blade.twist_deg: 7 entries for 6 stations"),
+        ("s = [0.0, ", "s = [0.0, 0.0, ", r"b.toml: blade.stiffness: 6 entries for 7 stations"),
         ("rigid = []", 'rigid = ["axial"]', r"b.toml: blade.rigid: axial: its stiffnesses are not zero"),
     ):
         assert old in text
