@@ -15,7 +15,7 @@ from .chain import as_mechanism
 from .chain.mode_shapes import mode_shapes
 from .chain.pencil import Shape
 from .chain.steady import SteadyStateError
-from .effects import FULL, Model
+from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
@@ -40,14 +40,14 @@ def modes(
     *,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array | None = None,
     load: Array | None = None,
 ) -> Modes:
     """The lowest modes of a blade turning steadily at ``omega``; arguments, units and answer as those of ``solve.modes``.
 
     Raises:
-        ValueError: as ``solve.modes``; or a model without prestretch or geometric stiffness, which the steady state of a
+        ValueError: as ``solve.modes``; or effects without prestretch or geometric stiffness, which the steady state of a
             mechanism always has.
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
@@ -61,18 +61,18 @@ def modes(
             f"elements: {elements}: the velocity transformation has dense matrices: at most {MOST_ELEMENTS}; "
             "use the chain solver"
         )
-    if not (model.prestretch and model.geometric):
+    if not (effects.prestretch and effects.geometric):
         raise ValueError(
-            f"model: no {', no '.join(model.lacks())}: the velocity transformation keeps prestretch and geometric stiffness; "
-            "use the chain solver"
+            f"effects: no {', no '.join(effects.lacks())}: the velocity transformation keeps prestretch and geometric "
+            "stiffness; use the chain solver"
         )
     begun = time.perf_counter()
-    kept = blade if model.rotary_inertia else without_rotary_inertia(blade)
+    kept = blade if effects.rotary_inertia else without_rotary_inertia(blade)
     body = discretize(kept, elements, mass, stiffness, load)
     linear = about_steady_state(body, omega, np.zeros(3) if gravity is None else gravity)
     M, C, K = (0.5 * (linear.M + linear.M.T), 0.5 * (linear.C - linear.C.T), 0.5 * (linear.K + linear.K.T))
     try:
-        found = eigen.gyroscopic(M, C if model.coriolis else np.zeros_like(C), K, count)
+        found = eigen.gyroscopic(M, C if effects.coriolis else np.zeros_like(C), K, count)
     except eigen.UnstableError as error:
         loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
         raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error

@@ -42,7 +42,7 @@ WITH_TIP_MASS = replace(
 STUBBY = uniform_blade(
     "stubby beam", LENGTH, 0.0, EA=3e4, GJ=200.0, EI_y=EI, EI_z=EI, mass=MASS, I_y=MASS * EI / 3e4, I_z=MASS * EI / 3e4
 )
-"""Slenderness 50, inertia of the sections to match: each effect of ``core.model`` shows at ``FAST``, by 0.7 % at least."""
+"""Slenderness 50, inertia of the sections to match: each effect of ``core.effects`` shows at ``FAST``, by 0.7 % at least."""
 
 FAST = 10.0
 """rad/s."""

@@ -14,7 +14,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...references import published
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
@@ -72,9 +72,9 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
     tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()
 
     @property
-    def model(self) -> Model:
+    def model(self) -> Effects:
         """The effects kept."""
-        return Model(**dict.fromkeys(self.lacks, False))
+        return Effects(**dict.fromkeys(self.lacks, False))
 
     @property
     def what(self) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core import velocity_transformation
 from ...core.blade import Blade, straight
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
 from ...references.protocol.interface import CORE, Code, Independence, brackets, independence, motions
 from ...references.protocol.registry import cap, version_of
@@ -53,7 +53,7 @@ class Column:
     """
 
     name: str
-    model: Model
+    model: Effects
     head: Head
     work: Callable[[Any], Rows]
     origin: Independence | None = None
@@ -83,14 +83,14 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
     head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
-    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade)))
+    out.append(Column(OTHER_METHOD, ALL_EFFECTS, head, partial(_other_method, head, blade)))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         theory = CORE if computed else table.series.theory or table.source
         origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
-        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin))
+        out.append(Column(table.name, felt(table.series.effects, blade), head, work, origin))
     takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
     if codes and not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
@@ -104,7 +104,9 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
 
 def _mechanisms_only(case: str, code: Any, target: float) -> Column:
     head = Head(case, code.name, version_of(code)[0], "code", target)
-    return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
+    return Column(
+        code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades")
+    )
 
 
 def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:
@@ -113,17 +115,17 @@ def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Co
     except Exception as error:  # whatever a foreign code raises costs its own cells only
         return _raised(head, f"unsupported(): {type(error).__name__}: {one_line(error)}")
     if why:
-        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", why))
+        return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", why))
     if not head.version:
-        return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
-    model = felt(code.model, blade)
+        return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
+    model = felt(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)
         return Column(
             code.name,
             model,
             head,
-            partial(_same, head, name, blade, code.levels[-1], code.model, timeout),
+            partial(_same, head, name, blade, code.levels[-1], code.effects, timeout),
         )
     refining = Refining(tuple(code.levels), code.order, cap(code), bracket=brackets(code))
     return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
@@ -137,7 +139,9 @@ def _origin(code: Any, blade: Blade) -> Independence | None:
 
 
 def _raised(head: Head, what: str) -> Column:
-    return Column(head.code, FULL, head, partial(_absent, head, "fail", f"the adapter raised an exception: {what}"))
+    return Column(
+        head.code, ALL_EFFECTS, head, partial(_absent, head, "fail", f"the adapter raised an exception: {what}")
+    )
 
 
 def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
@@ -168,7 +172,7 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     )
 
 
-def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:
+def _same(head: Head, name: str, blade: Blade, elements: int, model: Effects, timeout: float, core: References) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
     theirs = answers(name, blade, runs, timeout)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))

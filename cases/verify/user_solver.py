@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.worker import Answer, Failure
 from ...references.protocol.worker import Run as Asked
@@ -55,9 +55,9 @@ class Yours:
     known: dict[str, tuple[str, float]] = field(default_factory=dict)
 
     @property
-    def model(self) -> Model:
+    def effects(self) -> Effects:
         """The effects it keeps."""
-        return replace(FULL, **dict.fromkeys(self.lacks, False))
+        return replace(ALL_EFFECTS, **dict.fromkeys(self.lacks, False))
 
     @property
     def refines(self) -> bool:
@@ -77,7 +77,7 @@ def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
     speeds = variant.speeds.tolist()
     if why := yours.unsupported(variant.blade):
         return [empty(head, omega, "not applicable", why) for omega in speeds], []
-    model = felt(yours.model, variant.blade)
+    model = felt(yours.effects, variant.blade)
     solved = references(variant.blade, speeds, compare, [model])
     core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
     if len(core) < len(speeds):
@@ -128,7 +128,7 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
     """Its frequencies against printed numbers: those that core, with the table's effects, passes."""
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
-        model = felt(table.series.model, variant.blade)
+        model = felt(table.series.effects, variant.blade)
         if model not in solved:
             solved |= references(variant.blade, variant.speeds.tolist(), compare, [model])
         core = [

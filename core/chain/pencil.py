@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..effects import FULL, Model
+from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element import inertia
 from ..element.discretize import Chain
@@ -91,7 +91,7 @@ def rest(chain: Chain) -> Shape:
     return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)), chain.between)
 
 
-def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: Model = FULL) -> Linear:
+def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> Linear:
     """Residual and pencil at a shape.
 
     Args:
@@ -99,25 +99,25 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
         shape: where it is.
         omega: rotor speed, rad/s.
         gravity: (3,) free-fall acceleration in the hub's axes, turning with it.
-        model: effects kept.
+        effects: effects kept.
     """
     n, d = len(shape.nodes), 6 + chain.beams.inner
     frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
     x, lever = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
     nodes, relative, corner = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, chain.corner))
     _place(nodes, relative, omega, gravity, chain.force, corner, frame, fall, axes, push, x, lever)
-    p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
+    p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], effects, axes[:-1])
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
-    inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
+    inertia.carried(chain.lumps, frame, fall, push, effects.geometric, g, C, K)
     residual = np.empty((n - 1, d))
     _balance(p.residual, lever, g, residual)
     held = chain.held
     if held.size:
         held, turning = root_joint.held(chain, shape.nodes, residual[0, -6:])
         residual[0, -6:] -= held @ residual[0, -6:]
-        if model.geometric:
+        if effects.geometric:
             K[1] += turning
-    moving = 1.0 if model.coriolis else 0.0
+    moving = 1.0 if effects.coriolis else 0.0
     return Linear(
         residual.ravel(),
         _hold(blocks.from_elements(p.M, lever, chain.lumps), held, 0.0),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..effects import Model
+from ..effects import Effects
 from ..element import beams as bm
 from ..element import measures
 from ..element.discretize import Chain
@@ -180,7 +180,7 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     """The undeformed chain carrying the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
-    still = Model(geometric=False)
+    still = Effects(geometric=False)
     residual = linearize(chain, rest(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
     elastic = linearize(bare, rest(bare), 0.0, np.zeros(3), still).factor

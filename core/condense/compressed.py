@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import solve
-from ..effects import FULL, Model
+from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
 from ..element.discretize import Chain
@@ -62,7 +62,7 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
 
 
 def chain_modes(
-    chain: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = solve.NO_GRAVITY
+    chain: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = solve.NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain turning steadily at ``omega`` (rad/s); see ``solve.modes``.
 
@@ -70,7 +70,7 @@ def chain_modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
-    return solve.chain_modes(chain, omega, count, model=model, gravity=gravity)
+    return solve.chain_modes(chain, omega, count, effects=effects, gravity=gravity)
 
 
 def _centred(inertia: Array) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..effects import FULL, Model
+from ..effects import ALL_EFFECTS, Effects
 from ..space import spatial as sp
 from . import measures
 from .measures import Law, Measure
@@ -167,7 +167,7 @@ def pencil(
     beta: Array,
     frame: Array,
     gravity: Array,
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     axes: Array | None = None,
 ) -> Pencil:
     """Assemble residual and matrices of all elements.
@@ -178,7 +178,7 @@ def pencil(
         beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
-        model: the effects kept (``geometric`` matters here).
+        effects: the effects kept (``geometric`` matters here).
         axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
 
     Raises:
@@ -195,7 +195,7 @@ def pencil(
         np.ascontiguousarray(frame),
         np.ascontiguousarray(gravity),
         np.zeros((n, 3, 3)) if axes is None else np.ascontiguousarray(axes),
-        model.geometric,
+        effects.geometric,
         out.residual,
         out.M,
         out.C,

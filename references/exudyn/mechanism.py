@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.multibody.mechanism import Mechanism
 from ...core.multibody.tree import Tree, compile_tree
 from ...core.rank import ranked
@@ -72,7 +72,7 @@ class ExudynMechanism:
     name = "exudyn-loops"
     title = "Exudyn, kinematic tree with loop joints"
     shares: Shares = "mechanical model"
-    model = FULL
+    effects = ALL_EFFECTS
     hint = ex.HINT
 
     def version(self) -> str | None:

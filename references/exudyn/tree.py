@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
 from ..protocol.interface import CodeError, Independence, Shares
@@ -36,7 +36,7 @@ class ExudynTree:
     title = "Exudyn, kinematic tree"
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (24, 48, 96)
     order = 2
     hint = ex.HINT

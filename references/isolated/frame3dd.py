@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
@@ -52,7 +52,7 @@ class Frame3DD:
     shares: Shares = "nothing"
     independence = Independence("Frame3DD", "frame elements", "references.frame3dd_frame", eigensolver="Frame3DD")
     motions: tuple[Motion, ...] = ("chordwise", "flapwise")
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
     digits = 8  # it iterates, on equations that ``STIFF`` makes ill-conditioned

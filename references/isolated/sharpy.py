@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, mass_at, stiffness_at
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
@@ -55,7 +55,7 @@ class Sharpy:
     title = "SHARPy, geometrically exact beam"
     shares: Shares = "nothing"
     independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=CORE)
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
     digits = 8  # its steady state is iterated to a tolerance

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
 from ..protocol.interface import CORE, Independence, Shares
@@ -36,7 +36,7 @@ class DrakeChain:
     title = "Drake, chain of joints"
     shares: Shares = "discretisation"
     independence = Independence("Drake", CORE, "Drake", sections=CORE)
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (10, 20, 40)
     order = 2
     hint = "pip install 'southwell[more-codes]'"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.element.discretize import Chain
 from ...core.modes import Modes
 from ..protocol.interface import CORE, Independence, Shares
@@ -39,7 +39,7 @@ class MujocoChain:
     title = "MuJoCo, chain of joints"
     shares: Shares = "discretisation"
     independence = Independence("MuJoCo", CORE, "MuJoCo", sections=CORE)
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (10, 20, 40)
     order = 2
     hint = "pip install 'southwell[more-codes]'"

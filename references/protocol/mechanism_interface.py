@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.multibody.mechanism import Mechanism
 from .interface import Shares
 
@@ -44,13 +44,13 @@ class MechanismCode(Protocol):
     """One source of a mechanism's modes; laws as for ``interface.Code``.
 
     Attributes:
-        name, title, shares, model, hint: as for ``interface.Code``.
+        name, title, shares, effects, hint: as for ``interface.Code``.
     """
 
     name: str
     title: str
     shares: Shares
-    model: Model
+    effects: Effects
     hint: str
 
     def version(self) -> str | None:

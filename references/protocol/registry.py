@@ -14,7 +14,7 @@ from .mechanism_interface import takes_mechanisms
 
 GROUP = "southwell.codes"
 
-BLADE_CODE = ("name", "model", "levels", "order", "version", "unsupported", "solve")
+BLADE_CODE = ("name", "effects", "levels", "order", "version", "unsupported", "solve")
 """What a code that takes blades must have."""
 
 OURS = {
@@ -85,7 +85,7 @@ def code(name: str) -> Any:
         raise UnknownCodeError(
             f"code: {name!r} cannot be loaded from {path}: {what}: is it module:attribute, and installed or in this folder?"
         ) from error
-    needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
+    needed = ("name", "effects", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
     if missing:
         raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.interface.Code")

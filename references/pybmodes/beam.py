@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ...core.blade import Blade, clamped, coupled, sample, straight
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
@@ -87,7 +87,7 @@ class PyBModes:
     shares: Shares = "nothing"
     independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
     motions: tuple[Motion, ...] = ("chordwise", "flapwise", "torsion")
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
     hint = "pip install 'southwell[codes]'"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import dia_array
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
@@ -42,7 +42,7 @@ class ScikitFemBeam:
     title = "scikit-fem, prestressed beam"
     shares: Shares = "nothing"
     independence = Independence("scikit-fem", "references.scikit_fem_forms", "references.scikit_fem_forms")
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
     hint = "pip install 'southwell[codes]'"

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ...core.condense.exported import model
 from ...core.condense.matrix_files import stored
 from ...core.condense.ties import FiniteElements
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError
 from .mesh import TWENTY, Bricks, Clamp, Material, held_by, mean_motions
@@ -36,7 +36,7 @@ Index = NDArray[np.intp]
 
 HINT = "apt-get install calculix-ccx"
 
-MODEL = Model(coriolis=False)
+EFFECTS = Effects(coriolis=False)
 """The effects it keeps."""
 
 TIMEOUT = 600.0

@@ -68,7 +68,7 @@ def codes(*, pages: Path | None = None) -> int:
             known.title,
             f"✔ {found}" if found else f"○ not found; {known.hint}",
             known.shares,
-            ", ".join(known.model.lacks()) or "nothing",
+            ", ".join(known.effects.lacks()) or "nothing",
         )
     console.output().print(table)
     return PASSED

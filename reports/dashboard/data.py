@@ -231,4 +231,4 @@ def _known(name: str) -> dict[str, str]:
         code = registry.code(name)
     except UnknownCodeError:
         return {}
-    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint}
+    return {"title": code.title, "lacks": ", ".join(code.effects.lacks()), "hint": code.hint}

@@ -80,7 +80,7 @@ def page(run: Run, code: Any) -> str:
         title=code.title,
         version=version(run, code),
         shares=code.shares,
-        lacks=", ".join(code.model.lacks()) or "nothing",
+        lacks=", ".join(code.effects.lacks()) or "nothing",
         levels=f"from {levels} elements or terms on, of order {code.order or 'spectral'}" if levels else "",
         how=(inspect.getdoc(sys.modules[type(code).__module__]) or "").replace("``", "`"),
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
@@ -136,7 +136,7 @@ def properties(code: Any) -> str:
     for p in PROPERTIES:
         why = code.unsupported(p.having)
         answer = f"refused: {plain(why)}" if why else "taken"
-        if not why and p.name in code.model.lacks():
+        if not why and p.name in code.effects.lacks():
             answer = "left out, as declared"
         rows.append({"property": plain(p.name), "answer": answer})
     return table(rows)

@@ -19,7 +19,7 @@ from southwell.core import velocity_transformation as vt
 from southwell.core.blade import Blade
 from southwell.core.chain import as_mechanism, blocks, steady
 from southwell.core.chain.steady import SteadyStateError
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.eigen import UnstableError
 from southwell.core.element.discretize import Mass, discretize
 from southwell.core.modes import Modes
@@ -84,7 +84,7 @@ def test_every_blade_as_the_paper_has_it(name: str) -> None:
 
 def test_the_papers_table() -> None:
     """Park et al. (2010), Table 1, column Present, in its last digit: by its own method."""
-    found = vt.modes(PARK, 10.0, 50, 6, mass="half_end", stiffness="parent", model=Model(rotary_inertia=False))
+    found = vt.modes(PARK, 10.0, 50, 6, mass="half_end", stiffness="parent", effects=Effects(rotary_inertia=False))
     tip = np.abs(found.shapes[:, -1])
     assert [f"{f:.4g}" for f in found.frequencies[tip[:, 1] > tip[:, 2]][:3]] == ["11.71", "70.37", "189.7"]
 
@@ -106,17 +106,17 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
     assert np.abs(bare.frequencies / loaded.frequencies - 1).max() > 1e-4
 
 
-@pytest.mark.parametrize("model", [Model(coriolis=False), Model(rotary_inertia=False)])
-def test_effects_left_out(model: Model) -> None:
-    ours, _ = both(yoo_shin(0.1) if model.rotary_inertia else PARK, 10.0, 12, model=model)
-    full = vt.modes(yoo_shin(0.1) if model.rotary_inertia else PARK, 10.0, 12, 6)
+@pytest.mark.parametrize("effects", [Effects(coriolis=False), Effects(rotary_inertia=False)])
+def test_effects_left_out(effects: Effects) -> None:
+    ours, _ = both(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, effects=effects)
+    full = vt.modes(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, 6)
     assert np.abs(ours.frequencies / full.frequencies - 1).max() > 1e-4
 
 
 def test_a_prestress_that_is_not_followed_is_refused() -> None:
-    for model in (Model(prestretch=False), Model(geometric=False)):
+    for effects in (Effects(prestretch=False), Effects(geometric=False)):
         with pytest.raises(ValueError, match="use the chain solver"):
-            vt.modes(PARK, 10.0, 5, 3, model=model)
+            vt.modes(PARK, 10.0, 5, 3, effects=effects)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.verify import controls, mistakes
 from southwell.core.blade import Blade
-from southwell.core.effects import FULL
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes
 from southwell.references.theories import exact_beam
 
@@ -23,7 +23,7 @@ def first(modes: Modes, column: int = Y) -> float:
 
 
 def made(solve: mistakes.Solve, omega: float = OMEGA, blade: Blade | None = None) -> Modes:
-    return solve(blade or park(), omega, 15, 10, FULL)
+    return solve(blade or park(), omega, 15, 10, ALL_EFFECTS)
 
 
 def exact(blade: Blade, omega: float = OMEGA) -> Modes:

@@ -11,7 +11,7 @@ from southwell.core.blade import uniform_blade
 from southwell.core.chain import blocks, completeness, lanczos
 from southwell.core.chain.completeness import MissedModesError
 from southwell.core.chain.pencil import Linear
-from southwell.core.effects import FULL
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
 from southwell.core.modes import Modes
 
@@ -20,7 +20,7 @@ FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass
 
 
 def pencil(blade, omega: float, elements: int, **how: Any) -> Linear:
-    return solve.balance(discretize(blade, elements, **how), omega, np.zeros(3), FULL).linear
+    return solve.balance(discretize(blade, elements, **how), omega, np.zeros(3), ALL_EFFECTS).linear
 
 
 @pytest.mark.parametrize("how", [{}, {"mass": "half_end", "stiffness": "parent"}], ids=["consistent", "half_end"])
