@@ -379,6 +379,6 @@ def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: 
             if effects == ALL_EFFECTS
             else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, effects))
         )
-    still = pencil.rest(body)
+    still = pencil.undeformed(body)
     loaded = steady.prestress_at_rest(body, omega, gravity) if effects.geometric else body
     return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))

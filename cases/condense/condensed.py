@@ -48,7 +48,7 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
 
     Bodies move as the samples beside them do, sections' frames taken as parallel to the hub's.
     """
-    ends = np.append(0.0, np.cumsum([np.linalg.norm(s.rest[:3, 3]) for s in segments]))
+    ends = np.append(0.0, np.cumsum([np.linalg.norm(s.undeformed[:3, 3]) for s in segments]))
     at = 0.5 * (ends[:-1] + ends[1:]) / ends[-1]
     k = np.clip(np.searchsorted(STATIONS, at) - 1, 0, len(STATIONS) - 2)
     t = ((at - STATIONS[k]) / (STATIONS[k + 1] - STATIONS[k]))[:, None]
@@ -101,7 +101,7 @@ def read(path: Path) -> Condensed:
         raise CaseError(f"{path}: no such file: correct the path") from None
     except msgspec.DecodeError as error:
         raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
-    sizes = {"rest": 4, "stiffness": 6, "inertia": 6, "ride": 6}
+    sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []
     for k, piece in enumerate(kept.segments):
         found = {field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()}

@@ -76,7 +76,7 @@ class CoordinateSpringData(Struct, frozen=True, forbid_unknown_fields=True):
 
     stiffness: Annotated[float, Meta(description="N/m or N m/rad")] = 0.0
     damping: Annotated[float, Meta(description="N s/m or N m s/rad")] = 0.0
-    rest: Annotated[float, Meta(description="where it pulls nothing, m or rad")] = 0.0
+    neutral: Annotated[float, Meta(description="where it pulls nothing, m or rad")] = 0.0
 
 
 class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
@@ -88,7 +88,7 @@ class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
     point_b: Annotated[Three, Meta(description="m, in body_b")] = ORIGIN
     stiffness: Annotated[float, Meta(description="N/m")] = 0.0
     damping: Annotated[float, Meta(description="N s/m")] = 0.0
-    rest: Annotated[float, Meta(ge=0, description="length without tension, m")] = 0.0
+    free_length: Annotated[float, Meta(ge=0, description="length without tension, m")] = 0.0
 
 
 class BushingData(Struct, frozen=True, forbid_unknown_fields=True):

@@ -117,8 +117,8 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effec
 
 def softened(body: Chain, state: Steady, omega: float, factor: float) -> Linear:
     """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
-    parts = zip(_parts(state.linear.rest), _parts(spin_softening(body, state.shape, omega)), strict=True)
-    return replace(state.linear, rest=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
+    parts = zip(_parts(state.linear.remainder), _parts(spin_softening(body, state.shape, omega)), strict=True)
+    return replace(state.linear, remainder=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
 
 
 def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
@@ -126,7 +126,7 @@ def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
     stiffness at speed less that at rest, about the same shape.
     """
     bare = Effects(geometric=False)
-    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).rest for speed in (omega, 0.0))
+    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).remainder for speed in (omega, 0.0))
     return Tridiagonal(*(a - b for a, b in zip(_parts(turning), _parts(standing), strict=True)))
 
 

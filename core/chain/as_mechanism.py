@@ -67,7 +67,7 @@ def one(beams: Beams, k: int) -> Beams:
     return Beams(
         law=part(beams.law, at),
         stiffness=beams.stiffness[at],
-        points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
+        points=Points(none, p.zeta0[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
         preload=beams.preload[at],
         inner_preload=beams.inner_preload[at],
     )

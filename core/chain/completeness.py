@@ -27,8 +27,8 @@ class MissedModesError(ArithmeticError):
 def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> None:
     """Prove that frequencies are the lowest ones, each as often as it is there.
 
-    The count is taken in the gap above them. Where the last one belongs to a cluster of which the rest was not asked for, there
-    may be more than were found; then there must be no more than found below that one.
+    The count is taken in the gap above the last frequency. If that frequency belongs to a cluster that ``count`` cuts, the
+    count may exceed what was found; then the count below the cluster must not.
 
     Args:
         p: the pencil.

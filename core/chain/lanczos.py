@@ -101,7 +101,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
 
 def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
-    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.rest))
+    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.remainder))
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
     kappa, inertia, half = quotients(Operator(M, C, K, p.factor, p.strained, 0), x)
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)

@@ -18,7 +18,7 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     read = np.empty((len(e), 4, d + 6))
     p = body.samples
     beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
-    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
+    _readings(p.element, p.zeta0, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
     own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
     first = own[e - 1, -6:]
     first[e == 0] = 0.0  # the clamped node
@@ -29,7 +29,7 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
 @compiled
 def _readings(
     element: NDArray[np.intp],
-    rest: Array,
+    zeta0: Array,
     shape: Array,
     bubble: Array,
     nodes: Array,
@@ -59,7 +59,7 @@ def _readings(
         rigid.tangent_inverse(eta, inverse)
         for i in range(6):
             change[i] = eta[i] - eta_at_rest[e, i]
-        ride(rest[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
+        ride(zeta0[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
         rigid.exp(zeta, position)
         for i in range(6):  # the twist in a's axes, at a
             for j in range(6):

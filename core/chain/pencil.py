@@ -31,7 +31,7 @@ _CANCELLED, _STRAINLESS = (
 
 @dataclass(frozen=True)
 class Linear:
-    """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
+    """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
     ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``,
     at this shape. What is held is replaced by a unit stiffness on its own, without mass or load: it stays where it is, and
@@ -41,7 +41,7 @@ class Linear:
     residual: Array
     M: Tridiagonal
     C: Tridiagonal
-    rest: Tridiagonal
+    remainder: Tridiagonal
     spring: Array
     lever: Array
     held: Array
@@ -50,7 +50,11 @@ class Linear:
     def K(self) -> Tridiagonal:
         """The whole stiffness."""
         on_b = np.swapaxes(self.lever, -1, -2) @ self.spring
-        diagonal, upper, lower = self.rest.diagonal.copy(), self.rest.upper.copy(), self.rest.lower.copy()
+        diagonal, upper, lower = (
+            self.remainder.diagonal.copy(),
+            self.remainder.upper.copy(),
+            self.remainder.lower.copy(),
+        )
         diagonal[:, -6:, -6:] += on_b @ self.lever
         diagonal[:-1, -6:, -6:] += self.spring[1:]
         upper[:, :, -6:] -= self.spring[1:] @ self.lever[1:]
@@ -66,7 +70,7 @@ class Linear:
     def strained(self) -> Strained:
         """The whole stiffness, for products without loss of digits."""
         held = self.held if self.held.size else np.zeros((6, 6))
-        return Strained(blocks.turned(self.rest), self.spring, self.lever, held)
+        return Strained(blocks.turned(self.remainder), self.spring, self.lever, held)
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,7 @@ class Shape:
     relative: Array
 
 
-def rest(chain: Chain) -> Shape:
+def undeformed(chain: Chain) -> Shape:
     """The undeformed shape."""
     return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)), chain.between)
 
@@ -122,7 +126,7 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
         residual.ravel(),
         _hold(blocks.from_elements(p.M, lever, chain.lumps), held, 0.0),
         _hold(blocks.from_elements(moving * p.C, lever, moving * C), held, 0.0),
-        blocks.from_elements(p.rest, lever, K),
+        blocks.from_elements(p.remainder, lever, K),
         p.spring,
         lever,
         held,
@@ -178,7 +182,7 @@ def _balance(on_ends: Array, lever: Array, on_nodes: Array, out: Array) -> None:
 
 
 def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
-    """The matrix with the held part of node 1's twist cut loose from the rest, ``unit`` on its diagonal."""
+    """The matrix with the held part of node 1's twist cut loose from the others, ``unit`` on its diagonal."""
     if not held.size:
         return t
     free = np.eye(6) - held
@@ -195,7 +199,7 @@ def loose(p: Linear) -> bool:
     if not p.held.size:
         return False
     free = np.linalg.svd(np.eye(6) - p.held)[0][:, : 6 - round(float(np.trace(p.held)))]
-    x = np.zeros((free.shape[1], len(p.lever), p.rest.diagonal.shape[1]))
+    x = np.zeros((free.shape[1], len(p.lever), p.remainder.diagonal.shape[1]))
     twist = free
     for k in range(len(p.lever)):  # ξ_b = Ad⁻¹ ξ_a: no strain
         twist = twist if k == 0 else np.linalg.solve(p.lever[k], twist)
@@ -204,6 +208,6 @@ def loose(p: Linear) -> bool:
     force = np.empty_like(rows)
     strained.times(p.strained, rows, force)
     K = rows @ force.T
-    cancelled = np.einsum("mki,kij,mkj->", np.abs(x), np.abs(p.rest.diagonal), np.abs(x))
+    cancelled = np.einsum("mki,kij,mkj->", np.abs(x), np.abs(p.remainder.diagonal), np.abs(x))
     rounding = _CANCELLED * cancelled + _STRAINLESS * np.abs(p.spring).max() * (rows**2).sum()
     return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= rounding)

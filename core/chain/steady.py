@@ -15,7 +15,7 @@ from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
 from . import blocks, root_joint
-from .pencil import Linear, Shape, linearize, rest
+from .pencil import Linear, Shape, linearize, undeformed
 
 Array = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
     while found is None or done < 1.0:
         load = min(1.0, done + step)
         try:
-            shape = rest(chain) if found is None else found.shape
+            shape = undeformed(chain) if found is None else found.shape
             found = _newton(chain, shape, omega * load**0.5, gravity * load)
             done = load
         except SteadyStateError:
@@ -181,9 +181,9 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     """The undeformed chain carrying the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
     still = Effects(geometric=False)
-    residual = linearize(chain, rest(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
+    residual = linearize(chain, undeformed(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
-    elastic = linearize(bare, rest(bare), 0.0, np.zeros(3), still).factor
+    elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
     step = np.concatenate([np.zeros((1, 6)), blocks.solution(elastic, -residual[:, -6:].ravel()).reshape(-1, 6)])
     rho = (sp.adjoint(chain.between) @ step[1:, :, None])[..., 0] - step[:-1]
     loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))

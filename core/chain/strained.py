@@ -13,15 +13,15 @@ Array = NDArray[np.float64]
 
 
 class Strained(NamedTuple):
-    """K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
+    """K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
 
     Attributes:
-        rest: the part on its own, for products.
+        remainder: the part on its own, for products.
         spring, lever: (n, 6, 6), see ``chain.Linear``.
         held: (6, 6) projector of node 1's twist; zero if nothing is held.
     """
 
-    rest: Turned
+    remainder: Turned
     spring: Array
     lever: Array
     held: Array
@@ -30,14 +30,14 @@ class Strained(NamedTuple):
 @compiled
 def times(K: Strained, x: Array, out: Array) -> None:
     """out = K x of vectors (k, dn)."""
-    n, d = K.rest.diagonal.shape[:2]
+    n, d = K.remainder.diagonal.shape[:2]
     rho, kept = np.empty(6), np.empty(6)
     free = x.copy()
     for v in range(len(x)):
         apply(K.held, x[v, d - 6 : d], kept)
         for i in range(6):
             free[v, d - 6 + i] -= kept[i]
-    blocks.times(K.rest, free, out)
+    blocks.times(K.remainder, free, out)
     for v in range(len(x)):
         for k in range(n):
             here = d * k + d - 6

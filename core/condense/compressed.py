@@ -39,9 +39,9 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
     if not segments:
         raise CondensationError("segments: none given: a chain needs at least one")
     n = len(segments)
-    rest = np.array([s.rest for s in segments])
+    undeformed = np.array([s.undeformed for s in segments])
     nodes = [root]
-    for x in rest:
+    for x in undeformed:
         nodes.append(nodes[-1] @ x)
     centres, bodies = _centred(np.array([s.inertia for s in segments]))
     none = np.zeros((n, 6, 6))
@@ -49,14 +49,14 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
         beams=Beams(
-            law=even("corotational", rest),
-            stiffness=bm.end_stiffness("corotational", rest, np.array([s.stiffness for s in segments])),
-            points=bm.riding(rest, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
+            law=even("corotational", undeformed),
+            stiffness=bm.end_stiffness("corotational", undeformed, np.array([s.stiffness for s in segments])),
+            points=bm.riding(undeformed, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
             preload=np.zeros((n, 6)),
             inner_preload=np.zeros((n, 6)),
         ),
-        samples=_samples(rest),
-        scale=float(np.linalg.norm(rest[:, :3, 3], axis=1).sum()),
+        samples=_samples(undeformed),
+        scale=float(np.linalg.norm(undeformed[:, :3, 3], axis=1).sum()),
         force=np.zeros((n + 1, 3)),
     )
 
@@ -82,15 +82,15 @@ def _centred(inertia: Array) -> tuple[Array, Array]:
     return poses, np.swapaxes(lever, -1, -2) @ inertia @ lever
 
 
-def _samples(rest: Array) -> Points:
+def _samples(undeformed: Array) -> Points:
     """Where mode shapes are read: between two sections the strain is taken as constant."""
-    length = np.append(0.0, np.cumsum(np.linalg.norm(rest[:, :3, 3], axis=1)))
+    length = np.append(0.0, np.cumsum(np.linalg.norm(undeformed[:, :3, 3], axis=1)))
     at = STATIONS * length[-1]
-    element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(rest) - 1)
+    element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(undeformed) - 1)
     share = (at - length[element]) / np.diff(length)[element]
     return Points(
         element=element,
-        rest=share[:, None] * sp.log(rest)[element],
+        zeta0=share[:, None] * sp.log(undeformed)[element],
         shape=share[:, None, None] * np.eye(6),
         bubble=np.zeros((len(at), 6, 6)),
         mass=np.zeros((len(at), 6, 6)),

@@ -92,10 +92,12 @@ def segment(model: FiniteElements, a: Tie, b: Tie) -> Segment:
         CondensationError: as ``condense`` and ``between``, or a model without mass.
     """
     c = condense(model, (a, b))
-    rest = ties.seen(a, b)
-    turned = c.moved[:, 6:] @ sp.adjoint(sp.inverse(rest))
+    undeformed = ties.seen(a, b)
+    turned = c.moved[:, 6:] @ sp.adjoint(sp.inverse(undeformed))
     return Segment(
-        rest, between(c.stiffness, rest, f"{a.name} to {b.name}"), *_body(model, model.mass, a.frame, turned)
+        undeformed,
+        between(c.stiffness, undeformed, f"{a.name} to {b.name}"),
+        *_body(model, model.mass, a.frame, turned),
     )
 
 
@@ -127,8 +129,8 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
     twists = [t.mean @ moved[t.freedoms] for t in tied]
     out = []
     for k, (a, b) in enumerate(pairwise(tied)):
-        rest = ties.seen(a, b)
-        rho = sp.adjoint(rest) @ twists[k + 1] - twists[k]
+        undeformed = ties.seen(a, b)
+        rho = sp.adjoint(undeformed) @ twists[k + 1] - twists[k]
         wrench = sp.adjoint(ties.seen(tied[-1], a)).T @ tip
         flexibility = np.linalg.solve(wrench.T, rho.T).T
         size = np.sqrt(np.abs(np.diagonal(flexibility)))
@@ -142,7 +144,7 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
         J, mean = _body(model, masses[k], a.frame, moved)
         stiffness: Array = np.linalg.inv(0.5 * (flexibility + flexibility.T))
         ride: Array = (mean - twists[k]) @ np.linalg.inv(rho)
-        out.append(Segment(rest, stiffness, J, ride))
+        out.append(Segment(undeformed, stiffness, J, ride))
     return out
 
 

@@ -13,10 +13,10 @@ Array = NDArray[np.float64]
 
 
 @compiled
-def strains(rest: Array, x: Array, strain: Array, rate: Array) -> None:
-    """ε (6,) and E (6, 12), zero for β, of an element with poses ``rest`` and ``x`` (4, 4)."""
+def strains(undeformed: Array, x: Array, strain: Array, rate: Array) -> None:
+    """ε (6,) and E (6, 12), zero for β, of an element with poses ``undeformed`` and ``x`` (4, 4)."""
     y, back = np.empty((4, 4)), np.empty((4, 4))
-    rigid.inverse(rest, back)
+    rigid.inverse(undeformed, back)
     rigid.compose(back, x, y)
     angles, turn = np.empty(3), np.zeros((6, 6))
     _angles(y, angles)
@@ -26,20 +26,20 @@ def strains(rest: Array, x: Array, strain: Array, rate: Array) -> None:
     rigid.put_skew(-y[0, 3], -y[1, 3], -y[2, 3], 0, 3, turn)
     _rate(angles, 3, 3, turn)
     local = np.empty((6, 6))
-    rigid.adjoint(back, local)  # brings ρ to the rest frame
+    rigid.adjoint(back, local)  # brings ρ to the undeformed frame
     clear(rate)
     product(turn, local, rate)
 
 
 @compiled
 def add_curvature(
-    rest: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
+    undeformed: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
 ) -> None:
     """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``."""
     turn, inverse, local, work = np.zeros((6, 6)), np.empty((4, 4)), np.empty((6, 6)), np.empty((6, 12))
     rigid.put_skew(-s[0], -s[1], -s[2], 3, 0, turn)
     _rate_transpose_derivative(strain[3:], s[3:], 3, 3, turn)
-    rigid.inverse(rest, inverse)
+    rigid.inverse(undeformed, inverse)
     rigid.adjoint(inverse, local)
     product(turn, rate, work)
     turned_product(local, work, turn)

@@ -26,7 +26,7 @@ class Chain:
     """Nodes and elements of a blade; node 0 is clamped to the hub.
 
     Attributes:
-        nodes: (n+1, 4, 4) rest poses in the hub's axes.
+        nodes: (n+1, 4, 4) undeformed poses in the hub's axes.
         lumps: (n+1, 6, 6) inertia of the rigid body at each node, in its own axes.
         beams: the n elements, from node k to node k+1.
         samples: where mode shapes are read, at ``modes.STATIONS``; massless.
@@ -55,13 +55,13 @@ class Chain:
 
     @property
     def between(self) -> Array:
-        """(n, 4, 4) rest pose of each node but the first in the frame of the one before."""
-        return self.beams.rest @ sp.inverse(self.corner)
+        """(n, 4, 4) undeformed pose of each node but the first in the frame of the one before."""
+        return self.beams.undeformed @ sp.inverse(self.corner)
 
     @property
     def elements(self) -> int:
         """How many beam elements."""
-        return len(self.beams.rest) - (1 if self.held.size else 0)
+        return len(self.beams.undeformed) - (1 if self.held.size else 0)
 
 
 def discretize(
@@ -101,14 +101,14 @@ def discretize(
     at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
     nodes, ends = sections.frames(blade, s), sections.frames(blade, s[1:], before=True)
-    rest = sp.inverse(nodes[:-1]) @ ends
+    undeformed = sp.inverse(nodes[:-1]) @ ends
     corner = np.tile(np.eye(4), (elements, 1, 1))
     kinked = np.isin(s[1:], blade.kinks)
     corner[kinked] = sp.inverse(nodes[1:][kinked]) @ ends[kinked]
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
-        inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
+        inside = bm.riding(undeformed, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
         if load is not None:
             inside = replace(inside, force=seg.weight[:, None] * _at(blade, load, seg.s))
         inside = bm.alike(inside, elements)
@@ -122,13 +122,13 @@ def discretize(
         nodes=nodes,
         lumps=lumps,
         beams=Beams(
-            law=Law(stiffness, rest, seg.shortening, seg.mean, seg.slope),
-            stiffness=bm.end_stiffness(stiffness, rest, np.linalg.inv(seg.flexibility)),
+            law=Law(stiffness, undeformed, seg.shortening, seg.mean, seg.slope),
+            stiffness=bm.end_stiffness(stiffness, undeformed, np.linalg.inv(seg.flexibility)),
             points=inside,
             preload=np.zeros((elements, 6)),
             inner_preload=np.zeros((elements, 6)),
         ),
-        samples=_samples(blade, seg, at, nodes, rest),
+        samples=_samples(blade, seg, at, nodes, undeformed),
         scale=blade.length,
         force=force,
         corner=corner,
@@ -178,8 +178,11 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
     inside = b.points
     if b.inner:  # one point without mass, for ``alike``
         e = before(np.zeros(1, dtype=np.intp), inside.element + 1)
-        rows = (before(none[:, 0], inside.rest), *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)))
-        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.rest) + 1)
+        rows = (
+            before(none[:, 0], inside.zeta0),
+            *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)),
+        )
+        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.undeformed) + 1)
     spring = turn @ np.diag(np.where(holds, 0.0, blade.root)) @ turn.T
     beams = replace(
         b,
@@ -233,7 +236,7 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
     return node.ravel(), points.s.ravel(), points.weight.ravel()
 
 
-def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, rest: Array) -> Points:
+def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, undeformed: Array) -> Points:
     e = seg.at_element
     pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
-    return bm.riding(rest, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))
+    return bm.riding(undeformed, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))

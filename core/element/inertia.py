@@ -26,17 +26,17 @@ def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Arra
     ``turn`` is the ``ad`` of ``frame``, and ``fall`` (6,) the acceleration of free fall as a twist (zero angular part), turning
     with the frame. All may be given in any axes and about any origin, if all are in the same.
     """
-    mt, rest, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    mt, transport, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     apply(mass, frame, momentum)
-    rigid.cross(momentum, rest)
+    rigid.cross(momentum, transport)
     product(mass, turn, mt)
     for i in range(6):
         g[i] = 0.0
         for j in range(6):
             g[i] -= turn[j, i] * momentum[j] + mass[i, j] * fall[j]
-            rest[i, j] += mt[j, i]
-            C[i, j] = mt[i, j] - rest[i, j]
-    product(rest, turn, K)
+            transport[i, j] += mt[j, i]
+            C[i, j] = mt[i, j] - transport[i, j]
+    product(transport, turn, K)
     for i in range(6):
         for j in range(6):
             K[i, j] = -K[i, j]

@@ -13,7 +13,7 @@ Two measures:
   B taking its integral and its slope from it: a stretched element is longer for its bending too. And the axial strain gains
   δᵀGδ, the shortening by what the static shape deviates from the helicoid, which makes the tension's stiffening that of the
   cubic beam element. Both are of the square of the element's length; with them it is of fourth order about any steady state;
-* ``parent``: displacement and Cardan angles (x, y, z) of b from its rest pose, in axes fixed in a. Linear in the parent's
+* ``parent``: displacement and Cardan angles (x, y, z) of b from its undeformed pose, in axes fixed in a. Linear in the parent's
   body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
 """
 
@@ -40,28 +40,28 @@ class Law:
 
     Attributes:
         measure: see the module.
-        rest: (n, 4, 4) relative poses without strain.
+        undeformed: (n, 4, 4) relative poses without strain.
         shortening: (n, 6, 6) G, see ``sections``; of the corotational measure, as what follows.
         mean: (n, 6, 6) A: A δ is the strain's integral over the element, of the static shape that δ belongs to.
         slope: (n, 6, 12) B: B (δ, β) is its slope along the element, times the length squared.
-        eta: (n, 6) logarithm of ``rest``.
+        eta: (n, 6) logarithm of ``undeformed``.
     """
 
     measure: Measure
-    rest: Array
+    undeformed: Array
     shortening: Array
     mean: Array
     slope: Array
     eta: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "eta", sp.log(self.rest))
+        object.__setattr__(self, "eta", sp.log(self.undeformed))
 
 
-def even(measure: Measure, rest: Array) -> Law:
+def even(measure: Measure, undeformed: Array) -> Law:
     """Elements whose strain is the same all along: bushings, and elements known by their ends only."""
-    n = len(rest)
-    return Law(measure, rest, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
+    n = len(undeformed)
+    return Law(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
 
 
 def joined(laws: Sequence[Law]) -> Law:
@@ -74,7 +74,7 @@ def part(law: Law, at: slice) -> Law:
     return Law(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
 
 
-_ARRAYS = ("rest", "shortening", "mean", "slope")
+_ARRAYS = ("undeformed", "shortening", "mean", "slope")
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def strains(
             for j in range(6, 12):
                 rate[i, j] = J[i, j]
     else:
-        body_fixed.strains(law.rest[k], x, strain, rate)
+        body_fixed.strains(law.undeformed[k], x, strain, rate)
 
 
 @compiled
@@ -168,4 +168,4 @@ def add_curvature(
     if law.corotational:
         corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
     else:
-        body_fixed.add_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)
+        body_fixed.add_curvature(law.undeformed[k], eta, back, rate, strain, s, on_eta, out)

@@ -20,7 +20,7 @@ class BeamArrays(NamedTuple):
     stiffness: Array
     preload: Array
     inner_preload: Array
-    rest: Array
+    zeta0: Array
     shape: Array
     bubble: Array
     mass: Array
@@ -50,10 +50,10 @@ def assemble(
     residual: Array,
     M: Array,
     C: Array,
-    rest: Array,
+    remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, rest (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``; arguments as for ``beams.pencil``."""
+    """Residual (n, d), M, C, remainder (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``; arguments as for ``beams.pencil``."""
     eta, back = np.empty(6), np.empty((6, 6))
     sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
     for k in range(len(x)):
@@ -73,7 +73,7 @@ def assemble(
         _add_elastic(beams, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
         _on_ends(sums.M, M[k])
         _on_ends(sums.C, C[k])
-        _on_ends(sums.K, rest[k])
+        _on_ends(sums.K, remainder[k])
         for i in range(len(residual[k])):
             residual[k, i] = sums.f[i]
         for i in range(6):
@@ -164,7 +164,7 @@ def _add_inertia(
     for p in range(per):
         point, at = per * k + p, slice(6 * p, 6 * p + 6)
         shape, slope = beams.shape[point], slopes[at]
-        ride(beams.rest[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
+        ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
         rigid.inverse(from_point, pose)
         rigid.adjoint(pose, to_point)
@@ -207,7 +207,7 @@ def _add_inertia(
 
 @compiled
 def ride(
-    rest: Array,
+    zeta0: Array,
     shape: Array,
     bubble: Array,
     change: Array,
@@ -224,7 +224,7 @@ def ride(
     H (6, 12), the product of these two.
     """
     for i in range(6):
-        zeta[i] = rest[i]
+        zeta[i] = zeta0[i]
         for j in range(6):
             zeta[i] += shape[i, j] * change[j] + bubble[i, j] * beta[j]
             slope[i, 6 + j] = bubble[i, j]
@@ -245,14 +245,14 @@ def _put_twist(H: Array, out: Array) -> None:
 
 
 @compiled
-def _split(k: Array, spring: Array, rest: Array) -> None:
-    """Add a stiffness (12, 12) on (ρ, β): what is between the ends alone to ``spring``, else to ``rest`` (18, 18)."""
+def _split(k: Array, spring: Array, remainder: Array) -> None:
+    """Add a stiffness (12, 12) on (ρ, β): what is between the ends alone to ``spring``, else to ``remainder`` (18, 18)."""
     for i in range(12):
         for j in range(12):
             if i < 6 and j < 6:
                 spring[i, j] += k[i, j]
             else:
-                rest[6 + i, 6 + j] += k[i, j]
+                remainder[6 + i, 6 + j] += k[i, j]
 
 
 @compiled

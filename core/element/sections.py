@@ -36,7 +36,7 @@ def root(blade: Blade) -> Array:
 
 
 def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
-    """Rest poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist.
+    """Undeformed poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist.
 
     At a kink there are two: of the section just ``before`` it, or of the one just beyond.
     """
@@ -73,7 +73,7 @@ class Segments:
     Attributes:
         element: (q,) which element each point lies in.
         s, weight: (q,) arc length and quadrature weight, m.
-        pose: (q, 4, 4) rest pose in the frame of the element's first node.
+        pose: (q, 4, 4) undeformed pose in the frame of the element's first node.
         flexibility: (n, 6, 6) f(b) of each element.
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
         bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
@@ -210,7 +210,7 @@ def _uneven(
         pose: (i, q, 4, 4) of the points in the element's frame.
         part: (i, q, 1) of the element's length that lies before them.
         length: (i, 1, 1) of the elements, m.
-        last: (i, 1, 6) logarithm of the elements' rest poses.
+        last: (i, 1, 6) logarithm of the undeformed elements.
         shape, rate: (i, q, 6, 6) the points' twists from that of b, and their rates along the arc.
         static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
     """

@@ -60,7 +60,7 @@ class _Sum:
             for j in range(ends.shape[1]):
                 both = acts & (ends[:, j] >= 0)
                 column = slice(6 * j, 6 * j + 6)
-                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.rest))
+                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.remainder))
                 self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
 
     def total(self) -> Cartesian:
@@ -159,7 +159,7 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
     across = (np.eye(3) - np.outer(n, n)) / length
     seen = yb - ya
     slip = seen[:3] + np.cross(seen[3:], pb)  # velocity of b's point seen from a
-    tension = s.stiffness * (length - s.rest) + s.damping * float(n @ slip)
+    tension = s.stiffness * (length - s.free_length) + s.damping * float(n @ slip)
     # δ(rate) seen from a = slip·δn + n·δslip, with δslip = velocity ρ̇ + ρ_ω × slip
     tilt = across @ velocity
     rate_k = slip @ tilt
@@ -202,7 +202,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
     turned = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
     p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ turned)
-    M, C, K = p.M, p.C, p.rest
+    M, C, K = p.M, p.C, p.remainder
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]
         d = np.swapaxes(E, -1, -2) @ batch.damping @ E
@@ -250,7 +250,7 @@ def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> A
     out = np.einsum("bin,bi->n", k.B, c.g)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        out[j] += s.stiffness * (q[j] - s.rest) + s.damping * v[j]
+        out[j] += s.stiffness * (q[j] - s.neutral) + s.damping * v[j]
     return out
 
 

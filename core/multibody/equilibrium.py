@@ -228,11 +228,11 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     moved = K @ R
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
-        rest = ~np.isin(part.free, _given(tree))
-        back = ranked(J[:, rest])
+        following = ~np.isin(part.free, _given(tree))
+        back = ranked(J[:, following])
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
-        R1[rest] = -back.solve(J1 @ R)
-        R2[rest] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
+        R1[following] = -back.solve(J1 @ R)
+        R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
         moved += C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
     units = np.where(turns, 1.0, _length(k.poses))
@@ -249,7 +249,7 @@ def _sizes(tree: Tree, state: State) -> Array:
     out = np.einsum("bin,bi->n", np.abs(state.kinematics.B), state.cartesian.size)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.rest)) + abs(s.damping * state.v[j])
+        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.neutral)) + abs(s.damping * state.v[j])
     return out
 
 
@@ -377,12 +377,12 @@ def _state(tree: Tree, q: Array) -> State:
         v[j], a[j] = m.rate, m.acceleration
     k = kinematics(tree, q, v, a)
     if tree.welds:
-        rest = np.setdiff1d(np.arange(n), given)
+        following = np.setdiff1d(np.arange(n), given)
         J = partition.jacobian(tree, k.B)
-        back = ranked(J[:, rest])
-        v[rest] = back.solve(-J @ v)
+        back = ranked(J[:, following])
+        v[following] = back.solve(-J @ v)
         k = kinematics(tree, q, v, a)
-        a[rest] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
+        a[following] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
         if np.abs(J @ v).max() > 1e-7 * max(float(np.abs(v).max()), 1e-300) * _length(k.poses):
             raise ContradictionError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
         k = kinematics(tree, q, v, a)
@@ -400,11 +400,11 @@ def _check_rates(tree: Tree, state: State) -> None:
     """Refuse loops that move while the motions leave open how: rates would be anybody's choice."""
     if not moving(tree, state).any():
         return
-    rest = np.setdiff1d(np.arange(len(state.q)), _given(tree))
-    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, rest]).null
-    free = moving(tree, state)[rest] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
+    following = np.setdiff1d(np.arange(len(state.q)), _given(tree))
+    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, following]).null
+    free = moving(tree, state)[following] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
     if free.any():
-        name = tree.coordinates[rest[int(free.argmax())]]
+        name = tree.coordinates[following[int(free.argmax())]]
         raise MechanismError(
             f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too (held = false if "
             "it is to vibrate)"

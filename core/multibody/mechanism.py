@@ -52,17 +52,17 @@ def inertia(mass: float, moments: ArrayLike = 0.0, centre: ArrayLike = (0.0, 0.0
 
 @dataclass(frozen=True)
 class CoordinateSpring:
-    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − rest) + damping q̇``."""
+    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − neutral) + damping q̇``."""
 
     coordinate: str
     stiffness: float = 0.0
     damping: float = 0.0
-    rest: float = 0.0
+    neutral: float = 0.0
 
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring and damper between points of two bodies: tension ``stiffness (length − rest) + damping × its rate``."""
+    """A spring and damper between points of two bodies: tension ``stiffness (length − free_length) + damping × its rate``."""
 
     body_a: str
     body_b: str
@@ -70,7 +70,7 @@ class Spring:
     point_b: Array
     stiffness: float = 0.0
     damping: float = 0.0
-    rest: float = 0.0
+    free_length: float = 0.0
 
 
 @dataclass(frozen=True)

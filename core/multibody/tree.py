@@ -96,7 +96,7 @@ class Tree:
 
 
 def compile_tree(mechanism: Mechanism) -> Tree:
-    """Choose a spanning tree from the ground outwards, in the order the joints are given; the rest become cut joints.
+    """Choose a spanning tree from the ground outwards, in the order the joints are given; the others become cut joints.
 
     Raises:
         MechanismError: names used twice or unknown, a body no joint reaches, an inertia that is not one.
@@ -241,7 +241,7 @@ def _together(some: list[Beams]) -> Beams:
     parts = [b.points for b in some]
     points = Points(
         element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
-        rest=np.concatenate([p.rest for p in parts]),
+        zeta0=np.concatenate([p.zeta0 for p in parts]),
         shape=np.concatenate([p.shape for p in parts]),
         bubble=np.concatenate([p.bubble for p in parts]),
         mass=np.concatenate([p.mass for p in parts]),

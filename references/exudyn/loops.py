@@ -130,12 +130,12 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
     weight = np.where(mass > 0, mass, 1.0)[:, None]
     centre = np.stack([first[:, 2, 1], first[:, 0, 2], first[:, 1, 0]], axis=-1) / weight
     arm = sp.skew(centre)
-    spring, damper, rest = np.zeros(n), np.zeros(n), np.zeros(n)
+    spring, damper, neutral = np.zeros(n), np.zeros(n), np.zeros(n)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        load = spring[j] * rest[j] + s.stiffness * s.rest
+        load = spring[j] * neutral[j] + s.stiffness * s.neutral
         spring[j], damper[j] = spring[j] + s.stiffness, damper[j] + s.damping
-        rest[j] = load / spring[j] if spring[j] else 0.0
+        neutral[j] = load / spring[j] if spring[j] else 0.0
     node = mbs.AddNode(
         items.NodeGenericODE2(
             numberOfODE2Coordinates=n,
@@ -157,7 +157,7 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
             linkInertiasCOM=exu.Matrix3DList(list(inertia[:, 3:, 3:] + mass[:, None, None] * arm @ arm)),
             jointPControlVector=spring,
             jointDControlVector=damper,
-            jointPositionOffsetVector=rest,
+            jointPositionOffsetVector=neutral,
             jointVelocityOffsetVector=np.zeros(n),
         )
     )
@@ -187,5 +187,7 @@ def _close(exu: Any, mbs: Any, tree: Tree, item: Any, turned: list[Array]) -> No
     for s in mechanism.springs:
         ends = [marker(b, sp.pose(np.eye(3), p)) for b, p in ((s.body_a, s.point_a), (s.body_b, s.point_b))]
         mbs.AddObject(
-            items.SpringDamper(markerNumbers=ends, referenceLength=s.rest, stiffness=s.stiffness, damping=s.damping)
+            items.SpringDamper(
+                markerNumbers=ends, referenceLength=s.free_length, stiffness=s.stiffness, damping=s.damping
+            )
         )

@@ -109,13 +109,13 @@ def rounding(
 
 
 def places(chain: Chain) -> Array:
-    """(e, 4, 4) rest pose of each body in the frame of the one before, the first's in the hub's.
+    """(e, 4, 4) undeformed pose of each body in the frame of the one before, the first's in the hub's.
 
     A body's frame is that of the end of the element before it, along which its joints lie; at a kink the next element
     begins turned from it.
     """
     before = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
-    return before @ chain.beams.rest
+    return before @ chain.beams.undeformed
 
 
 def bodies(chain: Chain) -> Array:

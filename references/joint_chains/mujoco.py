@@ -165,7 +165,7 @@ def plant(chain: Chain) -> Bodies:
     model.body_simple[:] = 0
     model.body_sameframe[:] = 0
     model.body_subtreemass[:] = np.append(model.body_mass[1:].sum(), np.cumsum(model.body_mass[:0:-1])[::-1])
-    lengths = np.linalg.norm(chain.beams.rest[:, :3, 3], axis=1)
+    lengths = np.linalg.norm(chain.beams.undeformed[:, :3, 3], axis=1)
     step = STEP * np.concatenate([np.repeat([length, 1.0], 3) for length in lengths])
     return Bodies(model, mujoco.MjData(model), step)
 

@@ -41,7 +41,7 @@ def stages(bricks: Bricks, cuts: NDArray[np.intp], segments: Sequence[Segment], 
     """
     frames = [root]
     for s in segments:
-        frames.append(frames[-1] @ s.rest)
+        frames.append(frames[-1] @ s.undeformed)
     n = len(segments)
     titles = (
         f"Finite element model: {np.prod(bricks.counts)} hexahedra, {freedoms} freedoms",
@@ -90,7 +90,7 @@ def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], 
         box = _box(segments[k].inertia) @ frames[k][:3, :3].T + frames[k][:3, 3]
         _faces(axes, box[SIDES], ORANGE, 0.5)
     for k, s in enumerate(segments):
-        coil = _coil(s.rest[:3, 3]) @ frames[k][:3, :3].T + frames[k][:3, 3]
+        coil = _coil(s.undeformed[:3, 3]) @ frames[k][:3, :3].T + frames[k][:3, 3]
         axes.plot(*_project(coil)[0].T, color=INK, lw=0.9, zorder=3)
     for frame in frames:
         axes.plot(*_project(frame[:3, 3])[0], "o", ms=3.4, mfc="white", mec=INK, mew=0.9, zorder=4)

@@ -57,7 +57,7 @@ def test_softening_is_that_of_points() -> None:
 
     blade = park()
     body = discretize(blade, 4, "half_end")
-    own = mistakes.spin_softening(body, pencil.rest(body), OMEGA)
+    own = mistakes.spin_softening(body, pencil.undeformed(body), OMEGA)
     mass = np.diagonal(body.lumps, axis1=1, axis2=2)[1:, 0]
     expected = -(OMEGA**2) * mass[:, None] * [1.0, 1.0, 0.0]
     np.testing.assert_allclose(np.diagonal(own.diagonal, axis1=1, axis2=2)[:, :3], expected, rtol=1e-12, atol=1e-12)

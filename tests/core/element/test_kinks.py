@@ -71,9 +71,9 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
     corner = mb.Joint(
         "corner", "fixed", "body 8", "tip 0", at_parent=sp.pose(sp.rotation(2, np.array(-ANGLE)), np.zeros(3))
     )
-    rest = second.beams.rest
+    undeformed = second.beams.undeformed
     joints = tuple(
-        mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=rest[k]) for k in range(2)
+        mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=undeformed[k]) for k in range(2)
     )
     beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", one(second.beams, k)) for k in range(2))
     whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))

@@ -158,7 +158,7 @@ def test_nothing_is_left_of_Q_hat_where_a_mechanism_is_steady() -> None:
         (Body("hub"), Body("mass", inertia(1.0))),
         (Joint("shaft", "revolute", "ground", "hub"), Joint("slot", "prismatic", "hub", "mass", at(axis="x"))),
         (Motion("shaft.rz", 0.0, 1.0),),
-        (CoordinateSpring("slot.z", stiffness=4.0, rest=1.0),),
+        (CoordinateSpring("slot.z", stiffness=4.0, neutral=1.0),),
     )
     linear = lz.linearize(swung)
     here = reduced(linear.tree, linear.state.q, np.zeros(1))

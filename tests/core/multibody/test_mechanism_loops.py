@@ -184,11 +184,11 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
     """A bushing with a full 6×6 damping between bodies that turn about each other."""
     rng = np.random.default_rng(4)
     damping = np.cov(rng.normal(size=(6, 30)))
-    rest = sp.exp(0.2 * rng.normal(size=6))
+    undeformed = sp.exp(0.2 * rng.normal(size=6))
     m = mb.Mechanism(
         (mb.Body("a", mb.inertia(1.0, 0.3)), mb.Body("b", mb.inertia(2.0, 0.2, (0.1, 0.3, 0)))),
         (mb.Joint("p", "spherical", "ground", "a", mb.at(0.2)), mb.Joint("q", "free", "a", "b", mb.at(0.5, 0.1, 0.3))),
-        beams=(mb.Beam("a", "b", mb.bushing(rest, np.zeros((6, 6))), damping, mb.at(0.1), mb.at(y=0.2)),),
+        beams=(mb.Beam("a", "b", mb.bushing(undeformed, np.zeros((6, 6))), damping, mb.at(0.1), mb.at(y=0.2)),),
     )
     tree = compile_tree(m)
     bare = compile_tree(replace(m, beams=()))
@@ -201,7 +201,7 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
         def strain(q: np.ndarray) -> np.ndarray:
             x, _ = poses(tree, q)
             a, b = x[0] @ mb.at(0.1), x[1] @ mb.at(y=0.2)
-            return sp.log((sp.inverse(a) @ b)[None])[0] - sp.log(rest[None])[0]
+            return sp.log((sp.inverse(a) @ b)[None])[0] - sp.log(undeformed[None])[0]
 
         h = 1e-6
         E = np.stack([(strain(q + h * e) - strain(q - h * e)) / (2 * h) for e in np.eye(n)], axis=-1)

@@ -376,9 +376,9 @@ def test_spring_damper_between_points() -> None:
 def test_point_spring_tangents_match_difference_quotients() -> None:
     """Springs, dampers and bushings between bodies that move: τ's analytic tangents against quotients."""
     rng = np.random.default_rng(8)
-    rest = sp.exp(0.1 * rng.normal(size=(1, 6)))
+    undeformed = sp.exp(0.1 * rng.normal(size=(1, 6)))
     k6 = np.cov(rng.normal(size=(6, 30))) * 50
-    bushing = bm.bushing(rest[0], k6, rng.normal(size=6))
+    bushing = bm.bushing(undeformed[0], k6, rng.normal(size=6))
     m = Mechanism(
         (Body("a", inertia(1.0, 0.3, (0.1, 0.2, 0))), Body("b", inertia(2.0, 0.2, (0, 0.3, 0.1)))),
         (Joint("p", "spherical", "ground", "a", at(0.2)), Joint("q", "free", "a", "b", at(0.5, 0.1, 0.3))),

@@ -148,7 +148,7 @@ def test_a_joint_with_a_wrong_derivative_is_found_out() -> None:
     chain = discretize(POINT_MASSES, 3, "half_end", "parent")
     model = pin.Model()
     link = model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hub")
-    for place in (chain.nodes[1], *chain.beams.rest[1:]):
+    for place in (chain.nodes[1], *chain.beams.undeformed[1:]):
         joint = pin.JointModelComposite(pin.JointModelTranslation())
         for turn in (pin.JointModelRX(), pin.JointModelRY(), pin.JointModelRZ()):
             joint.addJoint(turn)
