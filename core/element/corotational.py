@@ -69,7 +69,7 @@ def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: A
 def add_curvature(
     law: LawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
 ) -> None:
-    """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``; the other arguments from ``strains``."""
+    """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``, with the results of ``strains``."""
     mean, slope = law.mean[k], law.slope[k]
     force, conjugate = np.empty(6), np.empty(6)
     turned_apply(undo, s, force)

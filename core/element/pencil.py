@@ -53,7 +53,7 @@ def assemble(
     remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, remainder (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``; arguments as for ``beams.pencil``."""
+    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``."""
     eta, back = np.empty(6), np.empty((6, 6))
     sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
     for k in range(len(x)):

@@ -36,7 +36,7 @@ def root(blade: Blade) -> Array:
 
 
 def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
-    """Undeformed poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist.
+    """Undeformed poses (k, 4, 4) of the sections at ``s`` (m), in the hub's axes: x tangent, y and z rotated by the twist.
 
     At a kink there are two: of the section just ``before`` it, or of the one just beyond.
     """

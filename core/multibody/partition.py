@@ -83,8 +83,8 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
         if len(chosen) != len(free) - rank or ranked(J[:, dependent]).rank < rank:
             raise MechanismError(
-                f"independent: {', '.join(independent)} do not determine the others: {len(free) - rank} are needed, free and not "
-                "tied to each other by a loop; or leave the choice to the solver"
+                f"independent: {', '.join(independent)} do not determine the others: {len(free) - rank} are needed, free and"
+                " not tied to each other by a loop; or leave the choice to the solver"
             )
     R = np.zeros((len(free), len(chosen)))
     R[chosen, np.arange(len(chosen))] = 1.0

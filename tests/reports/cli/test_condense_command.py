@@ -167,7 +167,7 @@ def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "segments.json").write_text(
         (tmp_path / "segments.json").read_text().replace('"undeformed"', '"deformed"', 1)
     )
-    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .reset.*condense again"):
+    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .deformed.*condense again"):
         condensed.read(tmp_path / "segments.json")
 
 
