@@ -7,7 +7,7 @@ Axes, stated here once and converted by every adapter at its own door (right-han
 * ``y = z × x`` lies in the plane of rotation, in the direction of motion.
 
 Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
-flapwise. A section's own axes are the blade's turned by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
+flapwise. A section's own axes are the blade's rotated by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
 
 Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bending about y, bending about z)``;
 forces likewise ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
@@ -41,7 +41,7 @@ class Blade:
             the stations it is a cubic spline of the arc length.
         hub_radius: m, from the rotor's axis to the root.
         precone: rad, the blade's axis tilted from the plane of rotation towards +z.
-        pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
+        pitch: rad, the whole blade rotated about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
         root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
             N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring.

@@ -7,7 +7,7 @@ energy (König's theorem) splits into four parts, none negative, whatever the re
 * torsion: turning about the blade's axis through the mass centre, with the polar inertia about it;
 * axial: the mass centre's motion along the blade.
 
-The blade's axes are the hub's turned by precone and pitch, not by twist. A blade whose sections have no moments of inertia
+The blade's axes are the hub's rotated by precone and pitch, not by twist. A blade whose sections have no moments of inertia
 has no kinetic energy in torsion, however far it turns.
 """
 

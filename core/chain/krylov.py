@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled
 from . import blocks, strained
-from .blocks import Factor, Turned
+from .blocks import Factor, Transposed
 from .strained import Strained
 
 Array = NDArray[np.float64]
@@ -24,16 +24,16 @@ class Operator(NamedTuple):
         refinements: how often; 0: not needed.
     """
 
-    M: Turned
-    C: Turned
-    K: Turned
+    M: Transposed
+    C: Transposed
+    K: Transposed
     factor: Factor
     exact: Strained
     refinements: int
 
 
 @compiled
-def noise(factor: Factor, exact: Strained, M: Turned, v: Array) -> float:
+def noise(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
     """Relative error of a solution with K, in the norm of its energy: of M x of the first of the rows v (k, 2n)."""
     n = v.shape[1] // 2
     force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))

@@ -51,7 +51,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
     n, exact = p.K.size, p.strained
-    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.K))
+    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
     lost = noise(factor, exact, M, w)
     if not lost < _ILL:
@@ -101,7 +101,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
 
 def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
-    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.remainder))
+    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.remainder))
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
     kappa, inertia, half = quotients(Operator(M, C, K, p.factor, p.strained, 0), x)
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)

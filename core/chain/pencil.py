@@ -70,7 +70,7 @@ class Linear:
     def strained(self) -> Strained:
         """The whole stiffness, for products without loss of digits."""
         held = self.held if self.held.size else np.zeros((6, 6))
-        return Strained(blocks.turned(self.remainder), self.spring, self.lever, held)
+        return Strained(blocks.transposed(self.remainder), self.spring, self.lever, held)
 
 
 @dataclass(frozen=True)

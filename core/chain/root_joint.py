@@ -19,8 +19,8 @@ _SCREWS = np.array([screw for _, screw in SCREWS["elastic"]])
 
 def holds(chain: Chain) -> NDArray[np.bool_]:
     """(6,) which of the joint's freedoms are held."""
-    turn = _turn(chain)
-    return np.diagonal(turn.T @ chain.held @ turn) > 0.5
+    to_section = _root_to_section(chain)
+    return np.diagonal(to_section.T @ chain.held @ to_section) > 0.5
 
 
 def put(chain: Chain, nodes: Array) -> tuple[Array, Array]:
@@ -52,7 +52,7 @@ def held(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:
     for i in reversed(range(6)):
         F[:, i] = sp.adjoint(outer) @ _SCREWS[i]
         outer = outer @ sp.exp(-_SCREWS[i] * q[i])
-    F = (_turn(chain) @ F)[:, ~fixed]
+    F = (_root_to_section(chain) @ F)[:, ~fixed]
     back = np.linalg.pinv(F)
     turning = np.triu(
         -np.einsum("k,jkl,li->ij", wrench, sp.ad(F.T), F), 1
@@ -60,7 +60,7 @@ def held(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:
     return np.eye(6) - F @ back, back.T @ turning @ back
 
 
-def _turn(chain: Chain) -> Array:
+def _root_to_section(chain: Chain) -> Array:
     """(6, 6) twists in the root's axes to the first section's."""
     return sp.adjoint(sp.pose(chain.root_axes, np.zeros(3)))
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled import apply, compiled
 from . import blocks
-from .blocks import Turned
+from .blocks import Transposed
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ class Strained(NamedTuple):
         held: (6, 6) projector of node 1's twist; zero if nothing is held.
     """
 
-    remainder: Turned
+    remainder: Transposed
     spring: Array
     lever: Array
     held: Array

@@ -37,7 +37,7 @@ class Condensed:
     """Stiffness (6m, 6m) between m tied frames, twists in their own axes, and what unit twists move: all freedoms (n, 6m)."""
 
     stiffness: Array
-    moved: Array
+    displacements: Array
 
 
 def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
@@ -80,9 +80,9 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
             f"{model.name}: nothing holds some of its {n} freedoms once the sections' frames are held: "
             "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
         )
-    moved = follow.copy()
-    moved[free] += X[: len(free)]
-    return Condensed(follow.T @ (K @ follow) + B.T @ X, moved)
+    displacements = follow.copy()
+    displacements[free] += X[: len(free)]
+    return Condensed(follow.T @ (K @ follow) + B.T @ X, displacements)
 
 
 def segment(model: FiniteElements, a: Tie, b: Tie) -> Segment:
@@ -93,11 +93,11 @@ def segment(model: FiniteElements, a: Tie, b: Tie) -> Segment:
     """
     c = condense(model, (a, b))
     undeformed = ties.seen(a, b)
-    turned = c.moved[:, 6:] @ sp.adjoint(sp.inverse(undeformed))
+    displacements = c.displacements[:, 6:] @ sp.adjoint(sp.inverse(undeformed))
     return Segment(
         undeformed,
         between(c.stiffness, undeformed, f"{a.name} to {b.name}"),
-        *_body(model, model.mass, a.frame, turned),
+        *_body(model, model.mass, a.frame, displacements),
     )
 
 
@@ -125,8 +125,11 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
             f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(model.directions))}: a row a segment"
         )
     c = condense(model, (tied[0], tied[-1]))
-    moved, tip = c.moved[:, 6:], c.stiffness[6:, 6:]  # by unit twists of the tip, and the wrenches that cause them
-    twists = [t.mean @ moved[t.freedoms] for t in tied]
+    displacements, tip = (
+        c.displacements[:, 6:],
+        c.stiffness[6:, 6:],
+    )  # by unit twists of the tip, and the wrenches that cause them
+    twists = [t.mean @ displacements[t.freedoms] for t in tied]
     out = []
     for k, (a, b) in enumerate(pairwise(tied)):
         undeformed = ties.seen(a, b)
@@ -141,15 +144,15 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
                 f"segment {a.name!r} to {b.name!r}: its flexibility is {wrong:.1e} from symmetric, or not positive: "
                 "sections too close together for the mesh, or ties of another model?"
             )
-        J, mean = _body(model, masses[k], a.frame, moved)
+        J, mean = _body(model, masses[k], a.frame, displacements)
         stiffness: Array = np.linalg.inv(0.5 * (flexibility + flexibility.T))
         ride: Array = (mean - twists[k]) @ np.linalg.inv(rho)
         out.append(Segment(undeformed, stiffness, J, ride))
     return out
 
 
-def _body(model: FiniteElements, mass: Array, frame: Array, moved: Array) -> tuple[Array, Array]:
-    """Inertia, and the mean twist of the mass where freedoms move by ``moved`` (n, 6); both about ``frame``, in its axes."""
+def _body(model: FiniteElements, mass: Array, frame: Array, displacements: Array) -> tuple[Array, Array]:
+    """Inertia, and the mean twist of the mass where freedoms move by ``displacements`` (n, 6); both about ``frame``, in its axes."""
     R = ties.motion(model.points, model.directions, frame)
     J = (R.T * mass) @ R
     size = np.sqrt(np.abs(np.diagonal(J)))
@@ -157,4 +160,4 @@ def _body(model: FiniteElements, mass: Array, frame: Array, moved: Array) -> tup
         raise CondensationError(
             f"{model.name}: no mass, or none with moments of inertia about all axes: give the freedoms' lumped mass"
         )
-    return J, np.linalg.solve(J, (R.T * mass) @ moved)
+    return J, np.linalg.solve(J, (R.T * mass) @ displacements)

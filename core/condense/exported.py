@@ -87,14 +87,14 @@ def assembled(name: str, rows: Index, columns: Index, values: Array, mirror: boo
     freedoms, where = np.unique(np.concatenate([rows, columns]), axis=0, return_inverse=True)
     n = len(freedoms)
     i, j = where.reshape(2, -1)
-    code, turned = i * n + j, j * n + i
+    code, mirrored = i * n + j, j * n + i
     entries, times = np.unique(code, return_counts=True)
     if (times > 1).any():
         k = int(np.argmax(code == entries[times.argmax()]))
         raise MatrixFileError(
             f"{name}: the entry of {rows[k].tolist()} and {columns[k].tolist()} is given twice: two matrices in one file?"
         )
-    alone = ~np.isin(turned, code)
+    alone = ~np.isin(mirrored, code)
     if mirror or (mirror is None and (alone | (i == j)).all()):
         i, j = np.append(i, j[alone]), np.append(j, i[alone])
         values = np.append(values, values[alone])

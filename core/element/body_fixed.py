@@ -6,7 +6,7 @@ The angles are (x, y, z), R = R_x(α) R_y(β) R_z(γ).
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import clear, compiled, product, turned_product
+from ..compiled import clear, compiled, product, transposed_product
 from ..space import rigid
 
 Array = NDArray[np.float64]
@@ -42,15 +42,15 @@ def add_curvature(
     rigid.inverse(undeformed, inverse)
     rigid.adjoint(inverse, local)
     product(turn, rate, work)
-    turned_product(local, work, turn)
+    transposed_product(local, work, turn)
     for i in range(6):
         for j in range(6):
             out[i, j] += turn[i, j]
-    add_turned(eta, on_eta, back, out)
+    add_tangent_variation(eta, on_eta, back, out)
 
 
 @compiled
-def add_turned(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
+def add_tangent_variation(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
     """Add what a force conjugate to η makes as its tangent turns, to the part of ρ."""
     rigid_turn, part = np.empty((6, 6)), np.empty((6, 6))
     rigid.tangent_inverse_transpose_derivative(eta, conjugate, rigid_turn)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, compiled, invert, product, turned_apply, turned_product
+from ..compiled import apply, compiled, invert, product, transposed_apply, transposed_product
 from ..space import rigid
-from .body_fixed import add_turned
+from .body_fixed import add_tangent_variation
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def add_curvature(
     """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``, with the results of ``strains``."""
     mean, slope = law.mean[k], law.slope[k]
     force, conjugate = np.empty(6), np.empty(6)
-    turned_apply(undo, s, force)
+    transposed_apply(undo, s, force)
     for i in range(6):
         conjugate[i] = on_eta[i]
         for j in range(6):
@@ -80,25 +80,25 @@ def add_curvature(
     crossed, through, on_slope, half = np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12))
     axial, force[0] = force[0], 0.0
     rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
+    transposed_product(crossed, slope, through)
     product(through, J, on_slope)
     force[0] = axial
     rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
+    transposed_product(crossed, slope, through)
     for i in range(6):
         for j in range(6, 12):
             on_slope[i, j] += through[i, j]
-    turned_product(mean, on_slope, half)
+    transposed_product(mean, on_slope, half)
     both, left = np.empty((6, 12)), np.empty((6, 12))
     for i in range(6):
         for j in range(6):
             both[i, j] = 2.0 * axial * law.shortening[k, i, j] - (half[i, j] + half[j, i]) / 12.0
             both[i, 6 + j] = -half[i, 6 + j] / 12.0
-    turned_product(back, both, left)
+    transposed_product(back, both, left)
     product(left, back, both)
     for i in range(6):
         for j in range(6):
             out[i, j] += both[i, j]
             out[i, 6 + j] += left[i, 6 + j]
             out[6 + j, i] += left[i, 6 + j]
-    add_turned(eta, conjugate, back, out)
+    add_tangent_variation(eta, conjugate, back, out)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, clear, compiled, congruence, product, turned_apply
+from ..compiled import apply, clear, compiled, congruence, product, transposed_apply
 from ..space import rigid
 from . import inertia, measures
 from .corotational import LawArrays
@@ -119,7 +119,7 @@ def _add_elastic(
     if geometric:
         measures.add_curvature(beams.law, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
     force = np.empty(12)
-    turned_apply(rate, s, force)
+    transposed_apply(rate, s, force)
     for i in range(12):
         sums.f[6 + i] += force[i]
     _split(K, spring, sums.K)
@@ -151,7 +151,7 @@ def _add_inertia(
     All of it is in a's axes, at a, where all points of an element are carried at one twist.
     """
     per = len(beams.mass) // len(beams.stiffness)
-    change, zeta, g, push, turned = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
+    change, zeta, g, push, on_zeta = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
     from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
     T, D = np.empty((6, 6)), np.empty((6, 6))
     M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
@@ -192,10 +192,10 @@ def _add_inertia(
             for i in range(6 * p, 6 * p + 6):
                 for j in range(12):
                     KU[i, 6 + j] -= bent[i, j]
-            turned_apply(T, g, turned)
+            transposed_apply(T, g, on_zeta)
             for i in range(6):
                 for j in range(6):
-                    sums.on_eta[j] += shape[i, j] * turned[i]
+                    sums.on_eta[j] += shape[i, j] * on_zeta[i]
             rigid.tangent_transpose_derivative(zeta, g, D)
             product(D, slope, bent[at])
     np.dot(U.T, MU, sums.M)
@@ -261,9 +261,9 @@ def _hold_components(to_point: Array, pose: Array, push: Array, follow: bool, g:
     from_point = np.empty((6, 6))
     rigid.adjoint(pose, from_point)
     here, more, work, at_a = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    turned_apply(from_point, g, here)
+    transposed_apply(from_point, g, here)
     inertia.hold_components(here, push, follow, more)
-    turned_apply(to_point, here, g)
+    transposed_apply(to_point, here, g)
     congruence(to_point, more, work, at_a)
     for i in range(6):
         for j in range(6):

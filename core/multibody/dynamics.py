@@ -200,8 +200,8 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     x = sp.inverse(xa) @ xb
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
-    turned = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
-    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ turned)
+    load_axes = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
+    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes)
     M, C, K = p.M, p.C, p.remainder
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]

@@ -137,7 +137,7 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
     return replace(mechanism, motions=tuple(instant(m, time) for m in mechanism.motions))
 
 
-def turned_at(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
+def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
     """The mechanism with the motion of one coordinate, its rotor's, at another rate (rad/s or m/s).
 
     Raises:

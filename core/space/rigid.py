@@ -172,8 +172,8 @@ def log(pose: Array, out: Array) -> None:
     beta, _, _ = _sums(_INVERSE[1], z)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        turned = w[j] * pose[k, 3] - w[k] * pose[j, 3]
-        v[i] = pose[i, 3] + alpha * turned + beta * (s * w[i] - z * pose[i, 3])
+        w_cross_p = w[j] * pose[k, 3] - w[k] * pose[j, 3]
+        v[i] = pose[i, 3] + alpha * w_cross_p + beta * (s * w[i] - z * pose[i, 3])
 
 
 @compiled
