@@ -24,7 +24,7 @@ class MissedModesError(ArithmeticError):
     """The eigensolver missed modes, or found one twice."""
 
 
-def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> None:
+def check(p: Linear, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
     """Prove that frequencies are the lowest ones, each as often as it is there.
 
     The count is taken in the gap above the last frequency. If that frequency belongs to a cluster that ``count`` cuts, the
@@ -34,14 +34,14 @@ def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> N
         p: the pencil.
         frequencies: (m,) ascending.
         beyond: (k,) estimates of the next, from above, to find the gap with.
-        noise: relative error of the pencil by rounding; frequencies nearer to each other than ten times that, or 3 %, are not
+        rounding: relative error of the pencil by rounding; frequencies nearer to each other than ten times that, or 3 %, are not
             told apart.
 
     Raises:
         MissedModesError: there are more or fewer.
     """
     last, next_ = frequencies[-1], beyond[beyond > frequencies[-1]].min(initial=2.0 * frequencies[-1])
-    near = min(max(_NEAR, 10.0 * noise), _FAR)
+    near = min(max(_NEAR, 10.0 * rounding), _FAR)
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _GAP
     shift, found = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)

@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 from .. import eigen
 from ..eigen import Eigen
 from . import blocks, completeness
-from .krylov import Operator, extend, forward, hermitian, noise, quotients
+from .krylov import Operator, extend, forward, hermitian, quotients, solve_error
 from .pencil import Linear
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
     n, exact = p.K.size, p.strained
     M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
-    lost = noise(factor, exact, M, w)
+    error_of_solution = solve_error(factor, exact, M, w)
     if not lost < _ILL:
         raise EigensolverError(
             f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
@@ -113,9 +113,9 @@ def _start(size: int) -> Array:
     return np.random.default_rng(1921).normal(size=(2, size))
 
 
-def _refinements(noise: float) -> int:
+def _refinements(solve_error: float) -> int:
     """How many steps of iterative refinement bring a solution to the accuracy wanted."""
     for steps in range(_REFINEMENTS):
-        if noise ** (steps + 1) < _SOLVED:
+        if solve_error ** (steps + 1) < _SOLVED:
             return steps
     return _REFINEMENTS

@@ -98,9 +98,9 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        energy, noise = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
+        energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
         stalled = energy > _SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= _NOTHING * noise or (stalled and energy <= _STALLED * noise):
+        if energy <= _NOTHING * rounding or (stalled and energy <= _STALLED * rounding):
             return Steady(moved(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape, before = moved(shape, step), energy

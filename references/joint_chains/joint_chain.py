@@ -86,11 +86,11 @@ def chain_modes(
     _, stiffness, gyroscopic = body.inertial(q, omega)
     mass = body.mass(q)
     frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
-    noise = rounding(mass, elastic, stiffness, before, frequencies, vectors)
+    rounding = rounding(mass, elastic, stiffness, before, frequencies, vectors)
     at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
     shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
     seconds = time.perf_counter() - begun
-    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=noise, seconds=seconds)
+    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=rounding, seconds=seconds)
 
 
 def rounding(
@@ -188,9 +188,9 @@ def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) 
             return None
         q = q + step
         unsure = EPS * (np.abs(force / lever).max() * lever + np.abs(elastic) @ np.abs(q))
-        energy, noise = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
+        energy, rounding = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
         stalled = energy > SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= NOTHING * noise or (stalled and energy <= STALLED * noise):
+        if energy <= NOTHING * rounding or (stalled and energy <= STALLED * rounding):
             return q, stiffness
         before = energy
     return None
