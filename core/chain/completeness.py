@@ -34,8 +34,8 @@ def check(p: Linear, frequencies: Array, beyond: Array, rounding: float = 0.0) -
         p: the pencil.
         frequencies: (m,) ascending.
         beyond: (k,) estimates of the next, from above, to find the gap with.
-        rounding: relative error of the pencil by rounding; frequencies nearer to each other than ten times that, or 3 %, are not
-            told apart.
+        rounding: relative error of the pencil by rounding; frequencies closer than ten times that, or 3 %, are not told
+            apart.
 
     Raises:
         MissedModesError: there are more or fewer.

@@ -53,7 +53,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
     n, exact = p.K.size, p.strained
     M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
-    error_of_solution = solve_error(factor, exact, M, w)
+    lost = solve_error(factor, exact, M, w)
     if not lost < _ILL:
         raise EigensolverError(
             f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "

@@ -128,7 +128,7 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
     displacements, tip = (
         c.displacements[:, 6:],
         c.stiffness[6:, 6:],
-    )  # by unit twists of the tip, and the wrenches that cause them
+    )  # per unit twist of the tip, and its wrenches
     twists = [t.mean @ displacements[t.freedoms] for t in tied]
     out = []
     for k, (a, b) in enumerate(pairwise(tied)):
@@ -152,7 +152,7 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
 
 
 def _body(model: FiniteElements, mass: Array, frame: Array, displacements: Array) -> tuple[Array, Array]:
-    """Inertia, and the mean twist of the mass where freedoms move by ``displacements`` (n, 6); both about ``frame``, in its axes."""
+    """Inertia and mean twist of a mass whose freedoms move by ``displacements`` (n, 6), both about ``frame``, in its axes."""
     R = ties.motion(model.points, model.directions, frame)
     J = (R.T * mass) @ R
     size = np.sqrt(np.abs(np.diagonal(J)))

@@ -86,11 +86,11 @@ def chain_modes(
     _, stiffness, gyroscopic = body.inertial(q, omega)
     mass = body.mass(q)
     frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
-    rounding = rounding(mass, elastic, stiffness, before, frequencies, vectors)
+    error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
     at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
     shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
     seconds = time.perf_counter() - begun
-    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=rounding, seconds=seconds)
+    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error, seconds=seconds)
 
 
 def rounding(
