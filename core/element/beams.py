@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..effects import ALL_EFFECTS, Effects
 from ..space import spatial as sp
 from . import measures
-from .measures import Law, Measure
+from .measures import Measure, StrainLaw
 from .pencil import BeamArrays, assemble
 
 Array = NDArray[Any]
@@ -63,7 +63,7 @@ class Beams:
         inner_preload: (n, 6) force conjugate to β, at β = 0.
     """
 
-    law: Law
+    law: StrainLaw
     stiffness: Array
     points: Points
     preload: Array

@@ -12,7 +12,7 @@ from .body_fixed import add_tangent_variation
 Array = NDArray[np.float64]
 
 
-class LawArrays(NamedTuple):
+class StrainLawArrays(NamedTuple):
     """A law for compiled code; ``corotational`` is its measure."""
 
     corotational: bool
@@ -24,7 +24,7 @@ class LawArrays(NamedTuple):
 
 
 @compiled
-def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
+def strains(law: StrainLawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
     """ε (6,), J = ∂ε/∂(η, β) (6, 12) and what the curvature needs of the solution (6, 6), of element ``k``."""
     mean, slope = law.mean[k], law.slope[k]
     delta, bow, r = np.empty(6), np.empty(6), np.empty(6)
@@ -67,7 +67,7 @@ def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: A
 
 @compiled
 def add_curvature(
-    law: LawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
+    law: StrainLawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
 ) -> None:
     """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``, with the results of ``strains``."""
     mean, slope = law.mean[k], law.slope[k]

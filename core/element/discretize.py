@@ -14,7 +14,7 @@ from . import beams as bm
 from . import sections
 from .beams import Beams, Points
 from .inertia import moved
-from .measures import Law, Measure, even, joined
+from .measures import Measure, StrainLaw, even, joined
 from .sections import Segments
 
 Array = NDArray[Any]
@@ -122,7 +122,7 @@ def discretize(
         nodes=nodes,
         lumps=lumps,
         beams=Beams(
-            law=Law(stiffness, undeformed, seg.shortening, seg.mean, seg.slope),
+            law=StrainLaw(stiffness, undeformed, seg.shortening, seg.mean, seg.slope),
             stiffness=bm.end_stiffness(stiffness, undeformed, np.linalg.inv(seg.flexibility)),
             points=inside,
             preload=np.zeros((elements, 6)),

@@ -28,14 +28,14 @@ from ..compiled import clear, compiled, product
 from ..space import rigid
 from ..space import spatial as sp
 from . import body_fixed, corotational
-from .corotational import LawArrays
+from .corotational import StrainLawArrays
 
 Array = NDArray[np.float64]
 Measure = Literal["corotational", "parent"]
 
 
 @dataclass(frozen=True)
-class Law:
+class StrainLaw:
     """How n elements measure strain.
 
     Attributes:
@@ -58,20 +58,20 @@ class Law:
         object.__setattr__(self, "eta", sp.log(self.undeformed))
 
 
-def even(measure: Measure, undeformed: Array) -> Law:
+def even(measure: Measure, undeformed: Array) -> StrainLaw:
     """Elements whose strain is the same all along: bushings, and elements known by their ends only."""
     n = len(undeformed)
-    return Law(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
+    return StrainLaw(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
 
 
-def joined(laws: Sequence[Law]) -> Law:
+def joined(laws: Sequence[StrainLaw]) -> StrainLaw:
     """One law for the elements of several, all of one measure."""
-    return Law(laws[0].measure, *(np.concatenate([getattr(law, name) for law in laws]) for name in _ARRAYS))
+    return StrainLaw(laws[0].measure, *(np.concatenate([getattr(law, name) for law in laws]) for name in _ARRAYS))
 
 
-def part(law: Law, at: slice) -> Law:
+def part(law: StrainLaw, at: slice) -> StrainLaw:
     """The law of some of the elements."""
-    return Law(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
+    return StrainLaw(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
 
 
 _ARRAYS = ("undeformed", "shortening", "mean", "slope")
@@ -93,7 +93,7 @@ class Response:
     curvature: Array
 
 
-def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
+def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
     """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6; or 0), and its derivatives; forces (n, 6), none: zero."""
     n = len(x)
     beta, force, conjugate = (
@@ -104,15 +104,15 @@ def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Ar
     return out
 
 
-def arrays(law: Law) -> LawArrays:
+def arrays(law: StrainLaw) -> StrainLawArrays:
     """The law for compiled code."""
     parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
-    return LawArrays(law.measure == "corotational", *parts)
+    return StrainLawArrays(law.measure == "corotational", *parts)
 
 
 @compiled
 def _respond(
-    law: LawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
+    law: StrainLawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
 ) -> None:
     eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
     for k in range(len(x)):
@@ -125,7 +125,7 @@ def _respond(
 
 @compiled
 def strains(
-    law: LawArrays,
+    law: StrainLawArrays,
     k: int,
     x: Array,
     eta: Array,
@@ -152,7 +152,7 @@ def strains(
 
 @compiled
 def add_curvature(
-    law: LawArrays,
+    law: StrainLawArrays,
     k: int,
     eta: Array,
     back: Array,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..compiled import apply, clear, compiled, congruence, product, transposed_apply
 from ..space import rigid
 from . import inertia, measures
-from .corotational import LawArrays
+from .corotational import StrainLawArrays
 
 Array = NDArray[np.float64]
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 class BeamArrays(NamedTuple):
     """``Beams`` for compiled code; ``pushed``: whether there are loads on the points."""
 
-    law: LawArrays
+    law: StrainLawArrays
     stiffness: Array
     preload: Array
     inner_preload: Array

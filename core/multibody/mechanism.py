@@ -14,7 +14,7 @@ from ..blade_checks import body_fault
 from ..element.beams import Beams
 from ..space import spatial as sp
 from .joints import SCREWS, Joint
-from .motion import Law, Motion, instant
+from .motion import Motion, MotionLaw, instant
 
 Array = NDArray[np.float64]
 
@@ -127,7 +127,7 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
     for m in mechanism.motions:
         if m.law is None:
             continue
-        if not isinstance(m.law, Law):
+        if not isinstance(m.law, MotionLaw):
             raise MechanismError(
                 f"motion {m.coordinate!r}: its law {m.law!r} has no derivatives: give a numpy Polynomial, a Harmonic, or "
                 "an object with deriv()"

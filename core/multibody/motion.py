@@ -10,7 +10,7 @@ from typing import Any, Protocol, runtime_checkable
 
 
 @runtime_checkable
-class Law(Protocol):
+class MotionLaw(Protocol):
     """A smooth function of time that knows its derivatives."""
 
     def __call__(self, time: Any, /) -> Any:
@@ -46,7 +46,7 @@ class Harmonic:
 class Sum:
     """Laws added up."""
 
-    laws: tuple[Law, ...]
+    laws: tuple[MotionLaw, ...]
 
     def __call__(self, time: float, /) -> float:
         """The value at a time, s."""
@@ -78,7 +78,7 @@ class Motion:
     rate: float = 0.0
     acceleration: float = 0.0
     held: bool = True
-    law: Law | None = None
+    law: MotionLaw | None = None
 
 
 def instant(motion: Motion, time: float) -> Motion:

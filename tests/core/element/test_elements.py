@@ -14,12 +14,12 @@ MEASURES: list[measures.Measure] = ["corotational", "parent"]
 
 
 @pytest.fixture(scope="module", params=MEASURES)
-def law(request) -> measures.Law:
+def law(request) -> measures.StrainLaw:
     """Five elements whose strain varies along them, in no way that a beam's would."""
     rng = np.random.default_rng(4)
     undeformed = sp.exp(rng.normal(size=(5, 6)) * [1, 0.2, 0.2, 0.1, 0.1, 0.1])
     g, mean, slope = rng.normal(size=(5, 6, 6)), rng.normal(size=(5, 6, 6)), rng.normal(size=(5, 6, 12))
-    return measures.Law(request.param, undeformed, g + np.swapaxes(g, -1, -2), mean, slope)
+    return measures.StrainLaw(request.param, undeformed, g + np.swapaxes(g, -1, -2), mean, slope)
 
 
 @pytest.fixture(scope="module")
