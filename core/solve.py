@@ -212,9 +212,9 @@ class _Mesh:
         begun, body = time.perf_counter(), self.body
         state = balance(body, omega, self.gravity, self.effects, steady.extrapolate(self.known, omega))
         try:
-            found = lanczos(state.linear, self.count)
+            found = lanczos(state.pencil, self.count)
         except (UnstableError, EigensolverError) as error:
-            if pencil.loose(state.linear):
+            if pencil.loose(state.pencil):
                 raise UnstableError(
                     f"omega: {omega:.6g} rad/s: nothing holds a free hinge (at rest, or lead–lag without offset): add a spring"
                 ) from error

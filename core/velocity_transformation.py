@@ -81,7 +81,7 @@ def modes(
     return Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 
 
-def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linear:
+def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linearization:
     """M̂, Ĉ, K̂ of a chain as a mechanism, about its steady state at ``omega`` (rad/s).
 
     Raises:
@@ -95,7 +95,7 @@ def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linear:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
 
 
-def _check_balance(linear: lz.Linear, K: Array, omega: float, length: float) -> None:
+def _check_balance(linear: lz.Linearization, K: Array, omega: float, length: float) -> None:
     """Where Q̂ is not zero, K̂⁻¹ Q̂ is how far off the steady state is."""
     Q_hat = reduced(linear.tree, linear.state.q, np.zeros(len(K)), linear.names).Q_hat
     off = np.abs(np.linalg.solve(K, Q_hat)).max(initial=0.0) / max(length, 1.0)
@@ -105,7 +105,7 @@ def _check_balance(linear: lz.Linear, K: Array, omega: float, length: float) -> 
         )
 
 
-def _shapes(body: Chain, linear: lz.Linear, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the independent coordinates."""
     k, n = linear.state.kinematics, len(body.nodes)
     dq = np.zeros((len(k.q), vectors.shape[1]), complex)

@@ -60,7 +60,7 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     def make(right: Balance) -> Balance:
         def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
             state = right(body, omega, gravity, replace(model, **lacks), guess)
-            return replace(state, linear=mistakes.softened(body, state, omega, factor))
+            return replace(state, pencil=mistakes.softened(body, state, omega, factor))
 
         return wrong
 
@@ -73,7 +73,7 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     def make(right: Balance) -> Balance:
         def wrong(*args: Any, **kwargs: Any) -> Steady:
             state = right(*args, **kwargs)
-            return replace(state, linear=alter(state.linear))
+            return replace(state, pencil=alter(state.pencil))
 
         return wrong
 

@@ -17,7 +17,7 @@ from ...core.chain import pencil
 from ...core.chain.blocks import Tridiagonal
 from ...core.chain.lanczos import lanczos
 from ...core.chain.mode_shapes import mode_shapes
-from ...core.chain.pencil import Linear, Shape
+from ...core.chain.pencil import ChainPencil, Shape
 from ...core.chain.steady import Steady
 from ...core.effects import Effects
 from ...core.element.discretize import Chain, Mass, discretize
@@ -115,10 +115,10 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effec
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
 
 
-def softened(body: Chain, state: Steady, omega: float, factor: float) -> Linear:
+def softened(body: Chain, state: Steady, omega: float, factor: float) -> ChainPencil:
     """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
-    parts = zip(_parts(state.linear.remainder), _parts(spin_softening(body, state.shape, omega)), strict=True)
-    return replace(state.linear, remainder=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
+    parts = zip(_parts(state.pencil.remainder), _parts(spin_softening(body, state.shape, omega)), strict=True)
+    return replace(state.pencil, remainder=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
 
 
 def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
@@ -134,7 +134,7 @@ def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
     return t.diagonal, t.upper, t.lower
 
 
-def _modes(body: Chain, p: Linear, shape: Shape, omega: float, count: int) -> Modes:
+def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) -> Modes:
     found = lanczos(p, count)
     return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
 

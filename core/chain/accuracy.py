@@ -75,6 +75,6 @@ def rounding(
     relative = shape.relative @ sp.exp(float(np.finfo(float).eps) * size * sign)
     rounded = replace(shape, relative=relative)
     near = linearize(body, rounded, omega, gravity, effects)
-    a, b = frequencies_of(state.linear, vectors), frequencies_of(near, vectors)
+    a, b = frequencies_of(state.pencil, vectors), frequencies_of(near, vectors)
     change = np.abs(b / a - 1.0)
     return FLOOR + 3.0 * np.maximum(change, np.median(change))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from .pencil import Linear
+from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ class MissedModesError(ArithmeticError):
     """The eigensolver missed modes, or found one twice."""
 
 
-def check(p: Linear, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
+def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
     """Prove that frequencies are the lowest ones, each as often as it is there.
 
     The count is taken in the gap above the last frequency. If that frequency belongs to a cluster that ``count`` cuts, the
@@ -57,7 +57,7 @@ def check(p: Linear, frequencies: Array, beyond: Array, rounding: float = 0.0) -
         )
 
 
-def below(p: Linear, omega: float) -> int:
+def below(p: ChainPencil, omega: float) -> int:
     """How many natural frequencies there are between 0 and ``omega`` (rad/s), which is none of them."""
     K, C, M = p.K, p.C, p.M
     return _negative(K.diagonal, K.upper, C.diagonal, C.upper, M.diagonal, M.upper, omega)

@@ -16,7 +16,7 @@ from .. import eigen
 from ..eigen import Eigen
 from . import blocks, completeness
 from .krylov import Operator, extend, forward, hermitian, quotients, solve_error
-from .pencil import Linear
+from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class EigensolverError(ArithmeticError):
     """The eigensolver failed; it says nothing about the blade's stability."""
 
 
-def lanczos(p: Linear, count: int) -> Eigen:
+def lanczos(p: ChainPencil, count: int) -> Eigen:
     """The ``count`` lowest modes of a chain about a state where K is symmetric.
 
     The assembled K loses digits to cancellation, as it does with many elements: solutions are refined, by way of the strains,
@@ -99,7 +99,7 @@ def lanczos(p: Linear, count: int) -> Eigen:
     return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
 
 
-def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
+def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
     M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.remainder))
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))

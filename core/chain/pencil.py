@@ -30,7 +30,7 @@ _CANCELLED, _STRAINLESS = (
 
 
 @dataclass(frozen=True)
-class Linear:
+class ChainPencil:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
     ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``,
@@ -95,7 +95,7 @@ def undeformed(chain: Chain) -> Shape:
     return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)), chain.between)
 
 
-def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> Linear:
+def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> ChainPencil:
     """Residual and pencil at a shape.
 
     Args:
@@ -122,7 +122,7 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
         if effects.geometric:
             K[1] += turning
     moving = 1.0 if effects.coriolis else 0.0
-    return Linear(
+    return ChainPencil(
         residual.ravel(),
         _hold(blocks.from_elements(p.M, lever, chain.lumps), held, 0.0),
         _hold(blocks.from_elements(moving * p.C, lever, moving * C), held, 0.0),
@@ -194,7 +194,7 @@ def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
     return Tridiagonal(diagonal, upper, lower)
 
 
-def loose(p: Linear) -> bool:
+def loose(p: ChainPencil) -> bool:
     """Whether a joint at the root lets the blade turn as a rigid body against no stiffness, but for rounding."""
     if not p.held.size:
         return False

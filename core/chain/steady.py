@@ -15,7 +15,7 @@ from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
 from . import blocks, root_joint
-from .pencil import Linear, Shape, linearize, undeformed
+from .pencil import ChainPencil, Shape, linearize, undeformed
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Steady:
     """A steady state: its shape, and the pencil about it."""
 
     shape: Shape
-    linear: Linear
+    pencil: ChainPencil
 
 
 def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
@@ -107,7 +107,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     raise SteadyStateError("no convergence")
 
 
-def rounding_energy(p: Linear, shape: Shape) -> float:
+def rounding_energy(p: ChainPencil, shape: Shape) -> float:
     """Σ ρᵀ S ρ of relative poses in error by rounding: no step of less energy can be told from none."""
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
     weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)

@@ -17,7 +17,7 @@ class Strained(NamedTuple):
 
     Attributes:
         remainder: the part on its own, for products.
-        spring, lever: (n, 6, 6), see ``chain.Linear``.
+        spring, lever: (n, 6, 6), see ``chain.pencil.ChainPencil``.
         held: (6, 6) projector of node 1's twist; zero if nothing is held.
     """
 

@@ -8,7 +8,7 @@ from .. import eigen
 from . import periodic
 from .equilibrium import State, assemble, moving, steady, unresisted
 from .kinematics import kinematics
-from .linear import Linear, about
+from .linear import Linearization, about
 from .mechanism import Mechanism, MechanismError, at_time
 from .partition import freedom, partition
 from .tree import Tree, compile_tree
@@ -19,7 +19,7 @@ def linearize(
     guess: Mapping[str, float] | None = None,
     independent: tuple[str, ...] | None = None,
     time: float = 0.0,
-) -> Linear:
+) -> Linearization:
     """Find the steady state and linearise about it.
 
     Where a motion follows a law of time, this is a frozen-time linearisation: the coordinates that are free are balanced,
@@ -62,7 +62,7 @@ def _check_regular(tree: Tree, state: State) -> None:
         )
 
 
-def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Damped:
+def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eigen.Damped:
     """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
 
     Raises:
@@ -83,7 +83,7 @@ def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Dampe
     return eigen.damped(M, C, K, count, rigid)
 
 
-def _conservative(linear: Linear) -> bool:
+def _conservative(linear: Linearization) -> bool:
     """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
     mechanism = linear.tree.mechanism
     dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import equilibrium
-from .linear import Linear, about
+from .linear import Linearization, about
 from .mechanism import MechanismError
 from .motion import Motion
 
@@ -19,7 +19,7 @@ CONSTANT = 1e-8
 """Largest change, relative to each coordinate's own size, that counts as none."""
 
 
-def check(linear: Linear) -> None:
+def check(linear: Linearization) -> None:
     """Compare M̂, Ĉ, K̂ and the balance with those at later instants of the same motion.
 
     All coordinates that the motions move go on together, for each of them to every one of ``TURNS``; the coordinates that are
@@ -44,7 +44,7 @@ def check(linear: Linear) -> None:
     )
 
 
-def _change(linear: Linear, moving: list[Motion], time: float) -> tuple[float, str]:
+def _change(linear: Linearization, moving: list[Motion], time: float) -> tuple[float, str]:
     """The largest relative change when these motions alone have gone on for a time (s), and of what."""
     tree, here = linear.tree, linear.state
     later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}

@@ -11,7 +11,7 @@ from ..blade import uniform_blade
 from ..eigen import Damped
 from ..element.beams import Beams
 from ..element.discretize import discretize
-from .linearize import Linear, linearize, modes
+from .linearize import Linearization, linearize, modes
 from .mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Solution:
     steady: dict[str, float]
     independent: tuple[str, ...]
     redundant: tuple[str, ...]
-    linear: Linear
+    linear: Linearization
 
     @property
     def frequencies(self) -> Array:

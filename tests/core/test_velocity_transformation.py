@@ -149,7 +149,7 @@ def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
     """Flap and lag do not commute: without the reaction's own stiffness K of the chain is not that of a potential."""
     body = discretize(replace(curved(), root=np.array(ROOTS["both hinges"])), 4)
     state = steady.steady(body, 2.5, np.array([3.0, 5.0, -9.81]))
-    K = blocks.dense(state.linear.K)
+    K = blocks.dense(state.pencil.K)
     assert np.abs(K - K.T).max() < 1e-9 * np.abs(K[:12, :12]).max()
     turned = sp.inverse(state.shape.nodes[0]) @ state.shape.nodes[1]
     assert np.abs(turned[:3, 3]).max() < 1e-14  # it stays on the hinge

@@ -101,7 +101,7 @@ def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
     body, n = discretize(curved(), 5), 5
     state = steady.steady(body, 1.5, np.zeros(3))
-    shape, cartesian = state.shape, state.linear
+    shape, cartesian = state.shape, state.pencil
     dense = lz.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
@@ -176,7 +176,7 @@ def test_unprestressed_chain_needs_no_newton() -> None:
     state = balance(body, 10.0, np.zeros(3), Effects(prestretch=False))
     np.testing.assert_array_equal(state.shape.nodes, body.nodes)
     tension = steady.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
-    assert np.abs(state.linear.residual).max() < 1e-8 * tension
+    assert np.abs(state.pencil.residual).max() < 1e-8 * tension
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,7 @@ def five_bar(cut: str = "C", drive: float = 2.0) -> mb.Mechanism:
 GUESS = {"A.rz": 2.0, "B.rz": -1.5, "E.rz": 0.8, "D.rx": 0.1, "D.ry": 0.5}
 
 
-def reduced_residual(linear: lz.Linear, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
+def reduced_residual(linear: lz.Linearization, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
     """Rᵀτ of the exact equations with the independent coordinates moved: loops closed anew, rates and accelerations too."""
     tree, state, part = linear.tree, linear.state, linear.partition
     q, v, a = state.q.copy(), state.v.copy(), state.a.copy()
