@@ -138,10 +138,12 @@ def _smooth_motion(
 ) -> tuple[Complex, Complex]:
     """As ``_motion``, from shapes (m, n, 4) and axes (n, 3, 3) at stations ``at`` (n,) between which the curve is smooth."""
     tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
-    moved = shapes[:, :, :3]
-    bent = np.cross(tangent, CubicSpline(at, moved, axis=1)(at, 1))  # of the sections' turning about x, not torsion
+    displacement = shapes[:, :, :3]
+    bent = np.cross(
+        tangent, CubicSpline(at, displacement, axis=1)(at, 1)
+    )  # of the sections' turning about x, not torsion
     torsion = (shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
-    line = CubicSpline(at, moved + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
+    line = CubicSpline(at, displacement + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
     along = frames(blade, s)[:, :3, 0]
     bending = np.cross(along, line(s, 1))
     turning = bending + CubicSpline(at, torsion, axis=1)(s)[:, :, None] * along

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at
-from ...core.element.inertia import moved
+from ...core.element.inertia import transformed
 from ...core.element.sections import frames, root
 from ...core.space import spatial as sp
 
@@ -87,7 +87,7 @@ def about_hub(blade: Blade) -> Mass:
 
 def about_root(blade: Blade) -> Mass:
     """About the root in the blade's axes (x along the blade, coned and pitched with it), tip mass included."""
-    return _properties(moved(_inertia(blade), sp.inverse(root(blade))))
+    return _properties(transformed(_inertia(blade), sp.inverse(root(blade))))
 
 
 def tip(blade: Blade) -> Mass | None:
@@ -102,7 +102,7 @@ def _inertia(blade: Blade) -> Array:
     s = (blade.stations[:-1, None] + h[:, None] * (x + 1) / 2).ravel()
     per_length = mass_at(blade, s) * (h[:, None] * w / 2).ravel()[:, None, None]
     parts = np.concatenate([per_length, blade.tip_mass[None]])
-    return moved(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
+    return transformed(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
 
 
 def _properties(inertia: Array) -> Mass:

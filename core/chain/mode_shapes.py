@@ -48,7 +48,7 @@ def _readings(
         np.empty((6, 12)),
         np.empty((6, 12)),
     )
-    moved = np.empty((6, 18))
+    motion = np.empty((6, 18))
     for q in range(len(element)):
         e = element[q]
         rigid.inverse(nodes[e], back)
@@ -63,19 +63,19 @@ def _readings(
         rigid.exp(zeta, position)
         for i in range(6):  # the twist in a's axes, at a
             for j in range(6):
-                moved[i, j] = (1.0 if i == j else 0.0) - H[i, j]
-                moved[i, 6 + j] = 0.0
-                moved[i, 12 + j] = H[i, 6 + j]
+                motion[i, j] = (1.0 if i == j else 0.0) - H[i, j]
+                motion[i, 6 + j] = 0.0
+                motion[i, 12 + j] = H[i, 6 + j]
                 for k in range(6):
-                    moved[i, 6 + j] += H[i, k] * lever[k, j]
+                    motion[i, 6 + j] += H[i, k] * lever[k, j]
         for j in range(out.shape[2]):
             for i in range(3):  # velocity of the point: v + w × p
                 k, m = (i + 1) % 3, (i + 2) % 3
-                moved[i, j] += moved[3 + k, j] * position[m, 3] - moved[3 + m, j] * position[k, 3]
+                motion[i, j] += motion[3 + k, j] * position[m, 3] - motion[3 + m, j] * position[k, 3]
             for i in range(3):
                 out[q, i, j] = 0.0
                 for k in range(3):
-                    out[q, i, j] += nodes[e, i, k] * moved[k, j]
+                    out[q, i, j] += nodes[e, i, k] * motion[k, j]
             out[q, 3, j] = 0.0
             for k in range(3):
-                out[q, 3, j] += nodes[e, 0, k] * moved[3 + k, j]
+                out[q, 3, j] += nodes[e, 0, k] * motion[3 + k, j]

@@ -101,9 +101,9 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
         stalled = energy > _SHRINKING * before  # else the bound is not reached yet: rounding may be much less
         if energy <= _NOTHING * rounding or (stalled and energy <= _STALLED * rounding):
-            return Steady(moved(shape, step), p)
+            return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
-        shape, before = moved(shape, step), energy
+        shape, before = displaced(shape, step), energy
     raise SteadyStateError("no convergence")
 
 
@@ -127,15 +127,15 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
     return float(np.linalg.norm(strain, axis=1).max(initial=0.0))
 
 
-def moved(shape: Shape, step: Array) -> Shape:
+def displaced(shape: Shape, step: Array) -> Shape:
     """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
     nodes, relative = shape.nodes.copy(), shape.relative.copy()
-    _move(step, nodes[1:], relative)
+    _displace(step, nodes[1:], relative)
     return Shape(nodes, shape.beta + step[:, :-6], relative)
 
 
 @compiled
-def _move(step: Array, nodes: Array, relative: Array) -> None:
+def _displace(step: Array, nodes: Array, relative: Array) -> None:
     inner, here, between = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
     change, back = np.empty((4, 4)), np.eye(4)
     for k in range(len(nodes)):
@@ -175,7 +175,7 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
         weight = prod((omega**2 - other) / (x - other) for other in latest if other != x)
         step[:, :-6] += weight * (shape.beta - now.beta)
         _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
-    return moved(now, step)
+    return displaced(now, step)
 
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:

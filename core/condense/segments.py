@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..element import sections
-from ..element.inertia import moved
+from ..element.inertia import transformed
 from ..space import spatial as sp
 from . import ties
 from .ties import CondensationError
@@ -131,5 +131,5 @@ def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, nam
     line[3:, 3:] = np.outer(
         undeformed[:3, 3], undeformed[:3, 3]
     )  # turning about the line itself is averaged on its own
-    masses = weight[:, None, None] * moved(np.repeat(line[None], len(t), axis=0), slices)
+    masses = weight[:, None, None] * transformed(np.repeat(line[None], len(t), axis=0), slices)
     return Segment(undeformed, k, inertia, np.linalg.solve(masses.sum(0), (masses @ twists).sum(0)))

@@ -13,9 +13,9 @@ from ..space import spatial as sp
 from . import beams as bm
 from . import sections
 from .beams import Beams, Points
-from .inertia import moved
+from .inertia import transformed
 from .measures import Measure, StrainLaw, even, joined
-from .sections import Segments
+from .sections import StaticSolution
 
 Array = NDArray[Any]
 Mass = Literal["consistent", "half_end"]
@@ -219,12 +219,12 @@ def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
 
 
 def _half_end(blade: Blade, nodes: Array) -> Array:
-    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
+    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, transformed to it along the span."""
     node, s, weight = _halves(blade, nodes)
     turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
     turn[:, :3, 3] = 0.0
     lumps = np.zeros((len(nodes), 6, 6))
-    np.add.at(lumps, node, weight[:, None, None] * moved(mass_at(blade, s), turn))
+    np.add.at(lumps, node, weight[:, None, None] * transformed(mass_at(blade, s), turn))
     return lumps
 
 
@@ -236,7 +236,7 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
     return node.ravel(), points.s.ravel(), points.weight.ravel()
 
 
-def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, undeformed: Array) -> Points:
+def _samples(blade: Blade, seg: StaticSolution, at: Array, nodes: Array, undeformed: Array) -> Points:
     e = seg.at_element
     pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
     return bm.riding(undeformed, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))

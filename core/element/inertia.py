@@ -78,7 +78,7 @@ def carried(mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g
         hold_components(g[k], push[k], follow, K[k])
 
 
-def moved(mass: Array, x: Array) -> Array:
+def transformed(mass: Array, x: Array) -> Array:
     """Inertias (n, 6, 6) given in frames ``x`` (n, 4, 4), expressed in the frame the poses are given in."""
     a = sp.adjoint(sp.inverse(x))
     return np.swapaxes(a, -1, -2) @ mass @ a

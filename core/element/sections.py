@@ -67,7 +67,7 @@ def compliance(blade: Blade, s: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Segments:
+class StaticSolution:
     """Gauss points of all elements, in order along the blade, and the elements' static solutions.
 
     Attributes:
@@ -127,7 +127,7 @@ def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadr
     return Quadrature(ends[:-1], h, element, ends[:-1, None] + h[:, None] * c, h[:, None] * b)
 
 
-def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
+def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:
     """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,).
 
     Every kink must be a node: the elements' frames are those of the sections at their ends, of the side the element is on.
@@ -184,7 +184,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
     rate = turn @ stiffness[element][:, None]
     uneven = _uneven(pose, part, length, last[element][:, None], shape.reshape(turn.shape), rate, static, loaded)
     shortening, mean, slope = (whole(v) for v in uneven)
-    return Segments(
+    return StaticSolution(
         element=q,
         s=s.ravel(),
         weight=points.weight.ravel(),
@@ -228,10 +228,10 @@ def _squared(slope: Array) -> Array:
     return np.swapaxes(slope, -1, -2) @ slope
 
 
-def _across(pose: Array, moved: Array, rate: Array) -> Array:
+def _across(pose: Array, twist: Array, rate: Array) -> Array:
     """(…, 2, 6) slope across the axis of the displaced reference curve, from twists at a and their rates along the arc."""
     p, x = pose[..., :3, 3], pose[..., :3, 0]
-    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ moved[..., 3:, :]
+    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ twist[..., 3:, :]
     return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
 
 

@@ -225,7 +225,7 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     state, part, k = here.state, here.part, here.state.kinematics
     M, C, K = (a[np.ix_(part.free, part.free)] for a in dynamics.tangent(tree, k, state.cartesian))
     R = part.R
-    moved = K @ R
+    by_independent = K @ R
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
         following = ~np.isin(part.free, _given(tree))
@@ -233,15 +233,15 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
         R1[following] = -back.solve(J1 @ R)
         R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
-        moved += C @ R1 + M @ R2
+        by_independent += C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
     units = np.where(turns, 1.0, _length(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
     rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
     least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
-    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, moved)), NOISE / TOLERANCE * least)
+    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, by_independent)), NOISE / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
-    return _Tangent(ranked((R.T @ moved) / root[:, None] / root), root**2, rounding, units)
+    return _Tangent(ranked((R.T @ by_independent) / root[:, None] / root), root**2, rounding, units)
 
 
 def _sizes(tree: Tree, state: State) -> Array:

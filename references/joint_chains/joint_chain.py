@@ -18,7 +18,7 @@ from scipy.linalg import block_diag
 from ...core import curve
 from ...core.blade import Blade, clamped
 from ...core.element.discretize import Chain, discretize, divide
-from ...core.element.inertia import moved
+from ...core.element.inertia import transformed
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ..protocol.interface import CodeError
@@ -120,7 +120,7 @@ def places(chain: Chain) -> Array:
 
 def bodies(chain: Chain) -> Array:
     """(e, 6, 6) inertia of each body, in the frame that ``places`` gives it."""
-    return moved(chain.lumps[1:], sp.inverse(chain.corner))
+    return transformed(chain.lumps[1:], sp.inverse(chain.corner))
 
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:
