@@ -2,14 +2,14 @@
 
 from .core import multibody
 from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
-from .core.effects import Model
+from .core.effects import Effects
 from .core.modes import Modes
 from .core.solve import modes
 
 __all__ = [
     "Blade",
     "BladeError",
-    "Model",
+    "Effects",
     "Modes",
     "modes",
     "multibody",

@@ -223,7 +223,7 @@ def straight(blade: Blade) -> bool:
 
 
 def clamped(blade: Blade) -> bool:
-    """Whether the root is held in every direction."""
+    """Whether the root is clamped in every direction."""
     return bool(np.isinf(blade.root).all())
 
 

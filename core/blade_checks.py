@@ -100,7 +100,7 @@ def _stations(blade: "Blade") -> None:
         if not np.isfinite(getattr(blade, name)):
             raise BladeError(f"{name}: {getattr(blade, name)}: not a finite number; give an angle in radians")
     if (blade.root < 0).any():
-        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for held")
+        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for clamped")
 
 
 def _kinks(blade: "Blade") -> None:

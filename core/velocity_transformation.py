@@ -74,7 +74,7 @@ def modes(
     try:
         found = eigen.gyroscopic(M, C if effects.coriolis else np.zeros_like(C), K, count)
     except eigen.UnstableError as error:
-        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
+        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.clamped.size else ""
         raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
     _check_balance(linear, K, omega, body.scale)
     shapes = _shapes(body, linear, found.vectors)

@@ -66,7 +66,7 @@ class MotionData(Struct, frozen=True, forbid_unknown_fields=True):
     position: Annotated[float | None, Meta(description="m or rad")] = None
     rate: Annotated[float, Meta(description="m/s or rad/s")] = 0.0
     acceleration: Annotated[float, Meta(description="m/s² or rad/s²")] = 0.0
-    held: Annotated[bool, Meta(description="false: free to vibrate about this motion")] = True
+    prescribed: Annotated[bool, Meta(description="false: free to vibrate about this motion")] = True
     polynomial: Annotated[tuple[float, ...], Meta(description="coefficients of 1, t, t² …, SI")] = ()
     harmonics: tuple[HarmonicData, ...] = ()
 

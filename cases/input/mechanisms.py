@@ -131,7 +131,7 @@ def _motions(text: MechanismFile, path: str) -> tuple[mb.Motion, ...]:
                 "harmonics): give one of them"
             )
         law = mb.Sum(tuple(laws)) if laws else None
-        out.append(mb.Motion(name, m.position, m.rate, m.acceleration, m.held, law))
+        out.append(mb.Motion(name, m.position, m.rate, m.acceleration, m.prescribed, law))
     return tuple(out)
 
 

@@ -35,7 +35,7 @@ class Yours:
             frequencies in rad/s; shapes (m, 21, 4) at ``core.modes.STATIONS``, as in ``Modes``, or (m, 21, 3) without the
             rotation about the blade's axis; any scale, real or complex, in any order of frequency.
         name: of its column.
-        lacks: effects it leaves out, see ``Model``: core is compared without them.
+        lacks: effects it leaves out, see ``Effects``: core is compared without them.
         levels: refinements, coarse to fine; those of a function without ``elements`` count for nothing.
         order: order of convergence of its frequencies.
         unsupported: why it cannot solve a blade; None if it can.

@@ -1,7 +1,7 @@
 """A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
 
 A joint at the root is an elastic connection too, without length: it lies along the root's axes, the coordinates that it
-holds are prescribed to stay at zero (Φᴹ), and its springs are the chain's first element.
+clamps are prescribed to stay at zero (Φᴹ), and its springs are the chain's first element.
 """
 
 import numpy as np
@@ -25,11 +25,11 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     n, between = len(chain.nodes) - 1, chain.between
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
     frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
-    held: list[str] = []
-    if chain.held.size:
+    clamped: list[str] = []
+    if chain.clamped.size:
         frames[0, :3, :3] = chain.root_axes
-        fixed = root_joint.holds(chain)
-        held = [f"element 1.{name}" for (name, _), stays in zip(SCREWS["elastic"], fixed, strict=True) if stays]
+        fixed = root_joint.clamped_freedoms(chain)
+        clamped = [f"element 1.{name}" for (name, _), stays in zip(SCREWS["elastic"], fixed, strict=True) if stays]
     joints = (
         Joint("hub", "revolute", GROUND, "hub"),
         Joint("root", "fixed", "hub", "body 0", at_parent=chain.nodes[0]),
@@ -48,7 +48,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     return Mechanism(
         bodies=bodies,
         joints=joints,
-        motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in held)),
+        motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in clamped)),
         beams=tuple(
             Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), at_b=chain.corner[k], axes_of="hub")
             for k in range(n)

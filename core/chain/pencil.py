@@ -33,9 +33,9 @@ _CANCELLED, _STRAINLESS = (
 class ChainPencil:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
-    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``,
-    at this shape. What is held is replaced by a unit stiffness on its own, without mass or load: it stays where it is, and
-    makes no mode.
+    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``clamped`` as in ``Chain``,
+    at this shape. A clamped direction has a unit stiffness of its own and neither mass nor load: it stays where it is and
+    contributes no mode.
     """
 
     residual: Array
@@ -44,7 +44,7 @@ class ChainPencil:
     remainder: Tridiagonal
     spring: Array
     lever: Array
-    held: Array
+    clamped: Array
 
     @cached_property
     def K(self) -> Tridiagonal:
@@ -59,7 +59,7 @@ class ChainPencil:
         diagonal[:-1, -6:, -6:] += self.spring[1:]
         upper[:, :, -6:] -= self.spring[1:] @ self.lever[1:]
         lower[:, -6:] -= on_b[1:]
-        return _hold(Tridiagonal(diagonal, upper, lower), self.held, 1.0)
+        return _clamp(Tridiagonal(diagonal, upper, lower), self.clamped, 1.0)
 
     @cached_property
     def factor(self) -> Factor:
@@ -69,8 +69,8 @@ class ChainPencil:
     @property
     def strained(self) -> Strained:
         """The whole stiffness, for products without loss of digits."""
-        held = self.held if self.held.size else np.zeros((6, 6))
-        return Strained(blocks.transposed(self.remainder), self.spring, self.lever, held)
+        clamped = self.clamped if self.clamped.size else np.zeros((6, 6))
+        return Strained(blocks.transposed(self.remainder), self.spring, self.lever, clamped)
 
 
 @dataclass(frozen=True)
@@ -115,21 +115,21 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     inertia.carried(chain.lumps, frame, fall, push, effects.geometric, g, C, K)
     residual = np.empty((n - 1, d))
     _balance(p.residual, lever, g, residual)
-    held = chain.held
-    if held.size:
-        held, turning = root_joint.held(chain, shape.nodes, residual[0, -6:])
-        residual[0, -6:] -= held @ residual[0, -6:]
+    clamped = chain.clamped
+    if clamped.size:
+        clamped, turning = root_joint.clamped_projector(chain, shape.nodes, residual[0, -6:])
+        residual[0, -6:] -= clamped @ residual[0, -6:]
         if effects.geometric:
             K[1] += turning
     moving = 1.0 if effects.coriolis else 0.0
     return ChainPencil(
         residual.ravel(),
-        _hold(blocks.from_elements(p.M, lever, chain.lumps), held, 0.0),
-        _hold(blocks.from_elements(moving * p.C, lever, moving * C), held, 0.0),
+        _clamp(blocks.from_elements(p.M, lever, chain.lumps), clamped, 0.0),
+        _clamp(blocks.from_elements(moving * p.C, lever, moving * C), clamped, 0.0),
         blocks.from_elements(p.remainder, lever, K),
         p.spring,
         lever,
-        held,
+        clamped,
     )
 
 
@@ -181,24 +181,24 @@ def _balance(on_ends: Array, lever: Array, on_nodes: Array, out: Array) -> None:
                 out[k - 1, inner + i] += on_ends[k, i]
 
 
-def _hold(t: Tridiagonal, held: Array, unit: float) -> Tridiagonal:
-    """The matrix with the held part of node 1's twist cut loose from the others, ``unit`` on its diagonal."""
-    if not held.size:
+def _clamp(t: Tridiagonal, clamped: Array, unit: float) -> Tridiagonal:
+    """The matrix with the clamped part of node 1's twist decoupled from the others, ``unit`` on its diagonal."""
+    if not clamped.size:
         return t
-    free = np.eye(6) - held
+    free = np.eye(6) - clamped
     diagonal, upper, lower = t.diagonal.copy(), t.upper.copy(), t.lower.copy()
     diagonal[0, -6:] = free @ diagonal[0, -6:]
     diagonal[0, :, -6:] = diagonal[0, :, -6:] @ free
-    diagonal[0, -6:, -6:] += unit * held
+    diagonal[0, -6:, -6:] += unit * clamped
     upper[:1], lower[:1] = free @ upper[:1], lower[:1] @ free
     return Tridiagonal(diagonal, upper, lower)
 
 
 def loose(p: ChainPencil) -> bool:
     """Whether a joint at the root lets the blade turn as a rigid body against no stiffness, but for rounding."""
-    if not p.held.size:
+    if not p.clamped.size:
         return False
-    free = np.linalg.svd(np.eye(6) - p.held)[0][:, : 6 - round(float(np.trace(p.held)))]
+    free = np.linalg.svd(np.eye(6) - p.clamped)[0][:, : 6 - round(float(np.trace(p.clamped)))]
     x = np.zeros((free.shape[1], len(p.lever), p.remainder.diagonal.shape[1]))
     twist = free
     for k in range(len(p.lever)):  # ξ_b = Ad⁻¹ ξ_a: no strain

@@ -1,8 +1,8 @@
-"""The joint at a chain's root: a sequence of screws along the root's axes, x, y, z, then about x, y, z, some of them held.
+"""The joint at a chain's root: six screws along, then about, the root's axes x, y, z; some of them are clamped.
 
-Node 1 may move by the joint's coordinates q only. Two hinges do not commute: which twists are free depends on how far the
-joint has turned, F(q), and with a held reaction r that turning is a stiffness of its own, ``r · ∂F_i/∂q_j``. Without it K is
-not symmetric, and the steady state depends on the steps that led there.
+Node 1 moves by the joint's coordinates q only. Two hinges do not commute: the free twists F(q) depend on how far the joint
+has turned, and with the reaction r of the clamped directions that change is a stiffness of its own, ``r · ∂F_i/∂q_j``.
+Without it K is not symmetric, and the steady state depends on the steps that led to it.
 """
 
 import numpy as np
@@ -17,18 +17,18 @@ Array = NDArray[np.float64]
 _SCREWS = np.array([screw for _, screw in SCREWS["elastic"]])
 
 
-def holds(chain: Chain) -> NDArray[np.bool_]:
-    """(6,) which of the joint's freedoms are held."""
+def clamped_freedoms(chain: Chain) -> NDArray[np.bool_]:
+    """(6,) which of the joint's freedoms are clamped."""
     to_section = _root_to_section(chain)
-    return np.diagonal(to_section.T @ chain.held @ to_section) > 0.5
+    return np.diagonal(to_section.T @ chain.clamped @ to_section) > 0.5
 
 
 def put(chain: Chain, nodes: Array) -> tuple[Array, Array]:
-    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its held coordinates zero; the blade is carried along.
+    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its clamped coordinates zero; the blade is carried along.
 
     Also returned: the pose (4, 4) of node 1 in the frame of node 0.
     """
-    fixed = holds(chain)
+    fixed = clamped_freedoms(chain)
     if not fixed.any():
         return nodes, sp.inverse(nodes[0]) @ nodes[1]
     q = np.where(fixed, 0.0, _coordinates(chain, nodes))
@@ -42,11 +42,20 @@ def put(chain: Chain, nodes: Array) -> tuple[Array, Array]:
     return out, first
 
 
-def held(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:
-    """In node 1's own axes: the projector (6, 6) on what is held, and the stiffness (6, 6) of a wrench (6,) that it bears."""
-    fixed = holds(chain)
+def clamped_projector(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:
+    """The clamped directions at a shape, in node 1's own axes.
+
+    Args:
+        chain: the blade.
+        nodes: (n+1, 4, 4) poses in the hub's axes.
+        wrench: (6,) reaction of the joint, N and N m.
+
+    Returns:
+        The projector (6, 6) on the clamped directions and the geometric stiffness (6, 6) of the reaction.
+    """
+    fixed = clamped_freedoms(chain)
     if not fixed.any() or fixed.all():
-        return chain.held, np.zeros((6, 6))
+        return chain.clamped, np.zeros((6, 6))
     q = np.where(fixed, 0.0, _coordinates(chain, nodes))
     F, outer = np.empty((6, 6)), np.eye(4)  # columns: twists of node 1 in the joint's axes, from the last screw inwards
     for i in reversed(range(6)):

@@ -85,7 +85,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
     for _ in range(_STEPS):
-        if chain.held.size:
+        if chain.clamped.size:
             nodes, first = root_joint.put(chain, shape.nodes)
             shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
@@ -93,8 +93,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
             step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
-        if p.held.size:
-            step[0, -6:] -= p.held @ step[0, -6:]  # a unit stiffness under the reaction's rounding
+        if p.clamped.size:
+            step[0, -6:] -= p.clamped @ step[0, -6:]  # a unit stiffness under the reaction's rounding
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")

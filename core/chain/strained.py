@@ -13,18 +13,18 @@ Array = NDArray[np.float64]
 
 
 class Strained(NamedTuple):
-    """K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
+    """K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with the clamped directions decoupled.
 
     Attributes:
         remainder: the part on its own, for products.
         spring, lever: (n, 6, 6), see ``chain.pencil.ChainPencil``.
-        held: (6, 6) projector of node 1's twist; zero if nothing is held.
+        clamped: (6, 6) projector of node 1's twist; zero if nothing is clamped.
     """
 
     remainder: Transposed
     spring: Array
     lever: Array
-    held: Array
+    clamped: Array
 
 
 @compiled
@@ -34,7 +34,7 @@ def times(K: Strained, x: Array, out: Array) -> None:
     rho, kept = np.empty(6), np.empty(6)
     free = x.copy()
     for v in range(len(x)):
-        apply(K.held, x[v, d - 6 : d], kept)
+        apply(K.clamped, x[v, d - 6 : d], kept)
         for i in range(6):
             free[v, d - 6 + i] -= kept[i]
     blocks.times(K.remainder, free, out)
@@ -53,7 +53,7 @@ def times(K: Strained, x: Array, out: Array) -> None:
                     out[v, here + j] += K.lever[k, i, j] * wrench
                 if k > 0:
                     out[v, here - d + i] -= wrench
-        apply(K.held, out[v, d - 6 : d], rho)
-        apply(K.held, x[v, d - 6 : d], kept)
+        apply(K.clamped, out[v, d - 6 : d], rho)
+        apply(K.clamped, x[v, d - 6 : d], kept)
         for i in range(6):
             out[v, d - 6 + i] += kept[i] - rho[i]

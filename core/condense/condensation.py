@@ -44,11 +44,11 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
     """Eliminate statically all but the twists of the tied frames.
 
     Raises:
-        CondensationError: a freedom in two rigid ties, or freedoms that nothing holds.
+        CondensationError: a freedom in two rigid ties, or unsupported freedoms.
     """
     n, m = len(model.directions), len(tied)
     follow = np.zeros((n, 6 * m))
-    held = np.zeros(n, bool)
+    rigidly_tied = np.zeros(n, bool)
     means = []
     for k, t in enumerate(tied):
         own = slice(6 * k, 6 * k + 6)
@@ -56,13 +56,13 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
             row = np.zeros((6, n))
             row[:, t.freedoms] = t.mean
             means.append((row, own))
-        elif held[t.freedoms].any():
+        elif rigidly_tied[t.freedoms].any():
             raise CondensationError(
                 f"section {t.name!r}: shares nodes with another rigid tie; a node can follow one frame"
             )
         else:
-            follow[t.freedoms, own], held[t.freedoms] = t.motion, True
-    K, free = model.stiffness, np.flatnonzero(~held)
+            follow[t.freedoms, own], rigidly_tied[t.freedoms] = t.motion, True
+    K, free = model.stiffness, np.flatnonzero(~rigidly_tied)
     unit = float(abs(K).max())
     G = np.concatenate([row for row, _ in means]) if means else np.zeros((0, n))
     ask = unit * G @ follow
@@ -77,7 +77,7 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
         X = np.full_like(B, np.nan)
     if not np.abs(A @ X + B).max(initial=0.0) <= 1e-6 * np.abs(B).max(initial=0.0):
         raise CondensationError(
-            f"{model.name}: nothing holds some of its {n} freedoms once the sections' frames are held: "
+            f"{model.name}: nothing holds some of its {n} freedoms once the sections' frames are fixed: "
             "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
         )
     displacements = follow.copy()
@@ -104,7 +104,7 @@ def segment(model: FiniteElements, a: Tie, b: Tie) -> Segment:
 def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array) -> list[Segment]:
     """Every segment of a blade in its place between its neighbours, so that sections warp and contract as they do there.
 
-    The blade is held by its first tie and loaded at its last by six wrenches; between, average ties read how far each
+    The blade is clamped at its first tie and loaded at its last by six wrenches; between, average ties read how far each
     section turns and moves past the one before: a segment's flexibility is its ρ over the wrench that passes through it.
     What the ties add or lack is felt at the two ends of the blade only.
 

@@ -34,9 +34,9 @@ class Chain:
         force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
         corner: (n, 4, 4) pose of each element's end b in the frame of the node there: the identity, but where the blade has a
             kink, whose node has the frame of the section beyond it. All are by default.
-        held: (6, 6) projector of node 1's twist, in its own axes, on what the root's joint holds, where there is one: the first
-            element then is that joint, without length. Else empty.
-        root_axes: (3, 3) the root's axes, which that joint is along, in the first section's.
+        clamped: (6, 6) projector of node 1's twist, in its own axes, on the directions that the root joint clamps; the first
+            element then is that joint and has no length. Empty for a clamped root.
+        root_axes: (3, 3) the root's axes, along which the joint lies, in those of the first section.
     """
 
     nodes: Array
@@ -46,7 +46,7 @@ class Chain:
     scale: float
     force: Array
     corner: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
-    held: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    clamped: Array = field(default_factory=lambda: np.zeros((0, 0)))
     root_axes: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
@@ -61,7 +61,7 @@ class Chain:
     @property
     def elements(self) -> int:
         """How many beam elements."""
-        return len(self.beams.undeformed) - (1 if self.held.size else 0)
+        return len(self.beams.undeformed) - (1 if self.clamped.size else 0)
 
 
 def discretize(
@@ -168,7 +168,7 @@ def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
 def _on_joint(chain: Chain, blade: Blade) -> Chain:
     """The chain with the root's joint before its first element."""
     turn = np.kron(np.eye(2), sp.rotation(0, blade.twist[0]).T)  # from the root's axes to the first section's
-    holds = np.isinf(blade.root)
+    fixed = np.isinf(blade.root)
     b = chain.beams
 
     def before(new: Array, old: Array) -> Array:
@@ -183,7 +183,7 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
             *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)),
         )
         inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.undeformed) + 1)
-    spring = turn @ np.diag(np.where(holds, 0.0, blade.root)) @ turn.T
+    spring = turn @ np.diag(np.where(fixed, 0.0, blade.root)) @ turn.T
     beams = replace(
         b,
         law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
@@ -200,7 +200,7 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
         beams=beams,
         corner=before(np.eye(4)[None], chain.corner),
         samples=replace(chain.samples, element=chain.samples.element + 1),
-        held=turn @ np.diag(holds.astype(float)) @ turn.T,
+        clamped=turn @ np.diag(fixed.astype(float)) @ turn.T,
         root_axes=turn[:3, :3],
     )
 

@@ -48,10 +48,10 @@ def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Arra
 
 @compiled
 def hold_components(g: Array, push: Array, follow: bool, K: Array) -> None:
-    """Take steady forces ``push`` (3,) at the body's origin, fixed in the rotating frame, into g and K, in the body's axes.
+    """Add steady forces ``push`` (3,), N, at the body's origin and fixed in the rotating frame, to g and K in the body's axes.
 
-    Without ``follow`` the components of all of g are held in the frame, not taken along as the body turns: what a model without
-    geometric stiffness does.
+    Without ``follow`` all components of g stay fixed in the frame instead of turning with the body: an analysis without
+    geometric stiffness.
     """
     for i in range(3):
         g[i] -= push[i]

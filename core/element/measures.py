@@ -85,7 +85,7 @@ class Response:
         strain: (n, 6) ε.
         rate: (n, 6, 12) E = ∂ε/∂(ρ, β).
         curvature: (n, 12, 12) from a force s conjugate to ε, and one conjugate to η = log X, the derivative with respect to
-            (ρ, β) of what they make on them, both held: the geometric stiffness.
+            (ρ, β) of their generalised forces at constant s: the geometric stiffness.
     """
 
     strain: Array

@@ -146,7 +146,7 @@ def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
 
 
 def _free(tree: Tree) -> Index:
-    return np.setdiff1d(np.arange(len(tree.coordinates)), partition.held(tree))
+    return np.setdiff1d(np.arange(len(tree.coordinates)), partition.prescribed(tree))
 
 
 def _length(x: Array) -> float:
@@ -406,8 +406,8 @@ def _check_rates(tree: Tree, state: State) -> None:
     if free.any():
         name = tree.coordinates[following[int(free.argmax())]]
         raise MechanismError(
-            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too (held = false if "
-            "it is to vibrate)"
+            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too "
+            "(prescribed = false if it is to vibrate)"
         )
 
 

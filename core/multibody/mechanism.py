@@ -171,9 +171,9 @@ def check(m: Mechanism) -> None:
     for what, name in used:
         if name not in known:
             raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
-    held = [x.coordinate for x in m.motions]
-    if len(set(held)) < len(held):
-        raise MechanismError(f"motion {max(held, key=held.count)!r}: given twice; one coordinate moves one way")
+    moving = [x.coordinate for x in m.motions]
+    if len(set(moving)) < len(moving):
+        raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; one coordinate moves one way")
     for x in m.motions:
         if x.law is not None:
             raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: take at_time(mechanism, time)")

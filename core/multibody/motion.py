@@ -61,7 +61,7 @@ class Sum:
 class Motion:
     """Motion of one coordinate: position, rate and acceleration at the instant looked at, or the law they follow.
 
-    A ``held`` coordinate is prescribed (Φᴹ): it takes no part in vibration. One that is not held has this rate in the
+    A ``prescribed`` coordinate (Φᴹ) takes no part in vibration. One that is not prescribed has this rate in the
     steady state but moves freely about it: a rotor whose speed nobody governs, a spinning top.
 
     Attributes:
@@ -69,7 +69,7 @@ class Motion:
         position: m or rad; None leaves it to the guess, or 0.
         rate: m/s or rad/s.
         acceleration: m/s² or rad/s².
-        held: whether it is prescribed.
+        prescribed: whether it is prescribed.
         law: a function of time instead of the three numbers.
     """
 
@@ -77,7 +77,7 @@ class Motion:
     position: float | None = None
     rate: float = 0.0
     acceleration: float = 0.0
-    held: bool = True
+    prescribed: bool = True
     law: MotionLaw | None = None
 
 

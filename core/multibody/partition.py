@@ -57,9 +57,11 @@ class Partition:
     redundant: tuple[str, ...]
 
 
-def held(tree: Tree) -> Index:
+def prescribed(tree: Tree) -> Index:
     """Coordinates whose motion is prescribed."""
-    return np.array(sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held), dtype=np.intp)
+    return np.array(
+        sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.prescribed), dtype=np.intp
+    )
 
 
 def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = None) -> Partition:
@@ -73,7 +75,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     Raises:
         MechanismError: names that cannot serve as independent coordinates.
     """
-    free = np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))
+    free = np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
     J = jacobian(tree, k.B)[:, free]
     dependent, chosen = pivots(J)
     rank = len(dependent)
@@ -101,7 +103,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
 
 def freedom(tree: Tree, B: Array) -> int:
     """How many ways the free coordinates can move at a configuration with velocity transformation B."""
-    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))]
+    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))]
     return J.shape[1] - ranked(J).rank
 
 

@@ -58,7 +58,7 @@ def reduced(tree: Tree, q: Array, v_I: Array, independent: tuple[str, ...] | Non
     n = len(q)
     still = np.zeros(n)
     at_rest = kinematics(tree, q, still, still)
-    given = {tree.coordinate(m.coordinate): m for m in tree.mechanism.motions if m.held}
+    given = {tree.coordinate(m.coordinate): m for m in tree.mechanism.motions if m.prescribed}
     prescribed = np.eye(n)[sorted(given)]  # Φᴹ_q = Φᴹ_Z B: a unit row for each prescribed coordinate (eq. 7)
     Phi_q = np.concatenate([pt.jacobian(tree, at_rest.B), prescribed])  # of Φ = [Φᶜ; Φᴹ] (eq. 9)
     I = pt.partition(tree, at_rest, independent).independent

@@ -195,7 +195,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
 
 def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
     """Loads turn with axes whose motion is given: those of a body that vibrates would make the load a follower force."""
-    given = {m.coordinate for m in mechanism.motions if m.held}
+    given = {m.coordinate for m in mechanism.motions if m.prescribed}
     axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
     for name in sorted(axes):
         free = [c for c in moved_by.get(name, []) if c not in given]

@@ -210,13 +210,13 @@ def _function(table: Array, twist: Array, out: Array) -> None:
 
 @compiled
 def tangent_transpose_derivative(twist: Array, wrench: Array, out: Array) -> None:
-    """(6, 6) derivative of ``tangent(ζ)ᵀ f`` with respect to ζ, f held."""
+    """(6, 6) derivative of ``tangent(ζ)ᵀ f`` with respect to ζ at constant f."""
     _transpose_derivative(_TANGENT, twist, wrench, out)
 
 
 @compiled
 def tangent_inverse_transpose_derivative(twist: Array, wrench: Array, out: Array) -> None:
-    """(6, 6) derivative of ``tangent_inverse(ζ)ᵀ f`` with respect to ζ, f held."""
+    """(6, 6) derivative of ``tangent_inverse(ζ)ᵀ f`` with respect to ζ at constant f."""
     _transpose_derivative(_INVERSE, twist, wrench, out)
 
 

@@ -152,8 +152,8 @@ def stages(tree: Tree, made: System, q: Array) -> Stages:
         CodeError: loops that move in the steady state.
     """
     v = velocity(tree)
-    held = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held]
-    free = np.setdiff1d(np.arange(len(q)), held)
+    prescribed = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.prescribed]
+    free = np.setdiff1d(np.arange(len(q)), prescribed)
     force, _, J = made.balance(q)
     if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
         raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")

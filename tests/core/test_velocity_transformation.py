@@ -141,8 +141,8 @@ def test_a_free_hinge_at_rest_is_said_to_be_loose() -> None:
 def test_two_hinges_are_held_where_the_joint_says() -> None:
     blade = replace(PARK, root=np.array([HELD] * 4 + [0.0, 0.0]), twist=np.array([1.2, 0.0]))
     built = as_mechanism.mechanism(discretize(blade, 3), 10.0)
-    held = {m.coordinate for m in built.motions}
-    assert held == {"element 1.rx", "element 1.x", "element 1.y", "element 1.z", "hub.rz"}
+    prescribed = {m.coordinate for m in built.motions}
+    assert prescribed == {"element 1.rx", "element 1.x", "element 1.y", "element 1.z", "hub.rz"}
 
 
 def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
@@ -158,7 +158,7 @@ def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
 # loads of any mechanism -----------------------------------------------------------------------------------------------
 
 
-def swung(load: Load, held: bool = True) -> Mechanism:
+def swung(load: Load, prescribed: bool = True) -> Mechanism:
     """A mass on a rod of 2 m hinged to the hub 0.5 m off the axis, in the plane of rotation."""
     hinge = np.eye(4)
     hinge[0, 3] = 0.5
@@ -170,7 +170,7 @@ def swung(load: Load, held: bool = True) -> Mechanism:
             Joint("shaft", "revolute", "ground", "hub"),
             Joint("lag", "revolute", "hub", "mass", hinge, tip),
         ),
-        (Motion("shaft.rz", 0.0, 10.0, held=held),),
+        (Motion("shaft.rz", 0.0, 10.0, prescribed=prescribed),),
         loads=(load,),
     )
 
@@ -186,7 +186,7 @@ def test_a_load_that_turns_with_the_hub_bends_the_pendulum() -> None:
 
 def test_a_load_in_axes_that_vibrate_is_refused() -> None:
     with pytest.raises(MechanismError, match=r"load in the axes of 'hub': coordinate 'shaft.rz'"):
-        linearize(swung(Load("mass", np.array([0.0, 40.0, 0.0]), "hub"), held=False))
+        linearize(swung(Load("mass", np.array([0.0, 40.0, 0.0]), "hub"), prescribed=False))
     with pytest.raises(MechanismError, match="give three finite components"):
         linearize(swung(Load("mass", np.array([0.0, np.nan, 0.0]), "hub")))
     with pytest.raises(MechanismError, match="'wing' is unknown"):

@@ -20,7 +20,7 @@ FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass
 
 
 def pencil(blade, omega: float, elements: int, **how: Any) -> ChainPencil:
-    return solve.balance(discretize(blade, elements, **how), omega, np.zeros(3), ALL_EFFECTS).linear
+    return solve.balance(discretize(blade, elements, **how), omega, np.zeros(3), ALL_EFFECTS).pencil
 
 
 @pytest.mark.parametrize("how", [{}, {"mass": "half_end", "stiffness": "parent"}], ids=["consistent", "half_end"])

@@ -53,7 +53,7 @@ def five_bar(cut: str = "C", drive: float = 2.0) -> mb.Mechanism:
         (
             mb.Motion("turn.rz", 0.2, 1.5),
             mb.Motion("A.rz", law=Polynomial([2.0, drive])),
-            mb.Motion("E.rz", None, -1.0, 0.3, held=False),
+            mb.Motion("E.rz", None, -1.0, 0.3, prescribed=False),
         ),
         coordinate_springs=(
             mb.CoordinateSpring("E.rz", 60.0, 2.0, 0.6),
@@ -216,7 +216,9 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
 
 def test_a_loop_that_moves_at_no_given_rate_is_refused() -> None:
     m = five_bar()
-    with pytest.raises(mb.MechanismError, match=r"coordinate '\w\.r\w': its loop moves.*at which rate.*held = false"):
+    with pytest.raises(
+        mb.MechanismError, match=r"coordinate '\w\.r\w': its loop moves.*at which rate.*prescribed = false"
+    ):
         lz.linearize(replace(m, motions=m.motions[:2]), GUESS)
 
 

@@ -64,8 +64,8 @@ def test_two_hundred_guesses_reach_one_state(name: str) -> None:
     """Compared by the stiffness about it, which knows nothing of a top's azimuth; a ring, which drifts, by its shape."""
     mechanism, guess = CASES[name]()
     tree = compile_tree(at_time(mechanism, 0.0))
-    held = {m.coordinate for m in mechanism.motions if m.held}
-    names = [c for c in tree.coordinates if c not in held]
+    prescribed = {m.coordinate for m in mechanism.motions if m.prescribed}
+    names = [c for c in tree.coordinates if c not in prescribed]
     expected = equilibrium.steady(tree, guess)
     linear = about(tree, expected)
     for k in range(200):
