@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .blade_checks import ROOT, BladeError, check
+from .blade_checks import ROOT_TOLERANCE, BladeError, check
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ class Blade:
         for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass", "root"):
             set_(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
         s = self.stations
-        if s.ndim == 1 and len(s) and 0 < abs(s[0]) <= ROOT * abs(s[-1]):
+        if s.ndim == 1 and len(s) and 0 < abs(s[0]) <= ROOT_TOLERANCE * abs(s[-1]):
             set_(self, "stations", np.concatenate([[0.0], s[1:]]))
         set_(self, "kinks", _on_stations(self))
         if self.curve.size == 0:
@@ -89,7 +89,7 @@ def _on_stations(blade: Blade) -> tuple[float, ...]:
     if s.ndim != 1 or not len(s):
         return ()
     nearest = ((float(kink), float(s[np.abs(s - kink).argmin()])) for kink in blade.kinks)
-    return tuple(at if abs(kink - at) <= ROOT * abs(s[-1]) else kink for kink, at in nearest)
+    return tuple(at if abs(kink - at) <= ROOT_TOLERANCE * abs(s[-1]) else kink for kink, at in nearest)
 
 
 def section_stiffness(

@@ -16,29 +16,29 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ROOT = 1e-9
+ROOT_TOLERANCE = 1e-9
 """Of the length: a first station this near to 0 is the root."""
 
-ASIDE = 0.2
+MAX_ROOT_OFFSET = 0.2
 """Of the length: how far beside the root the reference curve may begin."""
 
-ARC, ROUNDED = 2e-4, 1e-5
+ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
 """How much longer or shorter than the stations say the curve may be between two of them: of that length, and of the blade's.
 
 The second admits coordinates rounded to millimetres. A spline is longer by half its mean square angle to the curve it should
 follow: 1.1° is 2e-4. A smooth curve with points every 15° keeps within this; of a kink of 3° between few points it does not.
 """
 
-NEAR = 3
+SWING_REACH = 3
 """How many stations away the corner may be about which a spline swings."""
 
-BACK = -0.9
+MIN_TANGENT_X = -0.9
 """Least x component of the tangent: sections are swung from the blade's axes to it, which is not defined for −1."""
 
-LINEAR, ROTARY = 1e-4, 1e-2
+MASS_TOLERANCE, INERTIA_TOLERANCE = 1e-4, 1e-2
 """Departure of a mass matrix from a rigid body's: of its mass, of its moments of inertia (published ones are rounded)."""
 
-SYMMETRIC = 1e-9
+SYMMETRY_TOLERANCE = 1e-9
 """Departure from symmetry, of a unit diagonal."""
 
 STRAINS = ("axial", "shear y", "shear z", "torsion", "bending about y", "bending about z")
@@ -120,16 +120,16 @@ def _curve(blade: "Blade") -> None:
     """|r′(s)| = 1: the spline through the points must have the arc length that the stations say, from a point at the root."""
     s, r, length = blade.stations, blade.curve, blade.length
     x, *beside = np.abs(r[0])
-    if x > ROUNDED * length or np.hypot(*beside) > ASIDE * length:
+    if x > COORDINATE_ROUNDING * length or np.hypot(*beside) > MAX_ROOT_OFFSET * length:
         raise BladeError(
             f"curve: begins at ({r[0, 0]:.6g}, {r[0, 1]:.6g}, {r[0, 2]:.6g}) m: the curve is measured from the root and "
-            f"begins there, at x = 0 and no more than {ASIDE:g} of the length beside it; subtract its first point "
+            f"begins there, at x = 0 and no more than {MAX_ROOT_OFFSET:g} of the length beside it; subtract its first point "
             "(the hub's radius goes into hub_radius)"
         )
     step = np.diff(s)
     with np.errstate(over="ignore"):
         chord = np.linalg.norm(np.diff(r, axis=0), axis=1)
-    allowed = ARC * step + ROUNDED * length
+    allowed = ARC_TOLERANCE * step + COORDINATE_ROUNDING * length
     if (chord > step + allowed).any():
         k = int(np.argmax(chord - step - allowed))
         raise BladeError(
@@ -141,7 +141,7 @@ def _curve(blade: "Blade") -> None:
     if (np.abs(arc - step) > allowed).any():
         raise BladeError(_unresolved(blade, int(np.argmax(np.abs(arc - step) / allowed)), arc, chord, allowed))
     ends = np.concatenate([curve.at(s, r, blade.kinks, s, before=side)[1] for side in (False, True)])
-    if (ends[:, 0] < BACK * np.linalg.norm(ends, axis=1)).any():
+    if (ends[:, 0] < MIN_TANGENT_X * np.linalg.norm(ends, axis=1)).any():
         k = int(np.argmin(ends[:, 0])) % len(s)
         raise BladeError(
             f"curve: turns back towards the hub at {s[k]:g} m: x, y and z in another order? the first runs along the blade"
@@ -159,7 +159,7 @@ def lengths(s: Array, r: Array, kinks: tuple[float, ...] = ()) -> Array:
 
 def follows(s: Array, r: Array) -> bool:
     """Whether a spline through points ``r`` (n, 3) has the arc length that stations ``s`` (n,) say, as a blade's must."""
-    return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC * np.diff(s) + ROUNDED * s[-1]).all())
+    return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC_TOLERANCE * np.diff(s) + COORDINATE_ROUNDING * s[-1]).all())
 
 
 def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array) -> str:
@@ -169,10 +169,10 @@ def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array
     along = np.diff(blade.curve, axis=0) / chord[:, None]
     turn = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
     turn[np.isin(s[1:-1], blade.kinks)] = 0.0
-    beside, around = (turn[max(k - n, 0) : k + n] for n in (1, NEAR))
+    beside, around = (turn[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
     longest = chord[k] / np.sinc(beside.max(initial=0.0) / (2 * np.pi))  # of an arc that turns so much
     if around.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
-        corner = s[max(k - NEAR, 0) + 1 + int(around.argmax())]
+        corner = s[max(k - SWING_REACH, 0) + 1 + int(around.argmax())]
         return (
             f"{found} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it swings about the "
             f"curve, which turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points around there, or declare a "
@@ -209,7 +209,7 @@ def _stiffness(blade: "Blade") -> None:
     size = np.sqrt(np.where(np.isinf(d), 1.0, d))
     unit = np.where(rigid, 1.0, blade.stiffness) / (size[:, :, None] * size[:, None, :])
     wrong = np.abs(unit - np.swapaxes(unit, 1, 2))
-    if wrong.max() > SYMMETRIC:
+    if wrong.max() > SYMMETRY_TOLERANCE:
         k, i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
         one, other = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
         raise BladeError(
@@ -240,21 +240,21 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         return (
             f"diagonal {i} is {d[i]:g} {unit if i < 3 else ''}".rstrip() + ": it must be positive; wrong sign or unit?"
         )
-    if np.ptp(d[:3]) > LINEAR * m:
+    if np.ptp(d[:3]) > MASS_TOLERANCE * m:
         return (
             f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has one mass in all directions; a table's "
             "columns shifted? give one"
         )
     size = np.sqrt(np.maximum(np.outer(d, d), (1e-9 * scale) ** 2))
     wrong = np.abs(matrix - matrix.T) / size
-    if wrong.max() > SYMMETRIC:
+    if wrong.max() > SYMMETRY_TOLERANCE:
         i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
         return (
             f"entries ({i}, {j}) and ({j}, {i}) are {matrix[i, j]:g} and {matrix[j, i]:g}: it must be symmetric; one "
             "triangle only, or a sign lost? correct one"
         )
     linear = np.abs(np.triu(matrix[:3, :3], 1))
-    if linear.max() > LINEAR * m:
+    if linear.max() > MASS_TOLERANCE * m:
         i, j = np.unravel_index(int(linear.argmax()), (3, 3))
         return (
             f"entry ({i}, {j}) is {matrix[i, j]:g}: motion along one axis has no momentum along another; wrong order of "
@@ -262,7 +262,7 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         )
     moment = matrix[:3, 3:]
     even = np.abs(moment + moment.T)
-    if even.max() > LINEAR * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
+    if even.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
         i, j = np.unravel_index(int(even.argmax()), (3, 3))
         return (
             f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: mass times the centre's "
@@ -271,7 +271,7 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     first = 0.5 * np.array([moment[1, 2] - moment[2, 1], moment[2, 0] - moment[0, 2], moment[0, 1] - moment[1, 0]])
     cross = sp.skew(first / m) if m else np.zeros((3, 3))
     least, middle, most = np.linalg.eigvalsh(J + m * cross @ cross)
-    rounding = ROTARY * np.trace(J)
+    rounding = INERTIA_TOLERANCE * np.trace(J)
     if least < -rounding or (m * np.abs(cross).max() ** 2 > 1e-12 * scale and not np.trace(J)):
         return (
             f"moments of inertia about the mass centre reach down to {least:.3g}: less than none; are those given about the "

@@ -33,10 +33,10 @@ FAMILIES = ("flap", "edge", "torsion", "axial")
 
 MIXED = "mixed"
 
-DOMINANT = 0.6
+DOMINANT_FRACTION = 0.6
 """Share of the kinetic energy that names a mode; with less it is mixed."""
 
-SPOKEN = 0.05
+MIN_NAMED_FRACTION = 0.05
 """Shares below this are not worth a word."""
 
 _GAUSS = 4
@@ -79,8 +79,8 @@ def gyration(blade: Blade) -> float:
 
 
 def families(shares: Array) -> tuple[str, ...]:
-    """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT``, else ``mixed``."""
-    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT else MIXED for row in shares)
+    """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT_FRACTION``, else ``mixed``."""
+    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT_FRACTION else MIXED for row in shares)
 
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
@@ -96,7 +96,7 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
 def spoken(share: Array) -> str:
     """One mode's shares (4,) in words, largest first: ``54 % flap, 43 % edge``."""
     order = np.argsort(-share, kind="stable")
-    return ", ".join(f"{100 * share[k]:.0f} % {FAMILIES[k]}" for k in order if share[k] >= SPOKEN)
+    return ", ".join(f"{100 * share[k]:.0f} % {FAMILIES[k]}" for k in order if share[k] >= MIN_NAMED_FRACTION)
 
 
 def _quadrature(blade: Blade) -> tuple[Array, Array]:

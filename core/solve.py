@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 NO_GRAVITY = np.zeros(3)
 
 
-MOST = 6400
+MAX_ELEMENTS = 6400
 """Elements that a mesh is refined to, by default."""
 
 LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
@@ -64,7 +64,7 @@ def modes(
             and the frequencies are extrapolated (Richardson).
         count: how many modes (fewer if the discretisation has fewer).
         accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given; ``AccuracyWarning`` where
-            ``MOST`` elements, or rounding, do not allow it.
+            ``MAX_ELEMENTS`` elements, or rounding, do not allow it.
         mass: ``consistent`` (fourth order) or ``half_end`` (lumped, Park et al. 2010; second order).
         stiffness: ``corotational``, or ``parent``: linear in the parent body's frame (Park et al. 2010).
         effects: physical effects kept.
@@ -282,7 +282,7 @@ def _refined(meshes: _Meshes, omega: float, fastest: float, wanted: float) -> Mo
     best: Modes | None = None
     for level in itertools.count():
         one = meshes.level(level, fastest)
-        if level > 2 and one.body.elements > MOST:
+        if level > 2 and one.body.elements > MAX_ELEMENTS:
             break
         try:
             solved.append(one.at(omega))

@@ -28,7 +28,7 @@ from .space import spatial as sp
 
 Array = NDArray[np.float64]
 
-MOST_ELEMENTS = 200  # of dense matrices, 12 coordinates an element: gigabytes and minutes beyond
+MAX_ELEMENTS = 200  # of dense matrices, 12 coordinates an element: gigabytes and minutes beyond
 _BALANCED = 1e-8  # how far off the steady state may be, of the blade's length (or a radian)
 
 
@@ -56,9 +56,9 @@ def modes(
         raise ValueError(f"count: {count}: ask for at least one mode")
     if not np.isfinite(omega):
         raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise ValueError(
-            f"elements: {elements}: the velocity transformation has dense matrices: at most {MOST_ELEMENTS}; "
+            f"elements: {elements}: the velocity transformation has dense matrices: at most {MAX_ELEMENTS}; "
             "use the chain solver"
         )
     if not (effects.prestretch and effects.geometric):

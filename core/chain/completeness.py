@@ -15,7 +15,7 @@ from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_GAP, _NEAR, _FAR = 1e-3, 1e-6, 0.03
+_MIN_GAP, _MIN_DISTANCE, _MAX_DISTANCE = 1e-3, 1e-6, 0.03
 """Relative distances: between frequencies, where there is room for a count; from a frequency, where there is none, and the most
 that rounding makes of it."""
 
@@ -41,9 +41,9 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
         MissedModesError: there are more or fewer.
     """
     last, next_ = frequencies[-1], beyond[beyond > frequencies[-1]].min(initial=2.0 * frequencies[-1])
-    near = min(max(_NEAR, 10.0 * rounding), _FAR)
+    near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
-    wide = room > _GAP
+    wide = room > _MIN_GAP
     shift, found = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
     counted = below(p, shift)
     if counted > found or (counted == found and not wide):

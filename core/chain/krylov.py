@@ -12,7 +12,7 @@ from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_CLEAR, _PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
+_MAX_OVERLAP, _MAX_PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
 
 
 class Operator(NamedTuple):
@@ -164,7 +164,7 @@ def _orthogonalise(
     """
     gram, largest = np.zeros((len(w), len(w))), 0.0
     n = My.shape[1]
-    for turn in range(_PASSES):
+    for turn in range(_MAX_PASSES):
         if turn > 0:
             blocks.times(a.M, w[:, n:].copy(), My)
         dual = _dual(a, w, My)
@@ -179,7 +179,7 @@ def _orthogonalise(
         smallest = gram[0, 0]
         for i in range(len(w)):
             smallest = min(smallest, gram[i, i])
-        if largest <= _CLEAR * np.sqrt(max(smallest, 0.0)):
+        if largest <= _MAX_OVERLAP * np.sqrt(max(smallest, 0.0)):
             break
     return gram, largest
 

@@ -20,14 +20,14 @@ from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
-_SOLVED, _REFINEMENTS, _ILL = (
+_VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
+_SOLVE_TOLERANCE, _MAX_REFINEMENTS, _MAX_SOLVE_ERROR = (
     1e-8,
     20,
     0.3,
 )  # relative error of a solution with K that is let be, the most steps to get there, and of the first
-_FIRST, _EVERY = 26, 12  # when to look whether the modes are there
-_BEYOND = 4  # modes beyond those wanted, to find a gap in
+_FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
+_EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
 
 class EigensolverError(ArithmeticError):
@@ -54,7 +54,7 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
     M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
     lost = solve_error(factor, exact, M, w)
-    if not lost < _ILL:
+    if not lost < _MAX_SOLVE_ERROR:
         raise EigensolverError(
             f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
             "fewer elements, or check units"
@@ -66,18 +66,18 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
     w, _, _ = forward(a, w)  # smooth
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
-    size, before, look = 0, 0, 3 * count + _FIRST
+    size, before, look = 0, 0, 3 * count + _FIRST_LOOK
     while True:
         w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
         if not size:
             raise EigensolverError("stiffness and mass are out of all proportion: check their units")
-        look = size + _EVERY
-        wanted, more = min(count, size // 2), min(count + _BEYOND, size // 2)
+        look = size + _LOOK_EVERY
+        wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)
         beyond, mu, z = mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
-        if exhausted or (error < _TOLERANCE).all():
+        if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
     positive = mu > 1e-12 * mu.max(initial=0.0)
     if not positive.any() or not np.isfinite(mu).all():
@@ -115,7 +115,7 @@ def _start(size: int) -> Array:
 
 def _refinements(solve_error: float) -> int:
     """How many steps of iterative refinement bring a solution to the accuracy wanted."""
-    for steps in range(_REFINEMENTS):
-        if solve_error ** (steps + 1) < _SOLVED:
+    for steps in range(_MAX_REFINEMENTS):
+        if solve_error ** (steps + 1) < _SOLVE_TOLERANCE:
             return steps
-    return _REFINEMENTS
+    return _MAX_REFINEMENTS

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 _GROWTH = 1.5  # of an element over the one before, outwards from the root
 _JUMP = 1e-4  # of the blade's length: stations nearer to each other are one step of the properties
-_STATIONS = 200  # more are not told apart
+_MAX_STATIONS = 200  # more are not told apart
 
 
 def coarse(blade: Blade, elements: int, omega: float) -> Array:
@@ -23,7 +23,7 @@ def coarse(blade: Blade, elements: int, omega: float) -> Array:
         sizes.append(min(longest, _GROWTH * sizes[-1]))
     ends = np.append(0.0, np.cumsum(sizes)) * blade.length / sum(sizes)
     number = np.arange(len(ends), dtype=float)
-    stations = blade.stations[1:-1] if len(blade.stations) <= _STATIONS else np.empty(0)
+    stations = blade.stations[1:-1] if len(blade.stations) <= _MAX_STATIONS else np.empty(0)
     kept = [0.0, *blade.kinks, blade.length]
     for s in stations:
         if np.abs(np.array(kept) - s).min() > _JUMP * blade.length:

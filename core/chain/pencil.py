@@ -23,7 +23,7 @@ from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_CANCELLED, _STRAINLESS = (
+_FORCE_ROUNDING, _ENERGY_ROUNDING = (
     1e-13,
     1e-28,
 )  # what rounding leaves of a rigid motion's stiffness: of forces, of strain energy
@@ -209,5 +209,5 @@ def loose(p: ChainPencil) -> bool:
     strained.times(p.strained, rows, force)
     K = rows @ force.T
     cancelled = np.einsum("mki,kij,mkj->", np.abs(x), np.abs(p.remainder.diagonal), np.abs(x))
-    rounding = _CANCELLED * cancelled + _STRAINLESS * np.abs(p.spring).max() * (rows**2).sum()
+    rounding = _FORCE_ROUNDING * cancelled + _ENERGY_ROUNDING * np.abs(p.spring).max() * (rows**2).sum()
     return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= rounding)

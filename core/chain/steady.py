@@ -19,15 +19,15 @@ from .pencil import ChainPencil, Shape, linearize, undeformed
 
 Array = NDArray[np.float64]
 
-_STEPS = 40
+_MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALLED, _NOTHING = (
+_STALL_FACTOR, _CONVERGED_FACTOR = (
     10.0,
     1e-4,
 )  # times a bound of rounding's energy: Newton's steps may stop shrinking here; and need go on
-_SHRINKING = 1e-2  # least factor between the energies of steps that converge
+_MIN_REDUCTION = 1e-2  # least factor between the energies of steps that converge
 ORDER = 3  # of the extrapolation along the speeds
-_SMALLEST_RAMP = 2.0**-8
+_MIN_RAMP = 2.0**-8
 
 
 class SteadyStateError(ValueError):
@@ -67,7 +67,7 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
             done = load
         except SteadyStateError:
             step *= 0.5
-            if step < _SMALLEST_RAMP:
+            if step < _MIN_RAMP:
                 raise SteadyStateError(
                     f"omega: no steady state at {omega:.6g} rad/s; the loads were followed up to {done:.0%} of Ω²: the "
                     "centrifugal force outgrows the axial stiffness there, or the blade is far too soft; check units or "
@@ -84,7 +84,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         if chain.clamped.size:
             nodes, first = root_joint.put(chain, shape.nodes)
             shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
@@ -99,8 +99,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
-        stalled = energy > _SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= _NOTHING * rounding or (stalled and energy <= _STALLED * rounding):
+        stalled = energy > _MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= _CONVERGED_FACTOR * rounding or (stalled and energy <= _STALL_FACTOR * rounding):
             return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape, before = displaced(shape, step), energy

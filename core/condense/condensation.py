@@ -29,7 +29,7 @@ from .ties import CondensationError, FiniteElements, Tie
 
 Array = NDArray[Any]
 
-UNEQUAL = 0.1  # largest departure from symmetry, of a unit diagonal, of a flexibility read in place
+MAX_ASYMMETRY = 0.1  # largest departure from symmetry, of a unit diagonal, of a flexibility read in place
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
         size = np.sqrt(np.abs(np.diagonal(flexibility)))
         unit = flexibility / np.outer(size, size)
         wrong = np.abs(unit - unit.T).max()
-        if wrong > UNEQUAL or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
+        if wrong > MAX_ASYMMETRY or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
             raise CondensationError(
                 f"segment {a.name!r} to {b.name!r}: its flexibility is {wrong:.1e} from symmetric, or not positive: "
                 "sections too close together for the mesh, or ties of another model?"

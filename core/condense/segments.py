@@ -17,8 +17,10 @@ from .ties import CondensationError
 
 Array = NDArray[np.float64]
 
-TOLERANCE = ties.ASYMMETRY
-LEAST = 1e-8  # lowest eigenvalue of a 6×6 with a unit diagonal: below it there is a seventh motion without force
+SYMMETRY_TOLERANCE = ties.ASYMMETRY
+MIN_EIGENVALUE = (
+    1e-8  # lowest eigenvalue of a 6×6 with a unit diagonal: below it there is a seventh motion without force
+)
 
 MOTIONS = tuple(f"{kind} {axis}" for kind in ("translation along", "rotation about") for axis in "xyz")
 
@@ -69,12 +71,12 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
         )
     unit = k / np.sqrt(np.outer(diagonal, diagonal))
     wrong = np.abs(unit - unit.T).max()
-    if wrong > TOLERANCE:
+    if wrong > SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: {wrong:.1e} from symmetric: one triangle only, or rows and columns in two orders?"
         )
     lowest = np.linalg.eigvalsh(unit)[0]
-    if lowest < -TOLERANCE:
+    if lowest < -SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: not positive semi-definite (lowest eigenvalue {lowest:.2e} of a unit diagonal): "
             "wrong sign, order of freedoms, or a stiffness under load?"
@@ -83,7 +85,7 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
         np.concatenate([np.eye(6), sp.adjoint(sp.inverse(undeformed))]) * np.sqrt(diagonal)[:, None]
     )  # by a twist of a
     left = np.abs(unit @ carried).max(0) / (np.abs(unit) @ np.abs(carried)).max(0)
-    if left.max() > TOLERANCE:
+    if left.max() > SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: {MOTIONS[int(left.argmax())]} as a rigid body is resisted ({left.max():.1e} of the forces in it): "
             "no six rigid-body modes; a support left in the model, or frames not where the matrix has its nodes (units?)"
@@ -92,7 +94,7 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     k = back.T @ (0.5 * (k + k.T))[6:, 6:] @ back
     size = np.sqrt(np.diagonal(k))
     lowest = np.linalg.eigvalsh(k / np.outer(size, size))[0]
-    if lowest < LEAST:
+    if lowest < MIN_EIGENVALUE:
         raise CondensationError(
             f"{where}: more than six motions without force (lowest eigenvalue {lowest:.1e} of a unit diagonal): "
             "a mechanism between the sections; tie more nodes"

@@ -136,7 +136,7 @@ def discretize(
     return chain if clamped(blade) else _on_joint(chain, blade)
 
 
-LEAST = 16
+MIN_SHARED = 16
 """Elements that are shared out among the pieces between kinks; more are these, halved."""
 
 
@@ -144,13 +144,13 @@ def divide(blade: Blade, elements: int) -> Array:
     """Arc lengths (n+1,) of the nodes: every kink is one, and the pieces between have elements in proportion to their lengths.
 
     At least one each, so there may be more than asked for. Twice as many elements are the same ones halved (from twice
-    ``LEAST`` on), so that refinement converges regularly.
+    ``MIN_SHARED`` on), so that refinement converges regularly.
     """
     if not blade.kinks:
         return np.linspace(0.0, blade.length, elements + 1)
     ends = np.array([0.0, *blade.kinks, blade.length])
     halved = 1
-    while elements % (2 * halved) == 0 and elements >= 2 * LEAST * halved:
+    while elements % (2 * halved) == 0 and elements >= 2 * MIN_SHARED * halved:
         halved *= 2
     number = halved * _shared_out(elements // halved, np.diff(ends))
     inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], number, strict=True)]

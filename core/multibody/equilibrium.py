@@ -17,17 +17,17 @@ from .tree import Tree
 Array = NDArray[Any]
 Index = NDArray[np.intp]
 
-BALANCED = 1e-11
+BALANCE_TOLERANCE = 1e-11
 """A residual below this fraction of the forces it is the sum of is rounding; each coordinate has its own."""
 
-NOISE = 1e-13
+STIFFNESS_ROUNDING = 1e-13
 """A stiffness below this fraction of the forces and stiffnesses it is the sum of is rounding."""
 
-_STEPS = 60
-_FAR = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
-_FIRST, _LEAST = 0.25, 1e-3  # of the path
-_SHORTEST = 1e-3  # of a step
-_NEAR = 0.05  # rad, or of the length: corrections so small need not contract at once
+_MAX_STEPS = 60
+_MAX_STEP = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
+_FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # of the path
+_MIN_FRACTION = 1e-3  # of a step
+_SMALL_CORRECTION = 0.05  # rad, or of the length: corrections so small need not contract at once
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
     """
     q = q.copy()
     last = np.inf
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         x, J = poses(tree, q)
         gap, length = partition.misfit(tree, x), _length(x)
         size = float(np.abs(gap).max(initial=0.0))
@@ -141,7 +141,7 @@ def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
             break
         last = size
         step = -ranked(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]).solve(gap, float(gap @ gap))
-        q[free] += step * min(1.0, _FAR / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        q[free] += step * min(1.0, _MAX_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
     return q, gap, length
 
 
@@ -196,7 +196,7 @@ class _Tangent:
 
     def balanced(self, here: _Residual) -> bool:
         """Whether each independent coordinate is balanced but for rounding."""
-        return bool((np.abs(here.reduced) <= BALANCED * self.rounding).all())
+        return bool((np.abs(here.reduced) <= BALANCE_TOLERANCE * self.rounding).all())
 
 
 @dataclass(frozen=True)
@@ -239,7 +239,7 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
     rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
     least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
-    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, by_independent)), NOISE / TOLERANCE * least)
+    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, by_independent)), STIFFNESS_ROUNDING / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     return _Tangent(ranked((R.T @ by_independent) / root[:, None] / root), root**2, rounding, units)
 
@@ -271,7 +271,7 @@ def _newton(
     """
     free = _free(tree)
     start, here = q, _residual(tree, q, dead)
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         tangent = _tangent(tree, here)
         step = tangent.step(here)
         length = _norm(step, tangent)
@@ -284,11 +284,11 @@ def _newton(
             following, contraction = _tried(tree, q, part * step, dead, names, tangent, length)
             if done and contraction > 0.5:  # rounding is all that is left
                 return _Found(here.state, here, tangent)
-            near = max(length, length * contraction) < _NEAR  # of the guess: a first correction may grow
+            near = max(length, length * contraction) < _SMALL_CORRECTION  # of the guess: a first correction may grow
             if contraction <= (1.0 - 0.25 * part if damped else 0.5) or near or length < 1e-9:
                 break
             part *= 0.5
-            if not damped or part < _SHORTEST:
+            if not damped or part < _MIN_FRACTION:
                 return None
         if following is None or _norm((following.state.q - start)[free], tangent) > far:
             return None
@@ -333,19 +333,19 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
         return 0.0, None
     J = partition.jacobian(tree, start.state.kinematics.B)[:, free]
     dead = start.forces - J.T @ ranked(J.T).solve(start.forces)
-    part, stride, slope = 0.0, _FIRST, np.zeros_like(q)
+    part, stride, slope = 0.0, _FIRST_STRIDE, np.zeros_like(q)
     found = None
     while part < 1.0:
         to = min(1.0, part + stride)
         ahead, gap, size = _closed(tree, q + (to - part) * slope, free)
         closed = np.abs(gap).max(initial=0.0) <= 1e-11 * size
         try:
-            found = _newton(at(to), ahead, (1.0 - to) * dead, _FAR) if closed else None
+            found = _newton(at(to), ahead, (1.0 - to) * dead, _MAX_STEP) if closed else None
         except MechanismError:  # the loops are singular there
             found = None
         if found is None or not found.tangent.balanced(found.residual):
             stride *= 0.5
-            if stride < _LEAST:
+            if stride < _MIN_STRIDE:
                 return part, None
             continue
         slope, part, q = (found.state.q - q) / (to - part), to, found.state.q

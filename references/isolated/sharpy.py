@@ -42,7 +42,7 @@ INTERVALS = 12
 JUMP = 1e-4
 """Of the length: stations closer than this are the two sides of a jump, and no element lies between."""
 
-MOST = 200
+MAX_ELEMENTS = 200
 """Elements: dense matrices of 12 rows each."""
 
 TIMEOUT = 120.0
@@ -87,8 +87,8 @@ class Sharpy:
         begun = time.perf_counter()
         spans = _spans(blade, elements)
         n = len(spans)
-        if n > MOST:
-            raise CodeError(f"elements: {n}: dense matrices; at most {MOST}")
+        if n > MAX_ELEMENTS:
+            raise CodeError(f"elements: {n}: dense matrices; at most {MAX_ELEMENTS}")
         s = nodes(spans)
         answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
         q = _unpacked(answer["q"])

@@ -22,7 +22,7 @@ from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
 
-MOST = 80
+MAX_ELEMENTS = 80
 """Elements: every number in the recursion over 6·elements joints carries 12·elements derivatives."""
 
 SYMMETRIC = 1e-9
@@ -56,9 +56,9 @@ class DrakeChain:
         """The lowest modes; see ``interface.Code``.
 
         Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+            CodeError: an unsupported blade, more than ``MAX_ELEMENTS`` elements, or no stable steady state at this speed.
         """
-        return chain_modes(blade, omega, elements, count, MOST, plant)
+        return chain_modes(blade, omega, elements, count, MAX_ELEMENTS, plant)
 
 
 @dataclass(frozen=True)

@@ -31,10 +31,10 @@ STEPS, SMALLEST_RAMP = 40, 2.0**-8
 
 EPS = float(np.finfo(float).eps)
 
-STALLED, NOTHING = 10.0, 1e-4
+STALL_FACTOR, CONVERGED_FACTOR = 10.0, 1e-4
 """Times a bound of rounding's energy: Newton's steps may stop shrinking at the first, and go on to the second at most."""
 
-SHRINKING = 1e-2
+MIN_REDUCTION = 1e-2
 """Least factor between the energies of steps that converge."""
 
 
@@ -189,8 +189,8 @@ def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) 
         q = q + step
         unsure = EPS * (np.abs(force / lever).max() * lever + np.abs(elastic) @ np.abs(q))
         energy, rounding = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
-        stalled = energy > SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= NOTHING * rounding or (stalled and energy <= STALLED * rounding):
+        stalled = energy > MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= CONVERGED_FACTOR * rounding or (stalled and energy <= STALL_FACTOR * rounding):
             return q, stiffness
         before = energy
     return None

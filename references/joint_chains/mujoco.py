@@ -21,7 +21,7 @@ from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
 
 Array = NDArray[np.float64]
 
-MOST = 80
+MAX_ELEMENTS = 80
 """Elements: differences take time that grows as their square, the eigenproblem as their cube."""
 
 STEP = 2e-3
@@ -59,9 +59,9 @@ class MujocoChain:
         """The lowest modes; see ``interface.Code``.
 
         Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+            CodeError: an unsupported blade, more than ``MAX_ELEMENTS`` elements, or no stable steady state at this speed.
         """
-        return chain_modes(blade, omega, elements, count, MOST, plant)
+        return chain_modes(blade, omega, elements, count, MAX_ELEMENTS, plant)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from .joint_chain import bodies, chain_modes, check, places, refusal
 
 Array = NDArray[np.float64]
 
-MOST = 60
+MAX_ELEMENTS = 60
 """Elements: Pinocchio's workspace holds four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
 
 SYMMETRIC = 1e-9
@@ -55,9 +55,9 @@ class PinocchioChain:
         """The lowest modes; see ``interface.Code``.
 
         Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
+            CodeError: an unsupported blade, more than ``MAX_ELEMENTS`` elements, or no stable steady state at this speed.
         """
-        return chain_modes(blade, omega, elements, count, MOST, tree)
+        return chain_modes(blade, omega, elements, count, MAX_ELEMENTS, tree)
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 SECTIONS = 20
 """Intervals between stations that the coarsest level can follow without more elements."""
 
-NOTHING = 1e-9
+ZERO_SHAPE = 1e-9
 """Largest lateral motion, of a vector of norm one, that counts as none: an axial mode, of which pyBModes shows nothing."""
 
 MAIN = """==== pyBModes main input file ====
@@ -215,7 +215,7 @@ def _moving(rotor: Any, blade: Blade, count: int, most: int) -> tuple[Array, NDA
 
 
 def _moves(shape: Any) -> bool:
-    return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > NOTHING
+    return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > ZERO_SHAPE
 
 
 def _shape(shape: Any, blade: Blade) -> Array:

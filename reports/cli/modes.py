@@ -9,7 +9,7 @@ from rich.console import Console
 from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
 from ...cases.input import library
 from ...cases.input.schema import speed_range
-from ...core.velocity_transformation import MOST_ELEMENTS
+from ...core.velocity_transformation import MAX_ELEMENTS
 from ..shared import not_used
 from ..shared.console import output
 from ..shared.units import RAD_S, RPM, Units
@@ -61,9 +61,9 @@ def modes(
         Print rows as JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown),
         steady_strain.
     """
-    if method != "chain" and (elements or 0) > MOST_ELEMENTS:
+    if method != "chain" and (elements or 0) > MAX_ELEMENTS:
         raise UsageError(
-            f"--elements {elements}: --method {method} has dense matrices: at most {MOST_ELEMENTS}; or use --method chain"
+            f"--elements {elements}: --method {method} has dense matrices: at most {MAX_ELEMENTS}; or use --method chain"
         )
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []

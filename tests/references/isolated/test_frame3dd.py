@@ -12,7 +12,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.references.isolated import frame3dd as frame3dd_frame
 from southwell.references.isolated import frame3dd_worker
-from southwell.references.isolated.frame3dd import CODE, MOST, SECTIONS, request
+from southwell.references.isolated.frame3dd import CODE, MAX_ELEMENTS, SECTIONS, request
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 
@@ -99,8 +99,8 @@ def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
 
 
 def test_refuses_what_it_has_no_time_for() -> None:
-    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
-        CODE.solve(PARK, 10.0, MOST + 1, 4)
+    with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
+        CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
     s = np.linspace(0, 6, SECTIONS + 3)
     kinked = replace(
         PARK,

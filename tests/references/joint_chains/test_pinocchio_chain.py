@@ -13,7 +13,7 @@ from southwell.core.blade import Blade, without_rotary_inertia
 from southwell.core.element.discretize import discretize
 from southwell.core.modes import STATIONS
 from southwell.references.joint_chains import pinocchio as pinocchio_chain
-from southwell.references.joint_chains.pinocchio import CODE, MOST
+from southwell.references.joint_chains.pinocchio import CODE, MAX_ELEMENTS
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, A, E, I, curved, tapered, yoo_shin
 
@@ -182,8 +182,8 @@ def test_a_load_that_no_steady_state_carries_says_how_far_it_went() -> None:
 
 
 def test_refuses_what_it_cannot_hold() -> None:
-    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
-        CODE.solve(PARK, 10.0, MOST + 1, 4)
+    with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
+        CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
 
 
 def test_takes_every_blade_of_these_tests() -> None:
