@@ -19,6 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .blade_checks import ROOT_TOLERANCE, BladeError, check
+from .space.inertia import about_centre
+from .space.spatial import skew
 
 Array = NDArray[np.float64]
 
@@ -246,6 +248,6 @@ def uniform(blade: Blade) -> bool:
 def without_rotary_inertia(blade: Blade) -> Blade:
     """The same blade with its mass at the sections' mass centres: no moments of inertia about those."""
     mass = blade.mass.copy()
-    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m c×
-    mass[:, 3:, 3:] = -moment @ moment / mass[:, :1, :1]
+    m, centre, _ = about_centre(mass)
+    mass[:, 3:, 3:] = -m[:, None, None] * skew(centre) @ skew(centre)
     return replace(blade, mass=mass)

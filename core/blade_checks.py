@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from . import curve
-from .space import spatial as sp
+from . import curve, gauss
+from .space.inertia import about_centre
 
 if TYPE_CHECKING:
     from .blade import Blade
@@ -150,11 +150,9 @@ def _curve(blade: "Blade") -> None:
 
 def lengths(s: Array, r: Array, kinks: tuple[float, ...] = ()) -> Array:
     """∫ |r′| ds (n−1,) between stations ``s`` (n,) of the spline through points ``r`` (n, 3), m."""
-    node, weight = np.polynomial.legendre.leggauss(GAUSS)
-    step = np.diff(s)
-    inside = s[:-1, None] + step[:, None] * (node + 1) / 2
+    inside, weight = gauss.between(s, GAUSS)
     _, rate = curve.at(s, r, kinks, inside.ravel())
-    return np.linalg.norm(rate, axis=1).reshape(inside.shape) @ weight / 2 * step
+    return (np.linalg.norm(rate, axis=1).reshape(inside.shape) * weight).sum(1)
 
 
 def follows(s: Array, r: Array) -> bool:
@@ -268,11 +266,10 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: mass times the centre's "
             "offset has opposite signs there, and zeros on the diagonal; wrong sign or order of rows? correct them"
         )
-    first = 0.5 * np.array([moment[1, 2] - moment[2, 1], moment[2, 0] - moment[0, 2], moment[0, 1] - moment[1, 0]])
-    cross = sp.skew(first / m) if m else np.zeros((3, 3))
-    least, middle, most = np.linalg.eigvalsh(J + m * cross @ cross)
+    _, centre, moments = about_centre(matrix)
+    least, middle, most = np.linalg.eigvalsh(moments)
     rounding = INERTIA_TOLERANCE * np.trace(J)
-    if least < -rounding or (m * np.abs(cross).max() ** 2 > 1e-12 * scale and not np.trace(J)):
+    if least < -rounding or (m * np.abs(centre).max() ** 2 > 1e-12 * scale and not np.trace(J)):
         return (
             f"moments of inertia about the mass centre reach down to {least:.3g}: less than none; are those given about the "
             "mass centre? they are about the reference point, m d² included"

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from . import curve
+from . import curve, gauss
 from .blade import Blade, mass_at
 from .element.sections import frames, root
 from .modes import STATIONS, Modes
-from .space import spatial as sp
+from .space.inertia import about_centre
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -103,10 +103,8 @@ def _quadrature(blade: Blade) -> tuple[Array, Array]:
     """Points and weights between the blade's stations and the common ones; the tip is the last point, without a weight."""
     ends = np.unique(np.concatenate([blade.stations, STATIONS * blade.length]))
     ends = ends[np.append(True, np.diff(ends) > 1e-9 * blade.length)]
-    x, w = np.polynomial.legendre.leggauss(_GAUSS)
-    h = np.diff(ends)
-    s = (ends[:-1, None] + 0.5 * h[:, None] * (1.0 + x)).ravel()
-    return np.append(s, blade.length), (0.5 * h[:, None] * w).ravel()
+    s, weight = gauss.between(ends, _GAUSS)
+    return np.append(s, blade.length), weight.ravel()
 
 
 def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Complex, Complex]:
@@ -153,10 +151,5 @@ def _smooth_motion(
 
 def _about_centre(mass: Array, section: Array) -> tuple[Array, Array]:
     """Mass centre (k, 3) from the reference point and inertia (k, 3, 3) about it, hub axes, from 6×6 in ``section`` axes."""
-    m = mass[:, 0, 0]
-    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m skew(centre)
-    first = np.stack([moment[:, 2, 1], moment[:, 0, 2], moment[:, 1, 0]], axis=-1)
-    centre = np.divide(first, m[:, None], out=np.zeros_like(first), where=m[:, None] > 0)
-    cross = sp.skew(centre)
-    own = mass[:, 3:, 3:] + m[:, None, None] * cross @ cross
+    _, centre, own = about_centre(mass)
     return np.einsum("sij,sj->si", section, centre), section @ own @ np.swapaxes(section, -1, -2)

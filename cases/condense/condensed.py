@@ -11,6 +11,7 @@ from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
+from ...core.space.inertia import about_centre
 from ..input.errors import NO_STATE, CaseError, unsteady
 
 Array = NDArray[np.float64]
@@ -63,10 +64,8 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
 
 def body(s: Segment) -> tuple[float, Array, Array]:
     """A segment's mass, its centre (3,) in frame a, and its moments of inertia (3, 3) about the centre."""
-    mass = float(s.inertia[0, 0])
-    first = s.inertia[3:, :3] / mass  # skew(centre)
-    centre = np.array([first[2, 1], first[0, 2], first[1, 0]])
-    return mass, centre, s.inertia[3:, 3:] - mass * first @ first.T
+    mass, centre, moments = about_centre(s.inertia)
+    return float(mass), centre, moments
 
 
 def write(path: Path, blade: Condensed) -> None:
@@ -77,7 +76,7 @@ def write(path: Path, blade: Condensed) -> None:
 
 
 class _Piece(msgspec.Struct, forbid_unknown_fields=True):
-    rest: list[list[float]]
+    undeformed: list[list[float]]
     stiffness: list[list[float]]
     inertia: list[list[float]]
     ride: list[list[float]]

@@ -20,6 +20,7 @@ from ..element.discretize import Chain
 from ..element.measures import even
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
+from ..space.inertia import about_centre, transformed
 from .segments import Segment
 from .ties import CondensationError
 
@@ -75,11 +76,8 @@ def chain_modes(
 
 def _centred(inertia: Array) -> tuple[Array, Array]:
     """Poses (n, 4, 4) of the centres of mass, parallel to the frames, and the inertias (n, 6, 6) about them."""
-    first = inertia[:, 3:, :3] / inertia[:, :1, :1]  # skew(c)
-    centre = np.stack([first[:, 2, 1], first[:, 0, 2], first[:, 1, 0]], axis=1)
-    poses = sp.pose(np.eye(3), centre)
-    lever = sp.adjoint(poses)
-    return poses, np.swapaxes(lever, -1, -2) @ inertia @ lever
+    poses = sp.pose(np.eye(3), about_centre(inertia)[1])
+    return poses, transformed(inertia, sp.inverse(poses))
 
 
 def _samples(undeformed: Array) -> Points:

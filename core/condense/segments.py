@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..element import sections
-from ..element.inertia import transformed
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from . import ties
 from .ties import CondensationError
 

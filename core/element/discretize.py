@@ -10,10 +10,10 @@ from .. import curve
 from ..blade import Blade, clamped, mass_at
 from ..modes import STATIONS
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from . import beams as bm
 from . import sections
 from .beams import Beams, Points
-from .inertia import transformed
 from .measures import Measure, StrainLaw, even, joined
 from .sections import StaticSolution
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..compiled import apply, compiled, product
 from ..space import rigid
-from ..space import spatial as sp
 
 Array = NDArray[np.float64]
 
@@ -76,9 +75,3 @@ def carried(mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g
         rigid.ad(frame[k], turn)
         carry(mass[k], frame[k], turn, fall[k], g[k], C[k], K[k])
         hold_components(g[k], push[k], follow, K[k])
-
-
-def transformed(mass: Array, x: Array) -> Array:
-    """Inertias (n, 6, 6) given in frames ``x`` (n, 4, 4), expressed in the frame the poses are given in."""
-    a = sp.adjoint(sp.inverse(x))
-    return np.swapaxes(a, -1, -2) @ mass @ a

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import curve
+from .. import curve, gauss
 from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, stiffness_at, straight, twist_at
 from ..space import spatial as sp
 
@@ -121,10 +121,9 @@ def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadr
     """Gauss points between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
     ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
-    c, b, _ = collocation(GAUSS)
     h = np.diff(ends)
     element = np.searchsorted(nodes, ends[:-1] + 0.5 * h, side="right") - 1
-    return Quadrature(ends[:-1], h, element, ends[:-1, None] + h[:, None] * c, h[:, None] * b)
+    return Quadrature(ends[:-1], h, element, *gauss.between(ends, GAUSS))
 
 
 def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:
@@ -245,9 +244,8 @@ def _unit_stiffness(work: Array) -> Array:
 @lru_cache
 def collocation(n: int) -> tuple[Array, Array, Array]:
     """Gauss points c and weights b on [0, 1], and the matrix ∫₀^{c_q} ℓ_j of their Lagrange polynomials."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    c = 0.5 * (x + 1.0)
-    return c, 0.5 * w, _up_to(c, c)
+    c, b = gauss.rule(n)
+    return c, b, _up_to(c, c)
 
 
 def partial_weights(n: int, x: Array) -> Array:

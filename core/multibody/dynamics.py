@@ -15,6 +15,7 @@ from ..element.beams import Pencil, on_ends
 from ..element.beams import pencil as beam_pencil
 from ..element.measures import response
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from .kinematics import Kinematics
 from .mechanism import Load, MechanismError, Spring
 from .tree import Batch, Tree
@@ -108,8 +109,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
 
 def inertias(tree: Tree, k: Kinematics) -> Array:
     """(b, 6, 6) inertias of the bodies at the ground's origin, in its axes."""
-    a = sp.adjoint(sp.inverse(k.poses))
-    return np.swapaxes(a, -1, -2) @ tree.inertia @ a
+    return transformed(tree.inertia, k.poses)
 
 
 def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..blade_checks import body_fault
 from ..element.beams import Beams
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from .joints import SCREWS, Joint
 from .motion import Motion, MotionLaw, instant
 
@@ -46,8 +47,7 @@ def inertia(mass: float, moments: ArrayLike = 0.0, centre: ArrayLike = (0.0, 0.0
     out = np.zeros((6, 6))
     out[:3, :3] = mass * np.eye(3)
     out[3:, 3:] = tensor
-    shift = sp.adjoint(sp.inverse(sp.pose(np.eye(3), np.asarray(centre, float))))
-    return shift.T @ out @ shift
+    return transformed(out, sp.pose(np.eye(3), np.asarray(centre, float)))
 
 
 @dataclass(frozen=True)

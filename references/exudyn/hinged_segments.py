@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core import gauss
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at, stiffness_at, twist_at
 from ...core.space.spatial import rotation, skew
 
@@ -76,7 +77,7 @@ def plant(blade: Blade, elements: int) -> Tree:
 
 def _hinges(blade: Blade, ends: Array) -> tuple[Array, Array]:
     """Where each element's bending compliance has its centroid (e,), and its stiffness as a whole (e, 6), ``1/∫ ds/k``."""
-    s, weight = _gauss(np.union1d(ends, blade.stations))
+    s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
     compliance = weight[:, None] / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)
     element = np.searchsorted(ends, s) - 1
     total, moment = np.zeros((len(ends) - 1, 6)), np.zeros((len(ends) - 1, 6))
@@ -89,7 +90,8 @@ def _hinges(blade: Blade, ends: Array) -> tuple[Array, Array]:
 
 def _segments(blade: Blade, hinges: Array) -> tuple[Array, Array, Array]:
     """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of what each hinge carries up to the next, or the tip."""
-    s, weight = _gauss(np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]]))
+    ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
+    s, weight = (part.ravel() for part in gauss.between(ends, 3))
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1
@@ -104,10 +106,3 @@ def _segments(blade: Blade, hinges: Array) -> tuple[Array, Array, Array]:
     mass, first, second = sums
     centre = first / mass[:, None, None]
     return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
-
-
-def _gauss(ends: Array) -> tuple[Array, Array]:
-    """Points and weights of three-point Gauss quadrature on each interval between ``ends``."""
-    x, w = np.polynomial.legendre.leggauss(3)
-    half = 0.5 * np.diff(ends)[:, None]
-    return (ends[:-1, None] + half * (x + 1.0)).ravel(), (half * w).ravel()

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ...core.multibody.joints import SCREWS
 from ...core.multibody.tree import Tree
 from ...core.space import spatial as sp
+from ...core.space.inertia import about_centre
 from . import system as ex
 
 Array = NDArray[np.float64]
@@ -125,11 +126,7 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
         if 0 <= link < n:
             a = sp.adjoint(sp.inverse(sp.inverse(turned[link]) @ pose))
             inertia[link] += a.T @ mass @ a
-    mass = inertia[:, 0, 0]
-    first = inertia[:, 3:, :3]  # m c ×
-    weight = np.where(mass > 0, mass, 1.0)[:, None]
-    centre = np.stack([first[:, 2, 1], first[:, 0, 2], first[:, 1, 0]], axis=-1) / weight
-    arm = sp.skew(centre)
+    mass, centre, moments = about_centre(inertia)
     spring, damper, neutral = np.zeros(n), np.zeros(n), np.zeros(n)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
@@ -154,7 +151,7 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
             jointOffsets=exu.Vector3DList([x[:3, 3] for x in steps]),
             linkMasses=mass,
             linkCOMs=exu.Vector3DList(list(centre)),
-            linkInertiasCOM=exu.Matrix3DList(list(inertia[:, 3:, 3:] + mass[:, None, None] * arm @ arm)),
+            linkInertiasCOM=exu.Matrix3DList(list(moments)),
             jointPControlVector=spring,
             jointDControlVector=damper,
             jointPositionOffsetVector=neutral,

@@ -18,9 +18,9 @@ from scipy.linalg import block_diag
 from ...core import curve
 from ...core.blade import Blade, clamped
 from ...core.element.discretize import Chain, discretize, divide
-from ...core.element.inertia import transformed
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
+from ...core.space.inertia import about_centre, transformed
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
 
@@ -125,7 +125,8 @@ def bodies(chain: Chain) -> Array:
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:
     """Mass, centre (3,) and moments of inertia about the node (3, 3) of a rigid body's inertia (6, 6)."""
-    return float(lump[0, 0]), lump[[1, 2, 0], [5, 3, 4]] / lump[0, 0], lump[3:, 3:]
+    mass, centre, _ = about_centre(lump)
+    return float(mass), centre, lump[3:, 3:]
 
 
 def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...core.condense.segments import Segment
+from ...core.space.inertia import about_centre
 from ...references.solid.mesh import Bricks
 from ..shared.style import COLOURS, INK, MUTED, house
 
@@ -98,13 +99,10 @@ def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], 
 
 def _box(inertia: Array) -> Array:
     """(8, 3) corners, in the frame of ``inertia``, of the cuboid that has it: a² = 6 (I_b + I_c − I_a)/m, and so on."""
-    mass = inertia[0, 0]
-    lever = inertia[3:, :3] / mass
-    about_centre = inertia[3:, 3:] - mass * lever @ lever.T
-    moments, axes = np.linalg.eigh(about_centre)
+    mass, centre, tensor = about_centre(inertia)
+    moments, axes = np.linalg.eigh(tensor)
     sides = np.sqrt(6.0 * np.maximum(moments.sum() - 2.0 * moments, 0.0) / mass)
     sides[np.abs(axes[0]).argmax()] *= SHORTENED
-    centre = np.array([lever[2, 1], lever[0, 2], lever[1, 0]])
     return centre + (CUBE * sides) @ axes.T
 
 
