@@ -24,7 +24,7 @@ SLIDE, TURN = (AXIAL, SHEAR_Y, SHEAR_Z), (TORSION, BEND_Z, BEND_Y)
 
 
 @dataclass(frozen=True)
-class Tree:
+class HingedSegments:
     """The links after the hub, a joint each, in order; the frames of a joint at rest differ by an offset, then a turn.
 
     Attributes:
@@ -47,7 +47,7 @@ class Tree:
     reach: Array
 
 
-def plant(blade: Blade, elements: int) -> Tree:
+def plant(blade: Blade, elements: int) -> HingedSegments:
     """A blade as a tree of ``elements`` equal elements."""
     ends = np.linspace(0.0, blade.length, elements + 1)
     hinges, stiff = _hinges(blade, ends)
@@ -62,7 +62,7 @@ def plant(blade: Blade, elements: int) -> Tree:
     axes[:, 0] = rotation(0, np.diff(twist_at(blade, hinges), prepend=-blade.pitch))
     axes[0, 0] = cone @ axes[0, 0]
     mass, centre, inertia = _segments(blade, hinges)
-    return Tree(
+    return HingedSegments(
         strain=np.tile(hinge, elements),
         stiffness=(stiff[:, hinge] * np.where(np.isin(hinge, slide), 2.0, 1.0)).ravel(),
         offset=offset.reshape(-1, 3),

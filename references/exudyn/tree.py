@@ -21,7 +21,7 @@ from ...core.space.spatial import rotation
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
-from .hinged_segments import SLIDE, TURN, Tree, plant
+from .hinged_segments import SLIDE, TURN, HingedSegments, plant
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class ExudynTree:
         return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
 
 
-def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
+def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
     """M, C, K (n, n) about the steady state at ``omega``, and the joints' coordinates (n,) there.
 
     The hub is a turning link whose angle is held and whose rate is given; being prescribed, it has no row.
@@ -116,7 +116,7 @@ def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 
-def jacobian(tree: Tree, q: Array, point: Array) -> Array:
+def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
     """(e, 6, n): velocity of the point at ``point`` (m) along each segment and its angular velocity, per joint rate.
 
     In the axes of the first link's parent, with the joints at ``q`` (n,).
@@ -143,7 +143,7 @@ def jacobian(tree: Tree, q: Array, point: Array) -> Array:
     return out
 
 
-def _shapes(blade: Blade, tree: Tree, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _shapes(blade: Blade, tree: HingedSegments, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) at the common stations: a spline through the elements' ends, level at the root across the blade."""
     moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
     cone = rotation(1, np.array(-blade.precone))

@@ -9,6 +9,8 @@ the model is right.
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import metadata
 from typing import Protocol, cast
 
 import numpy as np
@@ -17,11 +19,12 @@ from scipy.linalg import block_diag
 
 from ...core import curve
 from ...core.blade import Blade, clamped
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Chain, discretize, divide
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
-from ..protocol.interface import CodeError
+from ..protocol.interface import CORE, CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 
 Array = NDArray[np.float64]
@@ -61,36 +64,73 @@ class Plant(Protocol):
         ...
 
 
-def refusal(blade: Blade) -> str | None:
-    """Why a blade is not such a chain: its root moves."""
-    return None if clamped(blade) else "the root is not clamped: the chain begins at the hub"
+@dataclass(frozen=True)
+class JointChain:
+    """A code that solves core's lumped discretisation as a chain of joints; see ``interface.Code``.
 
+    It takes every blade that core can discretise, coupled and curved ones too, if the root is clamped.
 
-def chain_modes(
-    blade: Blade, omega: float, elements: int, count: int, most: int, plant: Callable[[Chain], Plant]
-) -> Modes:
-    """The lowest modes; see ``interface.Code``.
-
-    Raises:
-        CodeError: an unsupported blade, more than ``most`` elements, or no stable steady state at this speed.
+    Attributes:
+        name, title, hint: see ``interface.Code``.
+        engine: the code's name in its declaration of independence.
+        distribution: the installed package whose version counts.
+        max_elements: more take too much of the code's time or memory.
+        plant: makes the chain in the code.
     """
-    if reason := refusal(blade):
-        raise CodeError(f"{blade.name}: {reason}")
-    if elements > most:
-        raise CodeError(f"elements: {elements}: the code's time or memory grows as their cube; at most {most}")
-    begun = time.perf_counter()
-    chain = discretize(blade, elements, "half_end", "parent")
-    body = plant(chain)
-    elastic = cast(Array, block_diag(*chain.beams.stiffness))
-    q, before = steady(body, elastic, omega, chain)
-    _, stiffness, gyroscopic = body.inertial(q, omega)
-    mass = body.mass(q)
-    frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
-    error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
-    at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
-    shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
-    seconds = time.perf_counter() - begun
-    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error, seconds=seconds)
+
+    name: str
+    title: str
+    hint: str
+    engine: str
+    distribution: str
+    max_elements: int
+    plant: Callable[[Chain], Plant]
+    shares: Shares = "discretisation"
+    effects: Effects = ALL_EFFECTS
+    levels: tuple[int, ...] = (10, 20, 40)
+    order: int = 2
+
+    @property
+    def independence(self) -> Independence:
+        """Equations of motion by the code, everything else by core."""
+        return Independence(self.engine, CORE, self.engine, sections=CORE)
+
+    def version(self) -> str | None:
+        """Version of the code, without importing it."""
+        try:
+            return metadata.version(self.distribution)
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped."""
+        return None if clamped(blade) else "the root is not clamped: the chain begins at the hub"
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, more than ``max_elements`` elements, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        if elements > self.max_elements:
+            raise CodeError(
+                f"elements: {elements}: the code's time or memory grows as their cube; at most {self.max_elements}"
+            )
+        begun = time.perf_counter()
+        chain = discretize(blade, elements, "half_end", "parent")
+        body = self.plant(chain)
+        elastic = cast(Array, block_diag(*chain.beams.stiffness))
+        q, before = steady(body, elastic, omega, chain)
+        _, stiffness, gyroscopic = body.inertial(q, omega)
+        mass = body.mass(q)
+        frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
+        error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
+        at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
+        shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
+        seconds = time.perf_counter() - begun
+        return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error, seconds=seconds)
 
 
 def rounding(
