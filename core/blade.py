@@ -1,6 +1,6 @@
-"""The one description of a blade that every code is given.
+"""The description of a blade that every code receives.
 
-Axes, stated here once and converted by every adapter at its own door (right-handed, all rotating with the hub):
+Axes, defined here and converted by each adapter (right-handed, all rotating with the hub):
 
 * ``x`` runs along the blade, from the hub's centre outwards;
 * ``z`` is the rotor's axis: the rotor turns at ``omega`` about ``+z``;
@@ -46,12 +46,12 @@ class Blade:
         pitch: rad, the whole blade rotated about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
         root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
-            N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring.
-        kinks: those of the inner stations where the curve's tangent jumps, m: each piece between them has a spline of its own,
-            and the sections turn with the tangent. A piece of two stations is straight.
+            N/m and N m/rad: ``inf`` clamps (the default for all six), 0 is free, any other number is a spring.
+        kinks: inner stations where the curve's tangent jumps, m: each piece between them has its own spline, and the sections
+            rotate with the tangent. A piece of two stations is straight.
 
     Raises:
-        BladeError: what cannot be; see ``blade_checks``. A first station within rounding of 0 is made 0.
+        BladeError: invalid data; see ``blade_checks``. A first station within rounding of 0 is set to 0.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Blade:
 
 
 def _on_stations(blade: Blade) -> tuple[float, ...]:
-    """The kinks, each on its station to the last digit where it is one within rounding."""
+    """The kinks, each moved to the station that it equals within rounding."""
     s = blade.stations
     if s.ndim != 1 or not len(s):
         return ()
@@ -246,7 +246,7 @@ def uniform(blade: Blade) -> bool:
 
 
 def without_rotary_inertia(blade: Blade) -> Blade:
-    """The same blade with its mass at the sections' mass centres: no moments of inertia about those."""
+    """Copy of a blade without moments of inertia about the mass centres of its sections."""
     mass = blade.mass.copy()
     m, centre, _ = about_centre(mass)
     mass[:, 3:, 3:] = -m[:, None, None] * skew(centre) @ skew(centre)

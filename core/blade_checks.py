@@ -1,6 +1,6 @@
-"""What a blade must be: a curve with the arc length of its stations, sections that resist, bodies that can exist.
+"""Validation of a blade: arc length of the curve, positive definite sections, physically possible inertias.
 
-Tolerances admit the rounding of published files and no more; each is stated where it is used.
+The tolerances admit the rounding of published files.
 """
 
 from typing import TYPE_CHECKING
@@ -17,29 +17,29 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ROOT_TOLERANCE = 1e-9
-"""Of the length: a first station this near to 0 is the root."""
+"""Fraction of the length within which the first station counts as 0."""
 
 MAX_ROOT_OFFSET = 0.2
-"""Of the length: how far beside the root the reference curve may begin."""
+"""Largest distance of the curve's first point from the x axis, as a fraction of the length."""
 
 ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
-"""How much longer or shorter than the stations say the curve may be between two of them: of that length, and of the blade's.
+"""Largest difference between the length of the curve and the stations: fractions of the interval and of the blade's length.
 
-The second admits coordinates rounded to millimetres. A spline is longer by half its mean square angle to the curve it should
-follow: 1.1° is 2e-4. A smooth curve with points every 15° keeps within this; of a kink of 3° between few points it does not.
+The second admits coordinates rounded to millimetres. A spline is too long by half its mean square angle to the true curve:
+1.1° gives 2e-4. A smooth curve with a point every 15° passes; an undeclared kink of 3° between few points does not.
 """
 
 SWING_REACH = 3
-"""How many stations away the corner may be about which a spline swings."""
+"""Number of stations over which a spline oscillates about a corner."""
 
 MIN_TANGENT_X = -0.9
-"""Least x component of the tangent: sections are swung from the blade's axes to it, which is not defined for −1."""
+"""Least x component of the tangent: the rotation from the x axis to the tangent is undefined at −1."""
 
 MASS_TOLERANCE, INERTIA_TOLERANCE = 1e-4, 1e-2
-"""Departure of a mass matrix from a rigid body's: of its mass, of its moments of inertia (published ones are rounded)."""
+"""Largest deviation of a mass matrix from that of a rigid body, relative to its mass and to its moments of inertia."""
 
 SYMMETRY_TOLERANCE = 1e-9
-"""Departure from symmetry, of a unit diagonal."""
+"""Largest asymmetry of a matrix scaled to a unit diagonal."""
 
 STRAINS = ("axial", "shear y", "shear z", "torsion", "bending about y", "bending about z")
 
@@ -47,11 +47,11 @@ GAUSS = 8
 
 
 class BladeError(ValueError):
-    """A blade that cannot be: the message names the field, the value, the likely cause and the remedy."""
+    """An invalid blade: the message names the field, the value, the likely cause and the remedy."""
 
 
 def check(blade: "Blade") -> None:
-    """Refuse a blade that cannot be.
+    """Validate a blade.
 
     Raises:
         BladeError: naming the field, where along the blade, the value, the likely cause and the remedy.
@@ -75,7 +75,7 @@ def _arrays(blade: "Blade") -> None:
     for name, shape in shapes.items():
         value = getattr(blade, name)
         if value.shape != shape:
-            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
+            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry per station is needed")
         finite = ~np.isnan(value) if name in ("stiffness", "root") else np.isfinite(value)
         if not finite.all():
             where = np.argwhere(~finite)[0].tolist()
@@ -117,7 +117,7 @@ def _kinks(blade: "Blade") -> None:
 
 
 def _curve(blade: "Blade") -> None:
-    """|r′(s)| = 1: the spline through the points must have the arc length that the stations say, from a point at the root."""
+    """Check that the curve begins at the root and that its arc length is that of the stations, |r′(s)| = 1."""
     s, r, length = blade.stations, blade.curve, blade.length
     x, *beside = np.abs(r[0])
     if x > COORDINATE_ROUNDING * length or np.hypot(*beside) > MAX_ROOT_OFFSET * length:
@@ -156,12 +156,12 @@ def lengths(s: Array, r: Array, kinks: tuple[float, ...] = ()) -> Array:
 
 
 def follows(s: Array, r: Array) -> bool:
-    """Whether a spline through points ``r`` (n, 3) has the arc length that stations ``s`` (n,) say, as a blade's must."""
+    """Whether the spline through points ``r`` (n, 3), m, has the arc lengths ``s`` (n,), m, as ``check`` requires."""
     return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC_TOLERANCE * np.diff(s) + COORDINATE_ROUNDING * s[-1]).all())
 
 
 def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array) -> str:
-    """What to say of a spline whose length between stations k and k + 1 is not the arc length there."""
+    """Message for a spline whose length between stations k and k + 1 differs from their distance."""
     s = blade.stations
     step, found = s[k + 1] - s[k], f"curve: between {s[k]:g} m and {s[k + 1]:g} m"
     along = np.diff(blade.curve, axis=0) / chord[:, None]
@@ -224,7 +224,7 @@ def _stiffness(blade: "Blade") -> None:
 
 
 def body_fault(matrix: Array, unit: str) -> str | None:
-    """Why an inertia (6, 6) about a point is no rigid body's, or a slice's: cause and remedy; None if it is one.
+    """Why an inertia (6, 6) is not that of a rigid body or a slice of one: cause and remedy; None if it is.
 
     It must be ``[[m, −m c×], [m c×, J]]``, one mass m ≥ 0 in all directions, and the moments of inertia about the mass centre,
     ``J + m c× c×``, must be those of a distribution of mass: none negative, none larger than the two others together.

@@ -45,7 +45,7 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     _check_finite(M, C, K)
     k, m = np.diagonal(K), np.diagonal(M)
     usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
-    if (k <= 1e-14 * usual * m).any():  # a coordinate that nothing holds, but for rounding
+    if (k <= 1e-14 * usual * m).any():  # a coordinate without stiffness, but for rounding
         raise unstable()
     scale = 1.0 / np.sqrt(np.diagonal(K))  # coordinates of unlike units made alike
     M, C, K = (scale[:, None] * a * scale for a in (M, C, K))
@@ -144,17 +144,17 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
 def _check_finite(*matrices: Array) -> None:
     if not all(np.isfinite(a).all() for a in matrices):
         raise EigenError(
-            "eigenvalues: the matrices are not finite: a mass, stiffness or speed is out of all proportion"
+            "eigenvalues: the matrices are not finite: an implausibly large mass, stiffness or speed; check units"
         )
 
 
 def _failed(error: Exception) -> EigenError:
-    return EigenError(f"eigenvalues: LAPACK did not converge ({error}): check for values out of all proportion")
+    return EigenError(f"eigenvalues: LAPACK did not converge ({error}): check the units for implausible magnitudes")
 
 
 def unstable() -> UnstableError:
-    """What to raise where a Cholesky factorisation of K fails."""
+    """The error for a failed Cholesky factorisation of K."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: too few elements for a blade that soft (a cable), "
+        "the stiffness about the steady state is not positive definite: too few elements for a very soft blade (a cable), "
         "or the centrifugal force outgrows the stiffness; check units"
     )

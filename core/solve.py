@@ -66,7 +66,7 @@ def modes(
         accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given; ``AccuracyWarning`` where
             ``MAX_ELEMENTS`` elements, or rounding, do not allow it.
         mass: ``consistent`` (fourth order) or ``half_end`` (lumped, Park et al. 2010; second order).
-        stiffness: ``corotational``, or ``parent``: linear in the parent body's frame (Park et al. 2010).
+        stiffness: ``corotational``, or ``body_fixed``: linear in the parent body's frame (Park et al. 2010).
         effects: physical effects kept.
         gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
         load: (n, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them.

@@ -66,7 +66,7 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
     elements: Annotated[int, Meta(ge=1, description="number of elements")]
     mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]
     stiffness: Annotated[
-        Literal["corotational", "parent"], Meta(description="the frame the beam's stiffness is linear in")
+        Literal["corotational", "body_fixed"], Meta(description="the frame the beam's stiffness is linear in")
     ]
     lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the source leaves out")] = ()
     tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()

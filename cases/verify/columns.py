@@ -176,7 +176,7 @@ def _same(head: Head, name: str, blade: Blade, elements: int, model: Effects, ti
     runs = [(omega, elements, r.core.count) for omega, r in core]
     theirs = answers(name, blade, runs, timeout)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
-    mine, *again = (core_solver.answers(b, runs, "half_end", "parent", model) for b in (blade, *scaled))
+    mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", model) for b in (blade, *scaled))
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
     rows = zip(core, theirs, mine, noises, strict=True)
     return _join(same(head, omega, r, a, b, noise) for (omega, r), a, b, noise in rows)

@@ -57,14 +57,16 @@ def answers(
     runs: Sequence[Run],
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Effects = ALL_EFFECTS,
+    effects: Effects = ALL_EFFECTS,
     by: Solver | None = None,
 ) -> list[Answer]:
     """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         try:
-            out.append((by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+            out.append(
+                (by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
+            )
         except NO_STATE as error:
             out.append(Failure("refused", str(error)))
     return out
@@ -111,7 +113,7 @@ def _converged(
     blade: Blade, omega: float, compare: Compare, model: Effects, weight: Array, count: int
 ) -> Converged | Failure:
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, model=model)
+        return answers(blade, runs, effects=model)
 
     def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
         finest = aligned(solved[-1], weight)

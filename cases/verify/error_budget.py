@@ -43,8 +43,8 @@ SHEAR = 5 / 6 / (2 * (1 + 0.3))
 
 WAYS: dict[str, tuple[Mass, Measure]] = {
     "lumped mass": ("half_end", "corotational"),
-    "parent's frame": ("consistent", "parent"),
-    "both": ("half_end", "parent"),
+    "parent's frame": ("consistent", "body_fixed"),
+    "both": ("half_end", "body_fixed"),
     "neither": ("consistent", "corotational"),
 }
 """Ways to discretise."""

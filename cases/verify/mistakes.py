@@ -139,7 +139,7 @@ def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) 
     return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
 
 
-LUMPED: tuple[Mass, Measure] = ("half_end", "parent")
+LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
 """The paper's discretisation, whose end weight the last mistake gets wrong; its 50 elements are divided as the others."""
 
 

@@ -12,16 +12,17 @@ from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_MAX_OVERLAP, _MAX_PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
+_MAX_OVERLAP, _MAX_PASSES = 1e-8, 3  # tolerated overlap with the basis; orthogonalisation passes
 
 
 class Operator(NamedTuple):
-    """A⁻¹S of A = diag(K, M) and S = [[C, M], [−M, 0]].
+    """The operator A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]].
 
     Attributes:
-        factor: of K.
-        exact: K, to refine solutions with, and for products where that is needed.
-        refinements: how often; 0: not needed.
+        M, C, K: transposed block-tridiagonal matrices.
+        factor: LU factors of K.
+        exact: K by way of the element strains, for iterative refinement.
+        refinements: number of refinement steps for each solution.
     """
 
     M: Transposed
@@ -34,7 +35,7 @@ class Operator(NamedTuple):
 
 @compiled
 def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
-    """Relative error of a solution with K, in the norm of its energy: of M x of the first of the rows v (k, 2n)."""
+    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2
     force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
     blocks.times(M, v[:1], force)
@@ -105,15 +106,15 @@ def _dual(a: Operator, w: Array, My: Array) -> Array:
 def extend(
     a: Operator, w: Array, basis: Array, projected: Array, size: int, before: int, look: int
 ) -> tuple[Array, Array, int, int, bool]:
-    """Take steps until the basis has ``look`` vectors, or cannot grow.
+    """Take block Lanczos steps until the basis has ``look`` vectors or cannot grow.
 
     Args:
         a: the operator.
-        w: (k, 2n) what the last step gave; changed.
-        basis: (limit, 2n), whose first ``size`` rows are filled, the last step's from ``before`` on; filled further.
+        w: (k, 2n) result of the last step; changed.
+        basis: (limit, 2n), of which ``size`` rows are filled, those of the last step from ``before`` on; filled further.
         projected: (limit, limit) the operator on the basis, zero beyond what is filled; filled further.
-        size, before: see there; both 0 to begin with.
-        look: how many vectors are wanted.
+        size, before: see ``basis``; both 0 at the start.
+        look: number of vectors wanted.
 
     Returns:
         w orthogonal to the basis, its Gram matrix (k, k), size and before as they are now, and whether the basis is exhausted.

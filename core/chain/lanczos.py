@@ -21,11 +21,8 @@ from .pencil import ChainPencil
 Array = NDArray[np.float64]
 
 _VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
-_SOLVE_TOLERANCE, _MAX_REFINEMENTS, _MAX_SOLVE_ERROR = (
-    1e-8,
-    20,
-    0.3,
-)  # relative error of a solution with K that is let be, the most steps to get there, and of the first
+_SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
+_MAX_SOLVE_ERROR = 0.3  # of a solution without refinement: beyond, K is lost to rounding
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
 _EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
@@ -70,7 +67,7 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
     while True:
         w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
         if not size:
-            raise EigensolverError("stiffness and mass are out of all proportion: check their units")
+            raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         look = size + _LOOK_EVERY
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)

@@ -48,7 +48,7 @@ class ChainPencil:
 
     @cached_property
     def K(self) -> Tridiagonal:
-        """The whole stiffness."""
+        """The complete stiffness."""
         on_b = np.swapaxes(self.lever, -1, -2) @ self.spring
         diagonal, upper, lower = (
             self.remainder.diagonal.copy(),
@@ -63,12 +63,12 @@ class ChainPencil:
 
     @cached_property
     def factor(self) -> Factor:
-        """Of the whole stiffness; ``numpy.linalg.LinAlgError`` if it is singular."""
+        """LU factors of K; ``numpy.linalg.LinAlgError`` if it is singular."""
         return blocks.factor(self.K)
 
     @property
     def strained(self) -> Strained:
-        """The whole stiffness, for products without loss of digits."""
+        """K for products without cancellation; see ``strained``."""
         clamped = self.clamped if self.clamped.size else np.zeros((6, 6))
         return Strained(blocks.transposed(self.remainder), self.spring, self.lever, clamped)
 

@@ -77,7 +77,7 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
         X = np.full_like(B, np.nan)
     if not np.abs(A @ X + B).max(initial=0.0) <= 1e-6 * np.abs(B).max(initial=0.0):
         raise CondensationError(
-            f"{model.name}: nothing holds some of its {n} freedoms once the sections' frames are fixed: "
+            f"{model.name}: unsupported freedoms among its {n} once the sections' frames are fixed: "
             "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
         )
     displacements = follow.copy()

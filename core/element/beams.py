@@ -1,9 +1,9 @@
-"""Beam elements with mass: elastic between their end frames, inertia at points that ride on both ends.
+"""Beam elements with mass: elastic between their end frames, with inertia at points that follow both ends.
 
-A point inside an element sits at ``exp ζ`` in the frame of end a, with ``ζ = ζ₀ + L (η − η₀)`` and η the logarithm of the
-relative pose of b: the undeformed element's static shape functions, kept in the coordinates in which an arc is straight.
-Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so its inertia couples both ends: a consistent mass. With the
-mass lumped at the nodes there are no such points.
+A point inside an element lies at ``exp ζ`` in the frame of end a, where ``ζ = ζ₀ + L (η − η₀)`` and η is the logarithm of the
+relative pose of b: the static shape functions L of the undeformed element, in the coordinates in which an arc is straight.
+Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so that its inertia couples both ends: a consistent mass. An
+element whose mass is lumped at the nodes has no such points.
 """
 
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Points:
-    """Points riding on the elements' ends, sorted by element; those with mass as many on each element.
+    """Points that follow the elements' ends, sorted by element; every element has the same number of points with mass.
 
     Attributes:
         element: (q,) the element each rides on.
@@ -97,7 +97,7 @@ class Pencil:
 
     @property
     def K(self) -> Array:
-        """The whole stiffness."""
+        """The complete stiffness (n, d, d)."""
         K = self.remainder.copy()
         K[:, :12, :12] += on_ends(self.spring, self.spring)
         return K
@@ -118,7 +118,7 @@ def riding(undeformed: Array, element: Index, pose: Array, shape: Array, bubble:
 
 
 def alike(points: Points, elements: int) -> Points:
-    """The same points, with massless ones added until every element has as many: what ``Beams`` wants."""
+    """The points padded with massless copies, so that every element has the same number, as ``Beams`` requires."""
     number = np.bincount(points.element, minlength=elements)
     most = int(number.max())
     if (number == most).all():

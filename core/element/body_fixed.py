@@ -1,4 +1,4 @@
-"""The strain measure of ``elements`` in axes fixed in the parent: displacement and Cardan angles, compiled.
+"""The compiled body-fixed strain measure of one element: displacement and Cardan angles in the axes of frame a.
 
 The angles are (x, y, z), R = R_x(α) R_y(β) R_z(γ).
 """
@@ -51,7 +51,7 @@ def add_curvature(
 
 @compiled
 def add_tangent_variation(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
-    """Add what a force conjugate to η makes as its tangent turns, to the part of ρ."""
+    """Add ∂(tangent⁻ᵀ(η) f)/∂ρ of a constant force f conjugate to η to the ρ block (6, 6) of ``out``."""
     rigid_turn, part = np.empty((6, 6)), np.empty((6, 6))
     rigid.tangent_inverse_transpose_derivative(eta, conjugate, rigid_turn)
     product(rigid_turn, back, part)

@@ -1,4 +1,4 @@
-"""The corotational strain measure of ``elements``, element by element, compiled."""
+"""The compiled corotational strain measure of one element; see ``measures``."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class StrainLawArrays(NamedTuple):
-    """A law for compiled code; ``corotational`` is its measure."""
+    """``measures.StrainLaw`` for compiled code; ``corotational`` tells which measure it has."""
 
     corotational: bool
     undeformed: Array
@@ -25,7 +25,10 @@ class StrainLawArrays(NamedTuple):
 
 @compiled
 def strains(law: StrainLawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
-    """ε (6,), J = ∂ε/∂(η, β) (6, 12) and what the curvature needs of the solution (6, 6), of element ``k``."""
+    """Strain ε (6,) and J = ∂ε/∂(η, β) (6, 12) of element ``k``, from ``(1 + ad(A δ) B_δ/12) ε = δ − ad(A δ) B_β β/12``.
+
+    ``undo`` (6, 6) is the inverse of the matrix on the left, which ``add_curvature`` needs.
+    """
     mean, slope = law.mean[k], law.slope[k]
     delta, bow, r = np.empty(6), np.empty(6), np.empty(6)
     for i in range(6):

@@ -1,4 +1,4 @@
-"""The pencils of ``beams``, element by element, compiled."""
+"""Residual, M, C and K of beam elements, compiled: see ``beams`` for the theory."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class BeamArrays(NamedTuple):
-    """``Beams`` for compiled code; ``pushed``: whether there are loads on the points."""
+    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed`` tells whether the points carry loads."""
 
     law: StrainLawArrays
     stiffness: Array
@@ -107,7 +107,7 @@ def _add_elastic(
     sums: _Sums,
     spring: Array,
 ) -> None:
-    """The strain's force on (ρ, β), and its material and geometric stiffness; what is between the ends alone to the spring."""
+    """Add the elastic force on (ρ, β) and its material and geometric stiffness; the part on ρ alone goes to ``spring``."""
     strain, s = np.empty(6), np.empty(6)
     rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
     measures.strains(beams.law, k, x, eta, back, beta, strain, rate, J, undo)
@@ -146,9 +146,9 @@ def _add_inertia(
     sums: _Sums,
     spring: Array,
 ) -> None:
-    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts on ξ_a, and as Hᵀ g on (ρ, β).
+    """Add the inertia of the points: a wrench g at a point with twist ξ_a + H (ρ, β) acts as g on ξ_a and as Hᵀ g on (ρ, β).
 
-    All of it is in a's axes, at a, where all points of an element are carried at one twist.
+    All wrenches are about a's origin in a's axes, where all points of an element are carried at the same twist.
     """
     per = len(beams.mass) // len(beams.stiffness)
     change, zeta, g, push, on_zeta = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
@@ -218,7 +218,7 @@ def ride(
     T: Array,
     H: Array,
 ) -> None:
-    """Where a point of ``beams.Points`` is in a's frame, and how it moves with (ρ, β).
+    """Position of a point of ``beams.Points`` in a's frame and its derivative: ζ = ζ₀ + L (η − η₀) + bubble β.
 
     From η − η₀ (6,), ``back`` (6, 6) = ``tangent_inverse(η)`` and β (6,): ζ (6,), its slope (6, 12), ``tangent(ζ)`` (6, 6), and
     H (6, 12), the product of these two.
@@ -246,7 +246,7 @@ def _put_twist(H: Array, out: Array) -> None:
 
 @compiled
 def _split(k: Array, spring: Array, remainder: Array) -> None:
-    """Add a stiffness (12, 12) on (ρ, β): what is between the ends alone to ``spring``, else to ``remainder`` (18, 18)."""
+    """Add a stiffness (12, 12) on (ρ, β): its ρ block to ``spring`` (6, 6), the other blocks to ``remainder`` (18, 18)."""
     for i in range(12):
         for j in range(12):
             if i < 6 and j < 6:

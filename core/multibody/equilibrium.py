@@ -1,4 +1,4 @@
-"""The steady state of a mechanism: loops closed, then balanced by Newton's method, globalised by continuation from rest."""
+"""Steady state of a mechanism: loop closure, then Newton's method on the balance of forces, globalised by continuation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -43,7 +43,7 @@ class State:
 
 
 class ContradictionError(MechanismError):
-    """Rates that a loop cannot have together."""
+    """Prescribed rates that contradict a loop."""
 
 
 def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
@@ -51,7 +51,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 
     Newton's method from the guess serves while its corrections contract (P. Deuflhard, *Newton Methods for Nonlinear
     Problems*, 2004, sec. 2.1.1). Otherwise the state is followed from rest, where dead forces hold the mechanism at the guess:
-    rates and loads grow while the dead forces fade. Where nothing holds a mechanism at rest, as a pendulum whose weight
+    rates and loads grow while the dead forces fade. Where a mechanism has no equilibrium at rest, as a pendulum whose weight
     comes with the loads, only the dead forces fade. Newton's method with shortened steps is the last resort.
 
     Raises:
@@ -397,7 +397,7 @@ def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
 
 
 def _check_rates(tree: Tree, state: State) -> None:
-    """Refuse loops that move while the motions leave open how: rates would be anybody's choice."""
+    """Check that the prescribed motions determine the rates of all moving loops."""
     if not moving(tree, state).any():
         return
     following = np.setdiff1d(np.arange(len(state.q)), _given(tree))
@@ -412,7 +412,7 @@ def _check_rates(tree: Tree, state: State) -> None:
 
 
 def _check_balance(tree: Tree, found: _Found) -> None:
-    """Refuse a coordinate with a force on it that nothing resists."""
+    """Check that no coordinate carries a force without a stiffness."""
     here, tangent = found.residual, found.tangent
     if not tangent.balanced(here):
         worst = int(np.argmax(np.abs(here.reduced) / np.maximum(tangent.rounding, 1e-300)))

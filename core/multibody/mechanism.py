@@ -1,6 +1,6 @@
-"""A mechanism: bodies, joints (tree and cut), prescribed motion, force elements, gravity. Any of them, not only a blade.
+"""A mechanism: bodies, joints (tree and cut), prescribed motions, force elements and gravity.
 
-Poses, twists and inertias follow ``core.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
+Poses, twists and inertias follow ``core.space.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
 through the tree and once through a massless copy beyond the cut joint, and the two are welded. One kind of constraint (six
 equations Φᶜ, the joint's own coordinates kept) then serves a cut joint of every kind (Park et al. 2010, eq. 2).
 """
@@ -23,7 +23,7 @@ GROUND = "ground"
 
 
 class MechanismError(ValueError):
-    """A mechanism that cannot be: the message names the element, the value, the likely cause and the remedy."""
+    """An invalid mechanism: the message names the element, the value, the likely cause and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Beam:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """What a mechanism is made of; ``tree.compile_tree`` makes it ready to solve."""
+    """The parts of a mechanism; ``tree.compile_tree`` compiles it to arrays."""
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
@@ -151,10 +151,10 @@ def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
 
 
 def check(m: Mechanism) -> None:
-    """Refuse what cannot be.
+    """Validate a mechanism.
 
     Raises:
-        MechanismError: names used twice or unknown, an inertia that is not one, a motion given twice.
+        MechanismError: names used twice or unknown, an impossible inertia, a motion given twice.
     """
     names = [b.name for b in m.bodies]
     for what, given in (("body", names), ("joint", [j.name for j in m.joints])):

@@ -45,7 +45,7 @@ class Partition:
         independent: (i,) indices of q_I.
         dependent: indices of q_D.
         R, R1, R2: (f, i) and its first and second rates; rows as ``free``.
-        redundant: constraint equations that say nothing new, as ``joint: component``.
+        redundant: redundant constraint equations, as ``joint: component``.
     """
 
     free: Index

@@ -28,7 +28,7 @@ class Solution:
         coordinates: names of the n coordinates.
         steady: their values in the steady state, m or rad, by name.
         independent: the coordinates chosen to vibrate about it; the others follow.
-        redundant: constraint equations that say nothing new, as ``joint: component``.
+        redundant: redundant constraint equations, as ``joint: component``.
         linear: M̂, Ĉ, K̂ over the independent coordinates, and all that led to them.
     """
 

@@ -99,7 +99,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     """Choose a spanning tree from the ground outwards, in the order the joints are given; the others become cut joints.
 
     Raises:
-        MechanismError: names used twice or unknown, a body no joint reaches, an inertia that is not one.
+        MechanismError: names used twice or unknown, a body that no joint reaches, an impossible inertia.
     """
     check(mechanism)
     names = [b.name for b in mechanism.bodies]

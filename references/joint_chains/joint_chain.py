@@ -119,7 +119,7 @@ class JointChain:
                 f"elements: {elements}: the code's time or memory grows as their cube; at most {self.max_elements}"
             )
         begun = time.perf_counter()
-        chain = discretize(blade, elements, "half_end", "parent")
+        chain = discretize(blade, elements, "half_end", "body_fixed")
         body = self.plant(chain)
         elastic = cast(Array, block_diag(*chain.beams.stiffness))
         q, before = steady(body, elastic, omega, chain)

@@ -52,7 +52,7 @@ def computed(name: str, series: Series, datum: Datum) -> float:
         return float(tapered_beams.exact(series.height_taper, series.breadth_taper, datum.speed)[datum.mode - 1])
     blade = blade_of(name, series)
     if (name, series.name) == ("park2010", "present"):
-        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="parent", effects=series.effects)
+        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="body_fixed", effects=series.effects)
     else:
         code = {c.effects: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.effects]
         found = code.solve(blade, datum.speed, 32, 10)

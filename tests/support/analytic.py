@@ -75,7 +75,7 @@ class Twin(Analytic):
     levels: tuple[int, ...] = (10,)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="parent", effects=self.effects)
+        modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed", effects=self.effects)
         return Modes(omega, modes.frequencies * self.factor, modes.shapes, elements)
 
 

@@ -10,7 +10,7 @@ from southwell.core.element.discretize import discretize
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import curved
 
-MEASURES: list[measures.Measure] = ["corotational", "parent"]
+MEASURES: list[measures.Measure] = ["corotational", "body_fixed"]
 
 
 @pytest.fixture(scope="module", params=MEASURES)
