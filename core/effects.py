@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 @dataclass(frozen=True)
 class Effects:
-    """The effects kept; all of them by default. A code declares what it lacks, and core can leave out the same.
+    """The effects kept; all of them by default. A code declares those it lacks, and core can leave out the same.
 
     Attributes:
         prestretch: the steady state's displacements are followed (deformed radius), not only its internal forces.

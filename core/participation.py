@@ -1,7 +1,7 @@
-"""What moves in a mode: shares of its kinetic energy in flap, edge, torsion and axial motion, and the name they give it.
+"""Energy fractions of a mode in flap, edge, torsion and axial motion, and the family name that follows from them.
 
-Metres and radians are never added. Each slice of blade moves with its mass centre and turns about it, so that its kinetic
-energy (König's theorem) splits into four parts, none negative, whatever the reference axis:
+A slice of the blade translates with its mass centre and rotates about it, so that its kinetic energy (König's theorem) is
+the sum of four parts, none negative and none dependent on the reference axis:
 
 * flap and edge: the mass centre's motion along the blade's z and y, and the section's own turning in bending;
 * torsion: turning about the blade's axis through the mass centre, with the polar inertia about it;
@@ -29,21 +29,21 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FAMILIES = ("flap", "edge", "torsion", "axial")
-"""What the four shares are, in their order."""
+"""Names of the four energy fractions, in their order."""
 
 MIXED = "mixed"
 
 DOMINANT_FRACTION = 0.6
-"""Share of the kinetic energy that names a mode; with less it is mixed."""
+"""Energy fraction that names a mode; with less it is mixed."""
 
 MIN_NAMED_FRACTION = 0.05
-"""Shares below this are not worth a word."""
+"""Energy fractions below this are not named."""
 
 _GAUSS = 4
 
 
 def participation(modes: Modes, blade: Blade) -> Array:
-    """Shares (m, 4) of each mode's kinetic energy, in the order of ``FAMILIES``; each row adds up to 1.
+    """Energy fractions (m, 4) of the modes in the order of ``FAMILIES``; each row adds up to 1.
 
     Shapes are interpolated between the common stations by cubic splines; mass is integrated between the blade's own
     stations by Gauss quadrature, and the tip mass is added. Sections turn in bending as the line of mass centres does.
@@ -62,7 +62,7 @@ def participation(modes: Modes, blade: Blade) -> Array:
 
 
 def in_blade_axes(modes: Modes, blade: Blade) -> Complex:
-    """Shapes (m, 21, 4) with displacements along the blade's axes, which precone and pitch turn from the hub's."""
+    """Shapes (m, 21, 4) with displacements along the blade's axes instead of the hub's (precone, pitch)."""
     out = modes.shapes.copy()
     out[:, :, :3] = modes.shapes[:, :, :3] @ root(blade)[:3, :3]
     return out
@@ -78,9 +78,9 @@ def gyration(blade: Blade) -> float:
     return float(np.sqrt(max(polar, 0.0) / mass[:, 0, 0].sum()))
 
 
-def families(shares: Array) -> tuple[str, ...]:
-    """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT_FRACTION``, else ``mixed``."""
-    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT_FRACTION else MIXED for row in shares)
+def families(energy_fractions: Array) -> tuple[str, ...]:
+    """Family of each row of energy fractions (m, 4): the one with at least ``DOMINANT_FRACTION``, else ``mixed``."""
+    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT_FRACTION else MIXED for row in energy_fractions)
 
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
@@ -93,10 +93,12 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def spoken(share: Array) -> str:
-    """One mode's shares (4,) in words, largest first: ``54 % flap, 43 % edge``."""
-    order = np.argsort(-share, kind="stable")
-    return ", ".join(f"{100 * share[k]:.0f} % {FAMILIES[k]}" for k in order if share[k] >= MIN_NAMED_FRACTION)
+def spoken(energy_fractions: Array) -> str:
+    """Energy fractions (4,) of one mode in words, largest first: ``54 % flap, 43 % edge``."""
+    order = np.argsort(-energy_fractions, kind="stable")
+    return ", ".join(
+        f"{100 * energy_fractions[k]:.0f} % {FAMILIES[k]}" for k in order if energy_fractions[k] >= MIN_NAMED_FRACTION
+    )
 
 
 def _quadrature(blade: Blade) -> tuple[Array, Array]:

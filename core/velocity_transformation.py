@@ -1,7 +1,7 @@
 """A blade's modes by the method of Park et al. (2010): bodies, joints, B, M*, Q*, partition, linearisation, eigenproblem.
 
-The blade's bodies and elements are those of ``solve``, which works with the bodies' own twists and never forms B. Here they
-are a mechanism, in relative coordinates, with dense matrices: the same answer by the paper's way, for some tens of elements.
+The bodies and elements are those of ``solve``, which works with the bodies' own twists and never forms B. Here they form a
+mechanism in relative coordinates with dense matrices: the same result by the paper's method, for some tens of elements.
 """
 
 import time

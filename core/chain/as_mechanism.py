@@ -20,7 +20,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     Args:
         chain: the blade, clamped or on a joint; its loads turn with the hub.
         omega: rotor speed, rad/s.
-        gravity: (3,) m/s², in the hub's axes at the instant looked at, when they are the ground's.
+        gravity: (3,) m/s², in the hub's axes, which coincide with the ground's at this instant.
     """
     n, between = len(chain.nodes) - 1, chain.between
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
@@ -59,7 +59,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
 
 
 def one(beams: Beams, k: int) -> Beams:
-    """The k-th element alone."""
+    """The k-th element as a batch of one."""
     mine = beams.points.element == k
     p = beams.points
     none = np.zeros(int(mine.sum()), dtype=np.intp)

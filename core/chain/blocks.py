@@ -1,4 +1,4 @@
-"""Block-tridiagonal matrices: what a chain of bodies gives.
+"""Block-tridiagonal matrices of a chain of bodies.
 
 A block holds the internal coordinates β of one element and then the six of the node beyond it, so a block is coupled to the
 next only through its last six rows.
@@ -92,7 +92,7 @@ class Transposed(NamedTuple):
 
 
 def transposed(t: Tridiagonal) -> Transposed:
-    """The matrix as compiled products want it."""
+    """The matrix with transposed blocks, for the compiled products."""
     out = Transposed(*(np.empty(np.swapaxes(part, -1, -2).shape) for part in (t.diagonal, t.lower, t.upper)))
     for part, there in zip((t.diagonal, t.lower, t.upper), out, strict=True):
         _transpose(part, there)
@@ -181,7 +181,7 @@ class Factor(NamedTuple):
 
 
 def factor(t: Tridiagonal) -> Factor:
-    """Factor a matrix that needs no pivoting: one that is, or is nearly, symmetric positive definite.
+    """Factor a matrix that needs no pivoting: (nearly) symmetric positive definite.
 
     Raises:
         numpy.linalg.LinAlgError: if it is singular.
@@ -195,7 +195,7 @@ def factor(t: Tridiagonal) -> Factor:
 
 @compiled
 def _eliminate(pivots: Array, lower: Array, upper: Array) -> int:
-    """As ``invert``, of all pivots."""
+    """Block LU in place; returns the worst result of ``invert`` over all pivots."""
     n, d = pivots.shape[:2]
     between, less, kind = np.empty((6, 6)), np.empty((6, d)), 2
     for k in range(n):

@@ -1,9 +1,9 @@
 """The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve a step.
 
-A⁻¹S is skew in the A product, A = diag(K, M), so a step's result overlaps with its own and the preceding block only, but for
-rounding; what rounding adds is taken out against the whole basis, again until next to nothing of it is left. Blocks of two
-find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric Eigenvalue
-Problem*, 1998, ch. 13.)
+A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
+and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of two
+vectors find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric
+Eigenvalue Problem*, 1998, ch. 13.)
 """
 
 from functools import lru_cache
@@ -28,20 +28,20 @@ _EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
 
 class EigensolverError(ArithmeticError):
-    """The eigensolver failed; it says nothing about the blade's stability."""
+    """The eigensolver failed: nothing is known about the stability of the blade."""
 
 
 def lanczos(p: ChainPencil, count: int) -> Eigen:
     """The ``count`` lowest modes of a chain about a state where K is symmetric.
 
-    The assembled K loses digits to cancellation, as it does with many elements: solutions are refined, by way of the strains,
-    as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh quotient,
-    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
+    With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with K by way of
+    the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs (Lancaster 2013).
 
     Raises:
         UnstableError: if K is not positive definite.
-        EigensolverError: if the basis is full before the modes are there, or rounding leaves nothing of K.
-        MissedModesError: if the modes are not all there, by ``completeness``.
+        EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
+        MissedModesError: if a mode is missing; see ``completeness``.
     """
     try:
         factor = p.factor
@@ -106,12 +106,12 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
 
 @lru_cache(maxsize=4)
 def _start(size: int) -> Array:
-    """Two vectors (2, size) to begin with, of no direction."""
+    """Two random start vectors (2, size), the same in every run."""
     return np.random.default_rng(1921).normal(size=(2, size))
 
 
 def _refinements(solve_error: float) -> int:
-    """How many steps of iterative refinement bring a solution to the accuracy wanted."""
+    """Number of refinement steps that reduce the error of a solution to the tolerance."""
     for steps in range(_MAX_REFINEMENTS):
         if solve_error ** (steps + 1) < _SOLVE_TOLERANCE:
             return steps

@@ -1,4 +1,4 @@
-"""A chain's mode shapes at the common stations, where massless points ride on its elements as ``beams`` has it."""
+"""Mode shapes of a chain at the common stations, read at massless points of its elements (see ``beams``)."""
 
 import numpy as np
 from numpy.typing import NDArray

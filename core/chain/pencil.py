@@ -1,7 +1,7 @@
 """The rotating chain: the Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a shape of it.
 
 With elastic connections only, every node moves freely: the velocity transformation B of the general solver is square and
-invertible, so modes may be had from the bodies' own twists, where the matrices are block-tridiagonal. Twists and wrenches
+invertible, so the modes follow from the bodies' own twists, for which the matrices are block-tridiagonal. Twists and wrenches
 of node k are in its own axes.
 """
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 _FORCE_ROUNDING, _ENERGY_ROUNDING = (
     1e-13,
     1e-28,
-)  # what rounding leaves of a rigid motion's stiffness: of forces, of strain energy
+)  # relative rounding in the stiffness of a rigid motion: forces, strain energy
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ class ChainPencil:
 
 @dataclass(frozen=True)
 class Shape:
-    """Where a chain is.
+    """A configuration of a chain.
 
     Attributes:
         nodes: (n+1, 4, 4) poses in the hub's axes.
         beta: (n, 6 or 0) the elements' internal coordinates β.
-        relative: (n, 4, 4) pose of each node in the frame of the one before. They follow from ``nodes``, but differences of
-            poses lose the strains' last digits: with an axial stiffness EA and elements of length h, at a radius R, a force of
-            EA R/h times the rounding of one.
+        relative: (n, 4, 4) pose of each node in the frame of the one before. Redundant with ``nodes``, but
+            differences of poses lose the last digits of the strain: at radius R, with axial stiffness EA and element length
+            h, the force would be wrong by EA R/h times the rounding unit.
     """
 
     nodes: Array
@@ -148,7 +148,7 @@ def _place(
     x: Array,
     lever: Array,
 ) -> None:
-    """Of every node, in its own axes: twist of the hub's frame, free fall, load, and the hub's axes; x is end b seen from a."""
+    """For every node, in its own axes: the hub's twist, gravity, load and the hub's axes; x is the pose of end b in a."""
     back, to_node = np.empty((4, 4)), np.empty((6, 6))
     for k in range(len(nodes)):
         rigid.inverse(nodes[k], back)
@@ -195,7 +195,7 @@ def _clamp(t: Tridiagonal, clamped: Array, unit: float) -> Tridiagonal:
 
 
 def loose(p: ChainPencil) -> bool:
-    """Whether a joint at the root lets the blade turn as a rigid body against no stiffness, but for rounding."""
+    """Whether the root joint lets the blade move as a rigid body without stiffness, apart from rounding."""
     if not p.clamped.size:
         return False
     free = np.linalg.svd(np.eye(6) - p.clamped)[0][:, : 6 - round(float(np.trace(p.clamped)))]

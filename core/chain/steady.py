@@ -1,4 +1,4 @@
-"""The steady state of a rotating chain, by Newton, and guesses of it from those at the speeds before."""
+"""Steady state of a rotating chain by Newton's method, and its extrapolation from earlier speeds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,10 +21,7 @@ Array = NDArray[np.float64]
 
 _MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALL_FACTOR, _CONVERGED_FACTOR = (
-    10.0,
-    1e-4,
-)  # times a bound of rounding's energy: Newton's steps may stop shrinking here; and need go on
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # of the rounding energy: accept a stalled step; accept any step
 _MIN_REDUCTION = 1e-2  # least factor between the energies of steps that converge
 ORDER = 3  # of the extrapolation along the speeds
 _MIN_RAMP = 2.0**-8
@@ -56,7 +53,7 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
         try:
             return _newton(chain, start, omega, gravity)
         except SteadyStateError:
-            pass  # too far off: begin where there is no load
+            pass  # start too far away: ramp the load instead
     found = None
     done, step = 0.0, 1.0
     while found is None or done < 1.0:
@@ -79,8 +76,9 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
 def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     """Newton's method down to rounding.
 
-    The error of the energy norm is that of the step, δᵀKδ. It is compared with the energy of the rounding of the nodes' poses,
-    below which no step can be told from none; the size of the step says nothing about a blade that hardly stretches.
+    The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
+    nodes' poses, below which a step is meaningless. The size of a step is no
+    criterion: those of an almost inextensible blade are tiny.
     """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
@@ -108,7 +106,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
 
 
 def rounding_energy(p: ChainPencil, shape: Shape) -> float:
-    """Σ ρᵀ S ρ of relative poses in error by rounding: no step of less energy can be told from none."""
+    """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: smaller energies of a step are rounding."""
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
     weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
     return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.spring, weight**2)))
@@ -128,7 +126,7 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
 
 
 def displaced(shape: Shape, step: Array) -> Shape:
-    """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
+    """The shape after a step (n, 6 or 12): changes of β, and twists of nodes 1 … n in their own axes."""
     nodes, relative = shape.nodes.copy(), shape.relative.copy()
     _displace(step, nodes[1:], relative)
     return Shape(nodes, shape.beta + step[:, :-6], relative)
@@ -162,7 +160,7 @@ def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
 
 
 def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
-    """A guess of the shape at ``omega`` from those at the speeds before: a polynomial in Ω² through the last few."""
+    """Extrapolate the shape to ``omega`` (rad/s) by a polynomial in Ω² through those at the last few speeds."""
     latest: dict[float, Shape] = {}
     for speed, shape in reversed(known):
         if len(latest) <= ORDER:

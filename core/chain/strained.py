@@ -1,4 +1,4 @@
-"""A chain's stiffness times vectors by way of the elements' strains: no digits are lost however stiff and many they are."""
+"""Products of a chain's stiffness with vectors by way of the element strains, free of cancellation."""
 
 from typing import NamedTuple
 

@@ -1,7 +1,7 @@
 """The compressed model: segments end to end as a chain of rigid bodies and complex stiffness elements, and its modes.
 
-The paper has its rigid bodies at the sections. Here each segment's body rides on its element (see ``condensation``), which
-costs nothing and converges two orders faster in bending; the sections between are massless.
+The paper places its rigid bodies at the sections. Here the body of each segment follows its element (see ``condensation``),
+which converges two orders faster in bending at no cost; the sections are massless.
 
 A complex stiffness element is linear in its own axes: the steady tension stiffens bending, as in any beam of ``core``, but not
 torsion (a section that twists under tension shortens too). A solid does show that; it grows as Ω².
@@ -81,7 +81,7 @@ def _centred(inertia: Array) -> tuple[Array, Array]:
 
 
 def _samples(undeformed: Array) -> Points:
-    """Where mode shapes are read: between two sections the strain is taken as constant."""
+    """Points at which mode shapes are read; the strain is constant between two sections."""
     length = np.append(0.0, np.cumsum(np.linalg.norm(undeformed[:, :3, 3], axis=1)))
     at = STATIONS * length[-1]
     element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(undeformed) - 1)

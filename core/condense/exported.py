@@ -1,4 +1,4 @@
-"""A matrix that another code exported, with the freedoms it names, as a model to condense.
+"""A finite element model from matrices that another code exported with named freedoms.
 
 Such codes name a freedom by its node and a component: 1–3 displacement along x, y, z, 4–6 rotation about them.
 """
@@ -57,7 +57,7 @@ def model(
         )
     lost = [n for n in stiffness.nodes.tolist() if n not in place]
     if lost:
-        raise MatrixFileError(f"{stiffness.name}: node {lost[0]} has no place: give the coordinates of all its nodes")
+        raise MatrixFileError(f"{stiffness.name}: node {lost[0]} has no coordinates: give those of all its nodes")
     lumped = np.zeros(len(stiffness.nodes))
     if mass is not None:
         at = {key: k for k, key in enumerate(zip(mass.nodes.tolist(), mass.directions.tolist(), strict=True))}

@@ -1,6 +1,6 @@
 """Stiffness (and mass) matrices that other codes export as text, with the freedoms they belong to.
 
-Read are, told apart by what is in them (the last by name):
+Formats, recognised by content (the last by name):
 
 * CalculiX and Abaqus ``*SUBSTRUCTURE MATRIX OUTPUT, OUTPUT FILE=USER DEFINED``: a ``*USER ELEMENT`` with its nodes in
   comments, lines of the freedoms that are active from each node on, and ``*MATRIX, TYPE=STIFFNESS`` or ``MASS`` with the

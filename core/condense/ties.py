@@ -1,4 +1,4 @@
-"""Finite element models as freedoms, and their sections tied to frames: rigidly, or on average.
+"""Finite element models as lists of freedoms, and sections tied to frames rigidly or on average.
 
 A freedom is a displacement along, or a rotation about, a coordinate axis at a point. When a frame moves by a small twist
 (in its own axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:

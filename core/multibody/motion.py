@@ -59,10 +59,10 @@ class Sum:
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of one coordinate: position, rate and acceleration at the instant looked at, or the law they follow.
+    """Motion of one coordinate: position, rate and acceleration at one instant, or a law of time.
 
     A ``prescribed`` coordinate (Φᴹ) takes no part in vibration. One that is not prescribed has this rate in the
-    steady state but moves freely about it: a rotor whose speed nobody governs, a spinning top.
+    steady state but moves freely about it: a rotor without speed control, a spinning top.
 
     Attributes:
         coordinate: its name, ``joint.rz``.

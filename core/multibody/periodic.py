@@ -1,4 +1,4 @@
-"""Whether the equations stay what they are as the motion goes on, or are periodic, so that no steady modes exist."""
+"""Check that M̂, Ĉ, K̂ stay constant along the motion; periodic equations have no steady modes."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from .motion import Motion
 Array = NDArray[np.float64]
 
 ADVANCES = (0.7, 1.9, 3.3, 5.1)
-"""How far (rad or m) each moving coordinate goes; no two are related by the symmetry of a rotor."""
+"""Distances (rad or m) that each moving coordinate advances; no two are related by the symmetry of a rotor."""
 
 MAX_CHANGE = 1e-8
 """Largest change, relative to each coordinate's own size, that counts as none."""

@@ -1,7 +1,7 @@
 """The paper's reduction in its own order and symbols: from M Ẏ + Φ_Zᵀ λ = Q to M̂ v̇_I = Q̂ (Park et al. 2010, eq. 1–25).
 
-At any state, not only a steady one. ``equilibrium`` seeks the state where Q̂ vanishes, and ``linearize`` varies M̂ v̇_I = Q̂
-about it; here the terms can be looked at one by one, and the accelerations and reactions that they give.
+Valid at any state, not only a steady one. ``equilibrium`` finds the state where Q̂ vanishes, and ``linearize`` varies
+M̂ v̇_I = Q̂ about it; this module gives each term, the accelerations and the reactions.
 """
 
 from dataclasses import dataclass
