@@ -108,7 +108,7 @@ def rigid(model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Ti
     Raises:
         CondensationError: no freedoms, or too few to tell the six motions of a frame.
     """
-    return _tie(model, _some(model, freedoms, name), frame, name, "rigid", np.ones(len(freedoms)))
+    return _tie(model, freedoms, frame, name, "rigid", np.ones(len(freedoms)))
 
 
 def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
@@ -127,7 +127,7 @@ def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, wei
     Raises:
         CondensationError: no freedoms, too few to tell the six motions of a frame, or no usable weights.
     """
-    moves = model.directions[_some(model, freedoms, name)] < 3
+    moves = model.directions[freedoms] < 3
     if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
         return _tie(model, freedoms, frame, name, "average", np.ones(6))
     shares = (model.mass[freedoms] if weights is None else weights)[moves]
@@ -137,14 +137,6 @@ def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, wei
             f"{shares.min(initial=0.0):g}: give each freedom's share of the section, or ∫NᵀN where corners have a negative one"
         )
     return _tie(model, freedoms[moves], frame, name, "average", shares if shares.ndim == 1 else shares[:, moves])
-
-
-def _some(model: FiniteElements, freedoms: Index, name: str) -> Index:
-    if not len(freedoms):
-        raise CondensationError(
-            f"section {name!r}: a tie with no nodes: select the nodes of {model.name} that lie on it"
-        )
-    return freedoms
 
 
 def section(model: FiniteElements, frame: Array, name: str, kind: Kind = "average") -> Tie:
