@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..rank import TOLERANCE, Ranked, ranked
 from . import dynamics, partition
-from .dynamics import Cartesian
-from .kinematics import Kinematics, kinematics, poses
+from .loops import MAX_STEP, assemble, closed, size_of
 from .mechanism import MechanismError
+from .state import ContradictionError, State, check_rates, given, moving, state_at
 from .tree import Tree
 
 Array = NDArray[Any]
@@ -24,26 +24,9 @@ STIFFNESS_ROUNDING = 1e-13
 """A stiffness below this fraction of the forces and stiffnesses it is the sum of is rounding."""
 
 _MAX_STEPS = 60
-_MAX_STEP = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
 _FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # of the path
 _MIN_FRACTION = 1e-3  # of a step
 _SMALL_CORRECTION = 0.05  # rad, or of the length: corrections so small need not contract at once
-
-
-@dataclass(frozen=True)
-class State:
-    """A steady state: coordinates, velocities, accelerations (n,), multipliers (w, 6), and what follows from them."""
-
-    q: Array
-    v: Array
-    a: Array
-    multipliers: Array
-    kinematics: Kinematics
-    cartesian: Cartesian
-
-
-class ContradictionError(MechanismError):
-    """Prescribed rates that contradict a loop."""
 
 
 def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
@@ -77,7 +60,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
             f"no steady state was found near the guess: Newton's method does not converge from it, continuation got {told}: "
             "give a better guess, or check for a missing spring or joint"
         )
-    _check_rates(tree, found.state)
+    check_rates(tree, found.state)
     _check_balance(tree, found)
     return found.state
 
@@ -95,62 +78,11 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
     Raises:
         MechanismError: if the loops do not close.
     """
-    q, gap, length = _closed(tree, q, follow)
+    q, gap, length = closed(tree, q, follow)
     if np.abs(gap).max(initial=0.0) > 1e-9 * length:
         raise MechanismError("loops: they do not close")
     here = _residual(tree, q, independent=independent)
     return here.state, here.reduced, _tangent(tree, here).rounding
-
-
-# ---------------------------------------------------------------------------------------------------------------- loops
-
-
-def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
-    """Coordinates (n,) that close all loops, near a guess (coordinates not named start at 0 or at their motion's position).
-
-    Raises:
-        MechanismError: if the loops do not close.
-    """
-    q = np.zeros(len(tree.coordinates))
-    for name, value in (guess or {}).items():
-        q[tree.coordinate(name)] = value
-    for m in tree.mechanism.motions:
-        if m.position is not None:
-            q[tree.coordinate(m.coordinate)] = m.position
-    q, gap, length = _closed(tree, q, _free(tree))
-    worst = int(np.argmax(np.abs(gap))) if len(gap) else 0
-    if len(gap) and abs(gap[worst]) > 1e-9 * length:
-        raise MechanismError(
-            f"joint {tree.weld_names[worst // 6]!r}: it does not close its loop (gap {abs(gap[worst]):.3g}); the dimensions "
-            "do not fit, or the guess is too far off: give a better one"
-        )
-    return q
-
-
-def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
-    """Levenberg-Marquardt steps on the loops' gaps, damped by their squares: wide of singular configurations, quadratic in
-    the end; with gap and length.
-    """
-    q = q.copy()
-    last = np.inf
-    for _ in range(_MAX_STEPS):
-        x, J = poses(tree, q)
-        gap, length = partition.misfit(tree, x), _length(x)
-        size = float(np.abs(gap).max(initial=0.0))
-        if size < 1e-15 * length or (size < 1e-11 * length and size > 0.5 * last):
-            break
-        last = size
-        step = -ranked(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]).solve(gap, float(gap @ gap))
-        q[free] += step * min(1.0, _MAX_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-    return q, gap, length
-
-
-def _free(tree: Tree) -> Index:
-    return np.setdiff1d(np.arange(len(tree.coordinates)), partition.prescribed(tree))
-
-
-def _length(x: Array) -> float:
-    return max(1.0, float(np.abs(x[:, :3, 3]).max(initial=0.0)))
 
 
 # -------------------------------------------------------------------------------------------------------------- balance
@@ -209,8 +141,8 @@ class _Found:
 
 
 def _residual(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None) -> _Residual:
-    state = _state(tree, q)
-    free = _free(tree)
+    state = state_at(tree, q)
+    free = partition.free_coordinates(tree)
     forces = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free] - dead
     if tree.welds:
         J = partition.jacobian(tree, state.kinematics.B)[:, free]
@@ -228,14 +160,14 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     by_independent = K @ R
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
-        following = ~np.isin(part.free, _given(tree))
+        following = ~np.isin(part.free, given(tree))
         back = ranked(J[:, following])
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
         R1[following] = -back.solve(J1 @ R)
         R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
         by_independent += C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
-    units = np.where(turns, 1.0, _length(k.poses))
+    units = np.where(turns, 1.0, size_of(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
     rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
     least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
@@ -256,7 +188,7 @@ def _sizes(tree: Tree, state: State) -> Array:
 def _carried(state: State) -> Array:
     """(n,) what the stiffnesses a coordinate carries would give on it at a strain of one: their rounding is in all it feels."""
     k, c = state.kinematics, state.cartesian
-    units = np.tile(np.repeat([_length(k.poses), 1.0], 3), len(k.B))
+    units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(k.B))
     wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
     np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ units[:6])[:, None, :])
     return np.einsum("bin,bi->n", np.abs(k.B), wrench[:-1])
@@ -269,7 +201,7 @@ def _newton(
 
     ``damped``: steps that do not contract are shortened until they do, however little (Deuflhard 2004, sec. 3.3).
     """
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
     start, here = q, _residual(tree, q, dead)
     for _ in range(_MAX_STEPS):
         tangent = _tangent(tree, here)
@@ -300,10 +232,10 @@ def _tried(
     tree: Tree, q: Array, step: Array, dead: Array | float, names: tuple[str, ...], tangent: _Tangent, length: float
 ) -> tuple[_Residual | None, float]:
     """The residual after a step, and the length of the correction it asks for over that of Newton's step before."""
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
     there = q.copy()
     there[free] += step
-    there, gap, size = _closed(tree, there, free)
+    there, gap, size = closed(tree, there, free)
     if not np.isfinite(length) or np.abs(gap).max(initial=0.0) > 1e-11 * size:
         return None, np.inf
     following = _residual(tree, there, dead, names)
@@ -322,7 +254,7 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
 
     ``grow``: rates and loads grow from nothing meanwhile.
     """
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
 
     def at(part: float) -> Tree:
         return _loaded(tree, part) if grow else tree
@@ -337,10 +269,10 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
     found = None
     while part < 1.0:
         to = min(1.0, part + stride)
-        ahead, gap, size = _closed(tree, q + (to - part) * slope, free)
-        closed = np.abs(gap).max(initial=0.0) <= 1e-11 * size
+        ahead, gap, size = closed(tree, q + (to - part) * slope, free)
+        loops_close = np.abs(gap).max(initial=0.0) <= 1e-11 * size
         try:
-            found = _newton(at(to), ahead, (1.0 - to) * dead, _MAX_STEP) if closed else None
+            found = _newton(at(to), ahead, (1.0 - to) * dead, MAX_STEP) if loops_close else None
         except MechanismError:  # the loops are singular there
             found = None
         if found is None or not found.tangent.balanced(found.residual):
@@ -359,56 +291,6 @@ def _loaded(tree: Tree, part: float) -> Tree:
     motions = tuple(replace(x, rate=x.rate * np.sqrt(part), acceleration=x.acceleration * part) for x in m.motions)
     gravity = (m.gravity[0] * part, m.gravity[1] * part, m.gravity[2] * part)
     return replace(tree, mechanism=replace(m, motions=motions, gravity=gravity))
-
-
-# --------------------------------------------------------------------------------------------------------------- motion
-
-
-def _given(tree: Tree) -> list[int]:
-    return [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
-
-
-def _state(tree: Tree, q: Array) -> State:
-    """Velocities and accelerations that the motions and, through the loops, all other coordinates have (eq. 18, 20)."""
-    n = len(q)
-    v, a = np.zeros(n), np.zeros(n)
-    given = _given(tree)
-    for m, j in zip(tree.mechanism.motions, given, strict=True):
-        v[j], a[j] = m.rate, m.acceleration
-    k = kinematics(tree, q, v, a)
-    if tree.welds:
-        following = np.setdiff1d(np.arange(n), given)
-        J = partition.jacobian(tree, k.B)
-        back = ranked(J[:, following])
-        v[following] = back.solve(-J @ v)
-        k = kinematics(tree, q, v, a)
-        a[following] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
-        if np.abs(J @ v).max() > 1e-7 * max(float(np.abs(v).max()), 1e-300) * _length(k.poses):
-            raise ContradictionError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
-        k = kinematics(tree, q, v, a)
-    return State(q, v, a, np.zeros((len(tree.welds), 6)), k, dynamics.cartesian(tree, k))
-
-
-def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
-    """(n,) whether a coordinate moves because its loop does."""
-    out = np.abs(state.v) > 1e-9 * np.abs(state.v).max(initial=0.0)
-    out[_given(tree)] = False
-    return out
-
-
-def _check_rates(tree: Tree, state: State) -> None:
-    """Check that the prescribed motions determine the rates of all moving loops."""
-    if not moving(tree, state).any():
-        return
-    following = np.setdiff1d(np.arange(len(state.q)), _given(tree))
-    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, following]).null
-    free = moving(tree, state)[following] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
-    if free.any():
-        name = tree.coordinates[following[int(free.argmax())]]
-        raise MechanismError(
-            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too "
-            "(prescribed = false if it is to vibrate)"
-        )
 
 
 def _check_balance(tree: Tree, found: _Found) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import dynamics
-from .equilibrium import State
 from .partition import Partition, partition
+from .state import State
 from .tree import Tree
 
 Array = NDArray[np.float64]

@@ -6,11 +6,13 @@ import numpy as np
 
 from .. import eigen
 from . import periodic
-from .equilibrium import State, assemble, moving, steady, unresisted
+from .equilibrium import steady, unresisted
 from .kinematics import kinematics
 from .linear import Linearization, about
+from .loops import assemble
 from .mechanism import Mechanism, MechanismError, at_time
 from .partition import freedom, partition
+from .state import State, moving
 from .tree import Tree, compile_tree
 
 

@@ -64,6 +64,11 @@ def prescribed(tree: Tree) -> Index:
     )
 
 
+def free_coordinates(tree: Tree) -> Index:
+    """(f,) coordinates whose motion is not prescribed."""
+    return np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
+
+
 def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = None) -> Partition:
     """Split the free coordinates (eq. 12) and express the dependent ones by the independent (eq. 14–16, 18).
 
@@ -75,7 +80,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     Raises:
         MechanismError: names that cannot serve as independent coordinates.
     """
-    free = np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
+    free = free_coordinates(tree)
     J = jacobian(tree, k.B)[:, free]
     dependent, chosen = pivots(J)
     rank = len(dependent)
@@ -103,7 +108,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
 
 def freedom(tree: Tree, B: Array) -> int:
     """How many ways the free coordinates can move at a configuration with velocity transformation B."""
-    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))]
+    J = jacobian(tree, B)[:, free_coordinates(tree)]
     return J.shape[1] - ranked(J).rank
 
 
