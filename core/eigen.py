@@ -2,7 +2,7 @@
 
 The dense solver here and ``lanczos`` work on the inverse: with y = λ x, A = diag(K, M) and S = [[C, M], [−M, 0]], the
 operator A⁻¹S has eigenvalues −1/λ, the lowest modes largest. S is skew in the plain product, A⁻¹S in A's, so the eigenvalues
-lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly, without a fudge.
+lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly.
 (Meirovitch 1974; Lancaster 2013, *Stability of linear gyroscopic systems*.)
 """
 
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 
 
 class UnstableError(ValueError):
-    """The steady state has no positive definite stiffness: it is not a stable one to vibrate about."""
+    """The stiffness about the steady state is not positive definite: the steady state is unstable."""
 
 
 class EigenError(RuntimeError):
@@ -93,15 +93,15 @@ class Damped:
 def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[Array, Array] | None = None) -> Damped:
     """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none.
 
-    A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of either sign. With Wᵀ K = 0 the
-    equations along W are ``Wᵀ (C + λ M) x = 0`` for every other mode: put in, they take these zeros out, and each rigid
-    motion is one mode with λ = 0.
+    A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of opposite sign. With Wᵀ K = 0 all
+    other modes satisfy ``Wᵀ (C + λ M) x = 0``; these replace the equations along W. Each rigid motion is
+    then one mode with λ = 0.
 
     Args:
         M: (n, n).
         C: (n, n).
         K: (n, n).
-        count: how many modes, from the lowest; all by default.
+        count: number of modes, from the lowest; all by default.
         rigid: bases (n, d) of the motions that K does not resist, and of the directions W in which it gives no force.
 
     Raises:

@@ -3,7 +3,7 @@
 Static condensation eliminates all freedoms but the twists of the frames that sections are tied to: with ``K u + Gᵀλ = 0``
 inside and the ties' equations as constraints G, the stiffness between two end sections is 12×12 (R. J. Guyan, AIAA Journal
 3 (1965) 380). It has six rigid-body modes, so a 6×6 says the same: the wrench ``k ρ`` on b, with ρ = ξ_b − ξ_a in a's axes,
-the complex stiffness element of ``core.beams``.
+the complex stiffness element of ``core.element.beams``.
 
 A segment's mass becomes one rigid body with its mass, centre and inertia, which rides on the element: it moves as the
 segment's mass does on average (by least squares, so momenta are kept) in the static displacements. What is left out is the

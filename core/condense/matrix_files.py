@@ -138,7 +138,7 @@ def _triplets(name: str, lines: list[str]) -> Exported:
         labels.append([_whole(name, number, w) for w in words[:-1]])
         values.append(_real(name, number, words[-1]))
     if not labels:
-        raise MatrixFileError(f"{name}: no matrix in it: see core.matrix_files for the forms that are read")
+        raise MatrixFileError(f"{name}: no matrix in it: see core.condense.matrix_files for the forms that are read")
     at = np.array(labels, dtype=np.intp)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], np.array(values))

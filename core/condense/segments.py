@@ -1,7 +1,7 @@
 """A segment of a blade: a complex stiffness element and the rigid body that rides on it (Park et al. 2010, figs 1 and 2).
 
 A 12×12 stiffness between two frames that has six rigid-body modes says no more than a 6×6: the wrench ``k ρ`` on b, with
-ρ = ξ_b − ξ_a in a's axes. That is the complex stiffness element of ``core.beams``.
+ρ = ξ_b − ξ_a in a's axes. That is the complex stiffness element of ``core.element.beams``.
 """
 
 from dataclasses import dataclass

@@ -75,16 +75,16 @@ def discretize(
 
     Args:
         blade: the blade.
-        elements: how many, of equal arc length but for kinks (see ``divide``); or the arc lengths (n+1,) of their ends, every
-            kink among them.
+        elements: how many, of equal arc length apart from kinks (see ``divide``); or the arc lengths (n+1,) of their ends, m,
+            including every kink.
         mass: ``consistent`` keeps the mass where it is (fourth order); ``half_end`` lumps each element's halves at its
             ends, as Park et al. 2010 do (second order).
-        stiffness: strain measure, see ``elements``.
+        stiffness: strain measure, see ``measures``.
         load: (m, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them; linear between
             the stations.
 
     Raises:
-        ValueError: if there is not at least one element, or the load is not one row of three a station.
+        ValueError: if there is not at least one element, or the load is not one row of three per station.
     """
     if isinstance(elements, np.ndarray):
         s = elements
@@ -137,7 +137,7 @@ def discretize(
 
 
 MIN_SHARED = 16
-"""Elements that are shared out among the pieces between kinks; more are these, halved."""
+"""Least number of elements to distribute among the pieces between kinks; finer meshes halve these elements."""
 
 
 def divide(blade: Blade, elements: int) -> Array:
@@ -158,7 +158,7 @@ def divide(blade: Blade, elements: int) -> Array:
 
 
 def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
-    """How many elements each piece has: one, and each further one goes where elements are longest."""
+    """Number of elements of each piece (p,): one each, and every further one goes to the piece with the longest elements."""
     number = np.ones(len(lengths), dtype=np.intp)
     for _ in range(elements - len(lengths)):
         number[np.argmax(lengths / number)] += 1

@@ -1,4 +1,4 @@
-"""Inertial wrench of bodies carried steadily by a rotating frame, and its linearisation.
+"""Inertial wrench of bodies in steady rotation, and its linearisation.
 
 With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y; letting the body move by a small
 twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
@@ -6,7 +6,7 @@ twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
     δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − cross(MV)  (Coriolis, skew),
                              K = −V×ᵀ M V× − cross(MV) V×   (centrifugal),
 
-components taken along with the body (Featherstone 2008, eq. 2.72, varied once).
+in components that follow the body (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, eq. 2.72, linearised).
 """
 
 import numpy as np

@@ -1,13 +1,14 @@
-"""From a blade's sections to the elements between its nodes: exact static solution by integrated flexibility.
+"""Exact static solution of the elements between a blade's nodes, by integrating the flexibility of its sections.
 
-Clamp frame a and load frame b by a wrench w (at a's origin, in a's axes): the section at s carries ``Ad(F_s)ᵀ w``, strains by
-its compliance, and turns and moves all beyond it, so the twist of the section at s is
+Clamp frame a and load frame b by a wrench w (at a's origin, in a's axes). The section at s carries ``Ad(F_s)ᵀ w``, and its
+strain moves everything beyond it, so the twist of the section at s is
 
     ρ(s) = f(s) w,   f(s) = ∫ Ad(F) c Ad(F)ᵀ ds   from a to s,
 
-for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. What loads
-between the nodes add to that, six bubbles describe: the element clamped at both ends under uniform loads along its sections'
-axes. They do no work with the shape functions, and make axial, torsional and shear motion as accurate as bending. Gauss
+for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. Six bubble
+functions describe the effect of loads between the nodes: the element clamped at both ends under uniform loads along its
+sections' axes. They are orthogonal to the shape functions in energy and make axial, torsional and shear motion as accurate as
+bending. Gauss
 quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
 """
 
@@ -38,7 +39,7 @@ def root(blade: Blade) -> Array:
 def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
     """Undeformed poses (k, 4, 4) of the sections at ``s`` (m), in the hub's axes: x tangent, y and z rotated by the twist.
 
-    At a kink there are two: of the section just ``before`` it, or of the one just beyond.
+    At a kink the section just ``before`` it and the one just beyond it differ.
     """
     turn = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
@@ -53,7 +54,7 @@ def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
 
 
 def compliance(blade: Blade, s: Array) -> Array:
-    """Section compliance (k, 6, 6); rigid shears have none, rigid axial and torsional strains next to none."""
+    """Section compliance (k, 6, 6): zero for rigid shear, almost zero for rigid axial and torsional strain."""
     k = stiffness_at(blade, s)
     soft = np.flatnonzero(np.isfinite(k).all(axis=(0, 2)))
     out = np.zeros_like(k)
@@ -79,10 +80,9 @@ class StaticSolution:
         bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
             moves nothing has a zero column.
         at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the arc lengths asked for.
-        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
-            across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
-            tells.
-        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
+        shortening: (n, 6, 6) G: δᵀGδ is the shortening ½∫(|y′|² − |Γ|²) of the static shape, with transverse displacement y and
+            Reissner's shear strain Γ (shear alone does not shorten), beyond that in the logarithmic strain δ of the ends.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``measures``.
     """
 
     element: Index
@@ -203,7 +203,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
 def _uneven(
     pose: Array, part: Array, length: Array, last: Array, shape: Array, rate: Array, static: Array, loaded: Array
 ) -> tuple[Array, Array, Array]:
-    """What G, A and B of ``elements`` integrate, at the Gauss points (i, q, …).
+    """Integrands of G, A and B of ``measures`` at the Gauss points (i, q, …).
 
     Args:
         pose: (i, q, 4, 4) of the points in the element's frame.

@@ -1,8 +1,7 @@
 """Cartesian equations of a tree and their projection M* v̇ = Q* (Park et al. 2010, eq. 1, 5–11).
 
-All wrenches are on the bodies at the ground's origin, in its axes. What the bodies feel is gathered as a ``Cartesian`` pencil:
-the total wrench g that inertia and forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` along with the bodies,
-block by block, ξ the bodies' small twists.
+All wrenches act on the bodies at the ground's origin, in its axes. ``Cartesian`` collects the total wrench g that inertia and
+forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` with the small twists ξ of the bodies, block by block.
 """
 
 from dataclasses import dataclass
@@ -42,7 +41,7 @@ class Cartesian:
 
 
 class _Sum:
-    """Wrenches and 6×6 blocks as they come in."""
+    """Accumulates wrenches and 6×6 blocks."""
 
     def __init__(self, rows: int) -> None:
         self.g = np.zeros((rows, 6))
@@ -65,7 +64,7 @@ class _Sum:
                 self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
 
     def total(self) -> Cartesian:
-        """All of it, added up."""
+        """The sum as a ``Cartesian``."""
         row, column = (np.concatenate([part[k] for part in self.blocks]) for k in (0, 1))
         six = np.arange(6)
         where = np.broadcast_arrays((6 * row[:, None] + six)[:, :, None], (6 * column[:, None] + six)[:, None, :])
@@ -234,7 +233,7 @@ def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> 
 
 
 def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
-    """Equal and opposite reactions, taken along with the bodies; what else they vary by is left to the multipliers."""
+    """Equal and opposite reactions w (6,) of a weld that follow the bodies; their variation is that of the multipliers."""
     out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
 
 
@@ -245,7 +244,7 @@ def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
 
 
 def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> Array:
-    """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would be needed."""
+    """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would balance the tree."""
     # Bᵀ (M (B v̇ + Ḃ v) + Φᶜ_Zᵀ λ − Q), from which Bᵀ Φᴶ_Zᵀ = 0 drops the reactions of the tree's joints (eq. 5)
     out = np.einsum("bin,bi->n", k.B, c.g)
     for s in tree.mechanism.coordinate_springs:

@@ -36,7 +36,7 @@ def linearize(
         time: s, the instant looked at; it matters where motions follow laws.
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is not steady; the message says what.
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is not steady.
     """
     tree = compile_tree(at_time(mechanism, time))
     state = steady(tree, guess)
@@ -48,7 +48,7 @@ def linearize(
 
 
 def _check_regular(tree: Tree, state: State) -> None:
-    """Compare the freedom here with that of an assembled configuration a little way off."""
+    """Check that the number of freedoms is the same in a nearby assembled configuration."""
     if not tree.welds:
         return
     here = partition(tree, state.kinematics)

@@ -42,7 +42,7 @@ class Solution:
 
     @property
     def frequencies(self) -> Array:
-        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its size."""
+        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its modulus."""
         return np.abs(self.values)
 
     @property
@@ -73,11 +73,11 @@ def solve(
         mechanism: the mechanism.
         guess: coordinates to start from, by name; others start at 0.
         count: how many modes, from the lowest; all by default.
-        independent: coordinates to vibrate; chosen numerically if not given.
+        independent: independent coordinates; chosen numerically if not given.
         time: s, where motions follow laws of time: the instant frozen (see ``linearize``).
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is periodic; the message says what.
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is periodic; the message gives the cause.
         EigenError: if the eigenvalue solver fails.
     """
     linear = linearize(mechanism, guess, independent, time)
@@ -102,7 +102,7 @@ def solve(
 def straight_beam(length: float, **section: Any) -> Beams:
     """One uniform beam element along x, for a ``Beam``; ``section`` as for ``blade.uniform_blade``: EA, GJ, EI_y, EI_z, mass …
 
-    Its mass is inside it, consistent: its ends must then turn together in the steady state. Without ``mass`` it has none.
+    Its mass is inside it, consistent: its ends must then rotate together in the steady state. Without ``mass`` it is massless.
     """
     massless = not section.get("mass")
     section["mass"] = section.get("mass") or 1.0

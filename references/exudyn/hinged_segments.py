@@ -48,7 +48,7 @@ class HingedSegments:
 
 
 def plant(blade: Blade, elements: int) -> HingedSegments:
-    """A blade as a tree of ``elements`` equal elements."""
+    """A blade as a tree of ``measures`` equal elements."""
     ends = np.linspace(0.0, blade.length, elements + 1)
     hinges, stiff = _hinges(blade, ends)
     slide = [strain for strain in SLIDE if np.isfinite(stiff[0, strain])]
