@@ -40,13 +40,13 @@ class Condensed:
     displacements: Array
 
 
-def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
+def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
     """Eliminate statically all but the twists of the tied frames.
 
     Raises:
         CondensationError: a freedom in two rigid ties, or unsupported freedoms.
     """
-    n, m = len(model.directions), len(tied)
+    n, m = len(fe_model.directions), len(tied)
     follow = np.zeros((n, 6 * m))
     rigidly_tied = np.zeros(n, bool)
     means = []
@@ -62,7 +62,7 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
             )
         else:
             follow[t.freedoms, own], rigidly_tied[t.freedoms] = t.motion, True
-    K, free = model.stiffness, np.flatnonzero(~rigidly_tied)
+    K, free = fe_model.stiffness, np.flatnonzero(~rigidly_tied)
     unit = float(abs(K).max())
     G = np.concatenate([row for row, _ in means]) if means else np.zeros((0, n))
     ask = unit * G @ follow
@@ -77,7 +77,7 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
         X = np.full_like(B, np.nan)
     if not np.abs(A @ X + B).max(initial=0.0) <= 1e-6 * np.abs(B).max(initial=0.0):
         raise CondensationError(
-            f"{model.name}: unsupported freedoms among its {n} once the sections' frames are fixed: "
+            f"{fe_model.name}: unsupported freedoms among its {n} once the sections' frames are fixed: "
             "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
         )
     displacements = follow.copy()
@@ -85,23 +85,23 @@ def condense(model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
     return Condensed(follow.T @ (K @ follow) + B.T @ X, displacements)
 
 
-def segment(model: FiniteElements, a: Tie, b: Tie) -> Segment:
+def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:
     """One segment of a blade alone, between its end sections.
 
     Raises:
         CondensationError: as ``condense`` and ``between``, or a model without mass.
     """
-    c = condense(model, (a, b))
+    c = condense(fe_model, (a, b))
     undeformed = ties.seen(a, b)
     displacements = c.displacements[:, 6:] @ sp.adjoint(sp.inverse(undeformed))
     return Segment(
         undeformed,
         between(c.stiffness, undeformed, f"{a.name} to {b.name}"),
-        *_body(model, model.mass, a.frame, displacements),
+        *_body(fe_model, fe_model.mass, a.frame, displacements),
     )
 
 
-def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array) -> list[Segment]:
+def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Array) -> list[Segment]:
     """Every segment of a blade in its place between its neighbours, so that sections warp and contract as they do there.
 
     The blade is clamped at its first tie and loaded at its last by six wrenches; between, average ties read how far each
@@ -109,7 +109,7 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
     What the ties add or lack is felt at the two ends of the blade only.
 
     Args:
-        model: the whole blade.
+        fe_model: the whole blade.
         tied: m + 1 sections from the root on: rigid at a root that is clamped, average everywhere else.
         masses: (m, n) lumped mass of each segment at the model's freedoms; at a section between two, each has its share.
 
@@ -120,11 +120,11 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
         raise CondensationError(
             f"section {bad[0]!r}: a rigid tie stops the warping it should let pass; use an average one"
         )
-    if np.shape(masses) != (len(tied) - 1, len(model.directions)):
+    if np.shape(masses) != (len(tied) - 1, len(fe_model.directions)):
         raise CondensationError(
-            f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(model.directions))}: a row a segment"
+            f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(fe_model.directions))}: a row a segment"
         )
-    c = condense(model, (tied[0], tied[-1]))
+    c = condense(fe_model, (tied[0], tied[-1]))
     displacements, tip = (
         c.displacements[:, 6:],
         c.stiffness[6:, 6:],
@@ -144,20 +144,20 @@ def segments_in_place(model: FiniteElements, tied: Sequence[Tie], masses: Array)
                 f"segment {a.name!r} to {b.name!r}: its flexibility is {wrong:.1e} from symmetric, or not positive: "
                 "sections too close together for the mesh, or ties of another model?"
             )
-        J, mean = _body(model, masses[k], a.frame, displacements)
+        J, mean = _body(fe_model, masses[k], a.frame, displacements)
         stiffness: Array = np.linalg.inv(0.5 * (flexibility + flexibility.T))
         ride: Array = (mean - twists[k]) @ np.linalg.inv(rho)
         out.append(Segment(undeformed, stiffness, J, ride))
     return out
 
 
-def _body(model: FiniteElements, mass: Array, frame: Array, displacements: Array) -> tuple[Array, Array]:
+def _body(fe_model: FiniteElements, mass: Array, frame: Array, displacements: Array) -> tuple[Array, Array]:
     """Inertia and mean twist of a mass whose freedoms move by ``displacements`` (n, 6), both about ``frame``, in its axes."""
-    R = ties.motion(model.points, model.directions, frame)
+    R = ties.motion(fe_model.points, fe_model.directions, frame)
     J = (R.T * mass) @ R
     size = np.sqrt(np.abs(np.diagonal(J)))
     if (size <= 0).any() or np.linalg.eigvalsh(J / np.outer(size, size))[0] < 1e-12:
         raise CondensationError(
-            f"{model.name}: no mass, or none with moments of inertia about all axes: give the freedoms' lumped mass"
+            f"{fe_model.name}: no mass, or none with moments of inertia about all axes: give the freedoms' lumped mass"
         )
     return J, np.linalg.solve(J, (R.T * mass) @ displacements)
