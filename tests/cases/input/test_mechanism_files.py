@@ -230,7 +230,7 @@ def test_bad_input_ends_in_one_line(tmp_path: Path, old: str, new: str, told: li
 
 def test_what_only_solving_shows_names_the_file_too(tmp_path: Path) -> None:
     path = write(tmp_path, WHOLE.replace('independent = ["leg.rz"]', 'independent = ["leg.rz", "lift.z"]'))
-    with pytest.raises(CaseError, match=r"m\.toml: independent: leg\.rz, lift\.z do not determine the rest"):
+    with pytest.raises(CaseError, match=r"m\.toml: independent: leg\.rz, lift\.z do not determine the others"):
         mechanisms.read(path).solve()
     with pytest.raises(CaseError, match=r"time: nan: give a finite instant"):
         mechanisms.read(path).solve(time=float("nan"))
