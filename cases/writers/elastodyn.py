@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
 from ..campbell.elastodyn_shapes import polynomials
-from ..input import atomic
 from ..input.errors import CaseError
 from ..input.readers.elastodyn import COLUMNS, MULTIPLIERS
 from ..input.readers.elastodyn_unused import DAMPING
@@ -89,7 +88,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
             for power, x in enumerate(row, 2)
         ),
     ]
-    atomic.write(path, "\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return Mount(length=blade.length, hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 

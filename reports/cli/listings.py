@@ -15,11 +15,9 @@ from ...cases.verify.settings import settings
 from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import registry as registry
-from ...references.protocol.description import describe
 from ..shared import console
-from ..shared.statuses import PASSED
 from .arguments import RESULTS, finished
-from .errors import UsageError
+from .exit_status import PASSED, UsageError
 
 
 def cases() -> int:
@@ -64,12 +62,13 @@ def codes(*, pages: Path | None = None) -> int:
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("code", "title", "version", "shares with core", "omits"):
         table.add_column(head, overflow="fold")
-    for known in describe(registry.names()):
-        found = f"✔ {known.version}" if known.version else f"○ not found; {known.hint}"
+    for name in registry.names():
+        known = registry.code(name)
+        found = known.version()
         table.add_row(
             known.name,
             known.title,
-            Text(f"✘ {known.failure.reason}" if known.failure else found),
+            Text(f"✔ {found}" if found else f"○ not found; {known.hint}"),
             known.shares,
             ", ".join(known.model.lacks()) or "nothing",
         )

@@ -11,10 +11,8 @@ import msgspec
 from msgspec import Meta, Struct
 
 from ....core.blade import Blade
-from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
-from ..names import Name
 from ..toml import convert, document, finite
 from .sections import describe
 from .source import Mount, Reading, Source
@@ -26,7 +24,7 @@ AXES = "ours: x along the blade, z the rotor's axis, y the direction of motion; 
 class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A blade file."""
 
-    name: Name
+    name: Annotated[str, Meta(min_length=1, description="what to call it")]
     blade: BladeData
     title: Annotated[str, Meta(description="one line")] = ""
     source: Annotated[str, Meta(description="where the data come from")] = ""
@@ -83,7 +81,7 @@ def write(blade: Blade, path: Path) -> None:
     lines += [f"{key} = {_toml(value)}" for key, value in data.items() if value is not None and key not in tables]
     for name, table in tables.items():
         lines += ["", f"[blade.{name}]", *(f"{k} = {_toml(v)}" for k, v in table.items() if v is not None)]
-    atomic.write(path, "\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _toml(value: object) -> str:

@@ -1,6 +1,5 @@
 """Files as editors, spreadsheets and downloads leave them: the same content, or one line that says why not."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -117,9 +116,9 @@ def test_a_file_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.Monkey
     path = tmp_path / "blade.toml"
     path.write_text("x = 1\n")
 
-    def refuse(*_: object) -> int:
+    def refuse(_: Path) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(os, "open", refuse)
+    monkeypatch.setattr(Path, "read_bytes", refuse)
     with pytest.raises(CaseError, match=r"blade.toml: cannot be read \(Permission denied\)"):
         toml.document(path)
