@@ -28,7 +28,7 @@ ARCS = {p.name: p.having for p in PROPERTIES if p.name in ("sweep", "prebend")}
 
 
 def core(blade: Blade, omega: float, count: int = 5) -> Array:
-    return solve.modes(blade, omega, 80, count).frequencies
+    return solve.modes(blade, omega, 80, count, allow_large_strain=True).frequencies
 
 
 @needs_sharpy

@@ -144,5 +144,5 @@ def test_a_pdf_or_what_is_missing_for_it(folder: Path) -> None:
 
 def test_without_weasyprint_it_says_what_to_install(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "weasyprint", None)
-    with pytest.raises(html.PdfError, match=r"pip install 'southwell\[pdf\]'"):
+    with pytest.raises(html.PdfError, match=r"pip install '\.\[pdf\]'"):
         html.pdf(matrix_report.write(samples.run(), folder))
