@@ -7,7 +7,7 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ..judge.pairing import aligned, families, pair, weights
+from ..judge.pairing import aligned, families, numbered, pair, weights
 from .diagram import Wanted, solver
 
 
@@ -54,11 +54,9 @@ def changes(blade: Blade, against: Blade, speeds: Sequence[float], modes: int, e
 def _at(found: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
     found, other = aligned(found, weight), aligned(other, weight)
     wanted = range(min(modes, len(found.frequencies)))
-    names, seen = families(found, weight), dict[str, int]()
+    names = numbered(families(found, weight))
     out = []
     for k, partner in zip(wanted, pair(found, other, wanted, weight), strict=True):
-        seen[names[k]] = seen.get(names[k], 0) + 1
         theirs = float(other.frequencies[partner.mode]) if partner.mode is not None else np.nan
-        name = f"{names[k]} {seen[names[k]]}"
-        out.append(Changed(found.omega, name, float(found.frequencies[k]), theirs, partner.mac, partner.note))
+        out.append(Changed(found.omega, names[k], float(found.frequencies[k]), theirs, partner.mac, partner.note))
     return out

@@ -1,7 +1,6 @@
 """Core's own answer for a blade over speeds: frequencies with names."""
 
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -12,7 +11,7 @@ from ...core import solve, velocity_transformation
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ..input.errors import NO_STATE, rad_s, unsteady
-from ..judge.pairing import aligned, families, weights
+from ..judge.pairing import aligned, families, numbered, weights
 
 Method = Literal["chain", "velocity-transformation"]
 """Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
@@ -74,11 +73,8 @@ def sweep(
                 one = aligned(next(found), weight)
             except NO_STATE as error:
                 raise unsteady(blade.name, omega, error, at) from error
-            seen: Counter[str] = Counter()
-            known = zip(families(one, weight), one.frequencies, one.uncertainty, strict=True)
-            for mode, (family, frequency, sure) in enumerate(known, 1):
-                seen[family] += 1
-                name = f"{family} {seen[family]}"
+            known = zip(numbered(families(one, weight)), one.frequencies, one.uncertainty, strict=True)
+            for mode, (name, frequency, sure) in enumerate(known, 1):
                 rows.append(Named(float(omega), mode, name, float(frequency), float(sure), one.strain))
     return rows
 

@@ -5,7 +5,8 @@ add up: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common s
 displacements and the rotation about x, times a quadrature weight. Shapes are complex: a gyroscopic lag counts.
 """
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,6 +85,16 @@ def families(modes: Modes, weight: Array) -> tuple[str, ...]:
     """Name of each mode: the motion that carries at least ``DOMINANT`` of its modal mass, else ``mixed``."""
     share = shares(modes, weight)
     return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT else "mixed" for row in share)
+
+
+def numbered(families: Iterable[str]) -> list[str]:
+    """Each family with its number within it: ``flapwise 1``, ``chordwise 1``, ``flapwise 2``."""
+    seen: Counter[str] = Counter()
+    out = []
+    for family in families:
+        seen[family] += 1
+        out.append(f"{family} {seen[family]}")
+    return out
 
 
 def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ...core import multibody as mb
 from ..judge.measured import Validation
+from ..judge.pairing import numbered
 from . import sandia34
 from .sandia34 import Variation
 
@@ -45,17 +46,15 @@ def named(found: mb.Solution) -> dict[str, float]:
     bodies = [b.name for b in found.linear.tree.mechanism.bodies]
     number = sum(name.startswith("right ") for name in bodies)
     sides = [np.array([bodies.index(f"{side} {k}") for k in range(1, number + 1)]) for side in ("right", "left")]
-    out: dict[str, float] = {}
-    for shape, f in zip(found.shapes, found.frequencies, strict=True):
+    kinds = []
+    for shape in found.shapes:
         twist = state.B @ shape  # of every body, taken at the ground's origin
         right, left = (twist[s, :3] + np.cross(twist[s, 3:], state.poses[s, :3, 3]) for s in sides)
         turned = left * [-1.0, -1.0, 1.0]
         symmetric = np.linalg.norm(right + turned) > np.linalg.norm(right - turned)
         across = np.linalg.norm(right[:, 1])
-        kind = ("E" if across > np.linalg.norm(right[:, [0, 2]]) else "F") + ("S" if symmetric else "A")
-        k = 1 + sum(name.startswith(kind) for name in out)
-        out[f"{kind} {k}"] = float(f) / (2.0 * np.pi)
-    return out
+        kinds.append(("E" if across > np.linalg.norm(right[:, [0, 2]]) else "F") + ("S" if symmetric else "A"))
+    return dict(zip(numbered(kinds), (found.frequencies / (2.0 * np.pi)).tolist(), strict=True))
 
 
 def solved(rpm: float, how: Variation) -> dict[str, float]:

@@ -1,6 +1,5 @@
 """Printed tables as columns of the matrix: the series that are about a case's blade, at the speeds both have."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ from ...core.effects import Model
 from ...references.protocol.worker import Answer, Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
+from ..judge.pairing import numbered
 from ..judge.results import Cell, Level
 from ..judge.uncertainty import from_print
 from ..judge.verdict import unsigned
@@ -40,13 +40,10 @@ class Printed:
 
     def at(self, omega: float, families: Sequence[str]) -> list[Datum | None]:
         """The number for each of a reference's modes, by family and ordinal within it, at rotor speed ``omega``."""
-        here = {(d.family, d.mode): d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)}
-        seen: Counter[str] = Counter()
-        found = []
-        for family in families:
-            seen[family] += 1
-            found.append(here.get((family, seen[family])))
-        return found
+        here = {
+            f"{d.family} {d.mode}": d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)
+        }
+        return [here.get(name) for name in numbered(families)]
 
 
 def about(blade: Blade, names: Sequence[str]) -> list[Printed]:

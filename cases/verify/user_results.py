@@ -25,7 +25,7 @@ from ...core.participation import MIXED
 from ..input import files
 from ..input.errors import CaseError, nearest
 from ..input.schema import Variant
-from ..judge.pairing import MOTIONS
+from ..judge.pairing import MOTIONS, numbered
 from ..judge.uncertainty import Estimate, from_print
 from .cells import Head, empty, printed
 from .columns import Column, References, Rows
@@ -221,8 +221,7 @@ def _surely(row: Given, omega: float) -> Estimate:
 
 
 def _names(reference: Reference) -> list[str]:
-    families = reference.core.names
-    return [f"{family} {families[: k + 1].count(family)}" for k, family in enumerate(families)]
+    return numbered(reference.core.names)
 
 
 def _place(row: Given, reference: Reference) -> int | None:

@@ -1,6 +1,5 @@
 """Results that show themselves: a short text, a table in a notebook, a pandas table, a figure."""
 
-from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.judge.pairing import MOTIONS, aligned, families, weights
+from ...cases.judge.pairing import MOTIONS, aligned, families, numbered, weights
 from ...cases.judge.results import Run
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
@@ -62,12 +61,7 @@ class ModesResult(Modes):
     def names(self) -> list[str]:
         """Of each mode: its family and its number within it, ``flapwise 2``."""
         weight = weights(self.blade)
-        seen: Counter[str] = Counter()
-        out = []
-        for family in families(aligned(self, weight), weight):
-            seen[family] += 1
-            out.append(f"{family} {seen[family]}")
-        return out
+        return numbered(families(aligned(self, weight), weight))
 
     def plot(self, modes: int = 4, axes: Axes | None = None) -> Axes:
         """Draw the shapes of the lowest ``modes`` along the span: of each, the motion that is largest, scaled to 1."""

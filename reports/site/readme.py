@@ -67,13 +67,17 @@ def condense(run: Run) -> Run:
 
 
 def five(run: Run) -> str:
-    """The README's table: of each case in ``SHOWN`` the independent codes of which every answer passes, and their largest
-    difference; and the worst difference of a published table."""
+    """The README's table: of each case in ``SHOWN`` the independent codes of which every answer passes and their largest
+    difference, the independent codes with any other verdict, and the worst difference of a published table."""
     rows = []
     for case, what in SHOWN.items():
         codes = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
-        short = {c.code for c in codes if c.verdict != "pass"}
-        codes = [c for c in codes if c.code not in short]
+        answers = [c for c in codes if c.verdict not in ("not run", "not applicable")]
+        others = [c for c in answers if c.verdict != "pass"]
+        short = {
+            code: summary.gravest(c for c in others if c.code == code) for code in dict.fromkeys(c.code for c in others)
+        }
+        codes = [c for c in answers if c.code not in short]
         worst = max(codes, key=lambda c: abs(c.difference or 0.0))
         printed = summary.worst(c for c in run.cells if c.case == case and c.role == "table")
         rows.append(
@@ -81,6 +85,7 @@ def five(run: Run) -> str:
                 "blade": what,
                 "agree with core": ", ".join(dict.fromkeys(plain(c.code) for c in codes)),
                 "largest difference": summary.plus_minus(worst),
+                "other verdicts": ", ".join(f"{plain(code)} ({verdict})" for code, verdict in short.items()) or "–",
                 "published table": _published(printed) if printed else "–",
             }
         )
