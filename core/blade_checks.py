@@ -245,7 +245,7 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has one mass in all directions; a table's "
             "columns shifted? give one"
         )
-    size = np.sqrt(np.maximum(np.outer(d, d), (1e-9 * scale) ** 2))
+    size = np.maximum(np.sqrt(d)[:, None] * np.sqrt(d), 1e-9 * scale)  # np.outer(d, d) may underflow
     wrong = np.abs(matrix - matrix.T) / size
     if wrong.max() > SYMMETRIC:
         i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)

@@ -10,7 +10,7 @@ import logging
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from multiprocessing import parent_process
@@ -22,6 +22,8 @@ import numpy as np
 from numba.core import config, event
 from numpy.typing import NDArray
 
+from . import compiled_files
+
 Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -30,23 +32,29 @@ _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
 @cache
-def _folder() -> Path:
-    """Beside the sources if that may be written to, else in the user's cache, else a temporary folder."""
+def _folder() -> Path | None:
+    """Beside the sources if that may be written to, else in the user's cache, else a temporary folder; only where nobody
+    else may write, since what is in it is executed. None: there is no such folder."""
     sources = [p.read_bytes() for p in sorted(_HERE.rglob("*.py"))]
     name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
-    user = os.environ.get("SOUTHWELL_CACHE") or Path.home() / ".cache" / "southwell"
-    for place in (_HERE / "__pycache__", Path(user), Path(tempfile.gettempdir()) / "southwell"):
-        folder = place / name
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
+    for place in _places():
+        if folder := compiled_files.folder(place, name):
             if place.parent == _HERE:  # elsewhere another installation may have its own
                 for old in set(place.glob("compiled-*")) - {folder}:
                     shutil.rmtree(old, ignore_errors=True)
             return folder
-    raise OSError(f"{_HERE}: no folder to keep compiled code in: set SOUTHWELL_CACHE to one that may be written to")
+    return None
+
+
+def _places() -> Iterator[Path]:
+    yield _HERE / "__pycache__"
+    if own := os.environ.get("SOUTHWELL_CACHE"):
+        yield Path(own)
+    else:
+        with suppress(RuntimeError):  # neither HOME nor an entry in the system's list of users
+            yield Path.home() / ".cache" / "southwell"
+    with suppress(OSError):  # no temporary folder either
+        yield Path(tempfile.gettempdir()) / f"southwell-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
 
 
 ANNOUNCEMENT = "southwell: compiling the solver's loops (first use only, up to half a minute)"
@@ -70,8 +78,11 @@ class _FirstUse(event.Listener):
 
 
 def _first_worker() -> bool:
+    folder = _folder()
+    if folder is None:
+        return True
     with suppress(FileExistsError):
-        (_folder() / "announced").touch(exist_ok=False)
+        (folder / "announced").touch(exist_ok=False)
         return True
     return False
 
@@ -81,12 +92,17 @@ event.register("numba:compile", _FirstUse())
 
 def compiled(f: F) -> F:
     """``f`` as machine code: arrays must be C-contiguous; a zero division gives inf or nan, as numpy's does."""
+    folder = _folder()
+    if folder is None:
+        return cast(F, numba.njit(f, **_HOW))
     before = config.CACHE_DIR  # type: ignore[attr-defined]
-    config.CACHE_DIR = str(_folder())  # type: ignore[attr-defined]
+    config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
     try:
-        return cast(F, numba.njit(f, cache=True, **_HOW))
+        out: Any = numba.njit(f, cache=True, **_HOW)
     finally:
         config.CACHE_DIR = before  # type: ignore[attr-defined]
+    compiled_files.check(out)
+    return cast(F, out)
 
 
 def inlined(f: F) -> F:

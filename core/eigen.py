@@ -19,6 +19,10 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+MASSLESS = 1e-14
+"""A motion's mass below this fraction of the largest, in scaled coordinates, is none."""
+
+
 class UnstableError(ValueError):
     """The steady state has no positive definite stiffness: it is not a stable one to vibrate about."""
 
@@ -54,7 +58,7 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     except np.linalg.LinAlgError:
         raise unstable() from None
     values, vectors = np.linalg.eigh(M)
-    keep = values > 1e-14 * max(values[-1], 0.0)
+    keep = values > MASSLESS * max(values[-1], 0.0)
     f = scipy.linalg.solve_triangular(root, vectors[:, keep] * np.sqrt(values[keep]), lower=True)
     g = scipy.linalg.solve_triangular(root, scipy.linalg.solve_triangular(root, C, lower=True).T, lower=True).T
     n, r = f.shape
@@ -93,6 +97,9 @@ class Damped:
 def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[Array, Array] | None = None) -> Damped:
     """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none.
 
+    A motion x without mass, M x = 0, has no velocity of its own in the pencil: its infinite eigenvalue would be double, and
+    rounding would make two huge ones of it. Simple, it is found as infinite; with a damper the motion has one real mode.
+
     A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of either sign. With Wᵀ K = 0 the
     equations along W are ``Wᵀ (C + λ M) x = 0`` for every other mode: put in, they take these zeros out, and each rigid
     motion is one mode with λ = 0.
@@ -121,17 +128,25 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     given = np.arange(n)
     if d:
         given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
-    zero, one = np.zeros((n, n)), np.eye(n)
+    heavy, light = _by_mass(M)
+    r, s = heavy.shape[1], light.shape[1]  # x = heavy p + light q, and y = λ p; M x λ² = λ M heavy y
+    none, one = np.zeros((d, n + r)), np.eye(r)
     # d equations along W instead of d of the n: the others stay as they are, stiff ones apart from soft ones
-    a = np.block([[zero, one], [-w @ C, -w @ M], [-K[given], -C[given]]])
-    b = np.block([[one, zero], [np.zeros((d, 2 * n))], [zero[given], M[given]]])
+    a = np.block(
+        [
+            [np.zeros((r, n)), one],
+            [-w @ C @ heavy, -w @ C @ light, -w @ M @ heavy],
+            [-K[given] @ heavy, -K[given] @ light, -C[given] @ heavy],
+        ]
+    )
+    b = np.block([[one, np.zeros((r, s + r))], [none], [np.zeros((n - d, r)), C[given] @ light, M[given] @ heavy]])
     try:
         pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
     except np.linalg.LinAlgError as error:
         raise _failed(error) from error
     alpha, beta = pair
     finite = np.abs(beta) > 1e-12 * np.abs(alpha)
-    values, x = alpha[finite] / beta[finite], unit[:, None] * z[:n, finite]
+    values, x = alpha[finite] / beta[finite], unit[:, None] * (heavy @ z[:r, finite] + light @ z[r:n, finite])
     order = np.argsort(np.abs(values), kind="stable")
     twice = int((np.abs(values[order[:d]]) < TOLERANCE).sum())  # zeros that were double
     values, x = values[order[twice:]] / time, x[:, order[twice:]]
@@ -139,6 +154,13 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     one_of_each = values.imag >= -1e-12 * largest
     values = np.concatenate([np.zeros(d, np.complex128), values[one_of_each]])[:count]
     return Damped(values, np.hstack([Z.astype(np.complex128), x[:, one_of_each]])[:, :count])
+
+
+def _by_mass(M: Array) -> tuple[Array, Array]:
+    """Bases (n, r), (n, n − r) of the motions with mass and without: coordinates as they are, where all have some."""
+    values, vectors = np.linalg.eigh(M)
+    massless = values <= MASSLESS * values[-1]
+    return (vectors[:, ~massless], vectors[:, massless]) if massless.any() else (np.eye(len(M)), np.zeros((len(M), 0)))
 
 
 def _check_finite(*matrices: Array) -> None:

@@ -182,8 +182,10 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
 def chain_modes(
     body: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = NO_GRAVITY
 ) -> Modes:
-    """The lowest modes of a chain; arguments and errors as for ``modes``."""
-    return _Mesh(body, count, model, gravity).at(next(_checked([omega], count))).modes
+    """The lowest modes of a chain, of which rounding is all that is known; arguments and errors as for ``modes``."""
+    one = _Mesh(body, count, model, gravity)
+    solved = one.at(next(_checked([omega], count)))
+    return replace(solved.modes, rounding=one.rounding(solved))
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,20 @@ import statistics
 import sys
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
+from ...core.regular_files import read_bytes
 from ...core.solve import mesh_modes, mesh_sweep
 from ...references.protocol import registry as registry
+from ...references.protocol.description import Description, describe
 from ...references.protocol.interface import CodeError
-from ..input import library
+from ...references.protocol.process import Limits
+from ..input import atomic, library
 from ..verify.pool import Pool
 
 CASE = "park-cantilever"
@@ -98,7 +102,7 @@ def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
 
 def write(path: Path, found: Bench) -> None:
     """Keep what was measured, as JSON."""
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(found)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Bench:
@@ -107,20 +111,25 @@ def read(path: Path) -> Bench:
     Raises:
         msgspec.DecodeError: if the file is not such a one.
     """
-    return msgspec.json.decode(path.read_bytes(), type=Bench)
+    return msgspec.json.decode(read_bytes(path), type=Bench)
 
 
 def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple[float, ...]) -> tuple[Timing, ...]:
-    versions = {name: _version(name) for name in names if name in registry.names()}
-    found = ["core", *(name for name, version in versions.items() if version)]
+    known = {code.asked: code for code in describe([name for name in names if name in registry.names()])}
+    notes = {name: _absent(known.get(name)) for name in names}
+    found = ["core", *(name for name, note in notes.items() if not note)]
     pools = {name: Pool(1) for name in found}
-    runs = [(name, ELEMENTS) for name in found]
     try:
         error: dict[str, float] = {}
-        for name in found:  # which loads its libraries too
+        for name in list(found):  # which loads its libraries too
             say(f"accuracy: {name}")
-            error[name] = _error(pools[name].submit(_answer, name, OMEGA).result()[1], exact)
+            try:
+                error[name] = _error(pools[name].submit(_answer, name, OMEGA).result(Limits.seconds)[1], exact)
+            except (BrokenProcessPool, TimeoutError, CodeError) as why:
+                found.remove(name)
+                notes[name] = f"it gave no answer: {type(why).__name__}: {why}"
         enough = {name: _enough(pools["core"], error[name], exact) for name in found[1:]}
+        runs = [(name, ELEMENTS) for name in found]
         runs += [("core", n) for n in sorted({n for n in enough.values() if n} - {ELEMENTS})]
         single: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
         swept: dict[tuple[str, int], list[float]] = {run: [] for run in runs}
@@ -139,7 +148,7 @@ def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple
     measured = {
         name: Timing(
             name,
-            versions.get(name) or "",
+            (known[name].version or "") if name in known else "",
             one[name, ELEMENTS],
             all_[name, ELEMENTS],
             max(single[name, ELEMENTS]) / min(single[name, ELEMENTS]),
@@ -148,7 +157,7 @@ def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple
         )
         for name in found
     }
-    return tuple(measured.get(name) or Timing(name, "", note=_hint(name)) for name in ("core", *names))
+    return tuple(measured.get(name) or Timing(name, "", note=notes[name]) for name in ("core", *names))
 
 
 def _enough(pool: Pool, error: float, exact: tuple[float, ...]) -> int | None:
@@ -163,12 +172,11 @@ def _error(frequencies: tuple[float, ...], exact: tuple[float, ...]) -> float:
     return max(abs(a / b - 1.0) for a, b in zip(frequencies[: len(exact)], exact, strict=True))
 
 
-def _version(name: str) -> str | None:
-    return registry.code(name).version()
-
-
-def _hint(name: str) -> str:
-    return registry.code(name).hint if name in registry.names() else "not among the codes known here"
+def _absent(code: Description | None) -> str:
+    """Why a code is not timed; empty if it is."""
+    if code is None:
+        return "not among the codes known here"
+    return code.failure.reason if code.failure else "" if code.version else code.hint
 
 
 def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, tuple[float, ...]]:

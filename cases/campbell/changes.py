@@ -37,10 +37,13 @@ class Changed:
         return self.frequency / self.other - 1.0
 
 
-def changes(blade: Blade, against: Blade, speeds: Sequence[float], modes: int, elements: int) -> tuple[Changed, ...]:
+def changes(
+    blade: Blade, against: Blade, speeds: Sequence[float], modes: int, elements: int | None
+) -> tuple[Changed, ...]:
     """The lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s), paired with those of ``against``.
 
-    Both have the same number of equal elements; shapes are compared by MAC with the mass of ``blade``.
+    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` takes. Shapes are compared by MAC with
+    the mass of ``blade``.
 
     Raises:
         CaseError: if a speed has no stable steady state for one of them.

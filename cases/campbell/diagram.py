@@ -1,5 +1,6 @@
 """The Campbell diagram of a blade: its modes along rotor speed, named, and how far they keep from n per revolution."""
 
+import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ import numpy as np
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
-from ...core.solve import NO_GRAVITY, sweep
+from ...core.solve import NO_GRAVITY, AccuracyWarning, sweep
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from ..judge.pairing import Array, weights
 from .encounters import Encounter, encounters
@@ -30,7 +31,9 @@ class Wanted:
         per_rev: multiples n of the rotor's speed that excite.
         operating: (lowest, highest) speed at which the rotor runs, rad/s; within ``speeds``.
         margin: the least distance wanted of a mode from n per revolution within the operating range, relative.
-        elements: of the discretisation.
+        elements: of equal length along the blade; by default as many at each speed as ``accuracy`` takes.
+        accuracy: largest relative uncertainty of a frequency, without ``elements``.
+        allow_large_strain: accept steady strains above ``core.solve.LARGEST_STRAIN``.
         gravity: (3,) m/s² in the hub's axes, see ``prestress``.
         load: for each of the blade's stations a steady force per length, N/m, likewise; none by default.
     """
@@ -40,7 +43,9 @@ class Wanted:
     per_rev: tuple[int, ...] = (1, 2, 3, 4, 5, 6)
     operating: Range | None = None
     margin: float = 0.1
-    elements: int = 50
+    elements: int | None = None
+    accuracy: float = 1e-6
+    allow_large_strain: bool = False
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     load: tuple[tuple[float, float, float], ...] = ()
 
@@ -98,18 +103,29 @@ def solver(
     """Core at one speed after another; ``told`` is called with each speed when it is done, ``at`` names one in an error.
 
     Raises (the solver):
-        CaseError: if a speed has no stable steady state.
+        CaseError: if a speed has no stable steady state, or one of large strain.
     """
     gravity = np.array(wanted.gravity) if any(wanted.gravity) else NO_GRAVITY
     load = np.array(wanted.load) if wanted.load else None
     waiting: deque[float] = deque()
     speeds = iter(waiting.popleft, None)
-    stream = sweep(blade, speeds, wanted.elements, wanted.modes + SPARE, gravity=gravity, load=load)
+    stream = sweep(
+        blade,
+        speeds,
+        wanted.elements,
+        wanted.modes + SPARE,
+        accuracy=wanted.accuracy,
+        gravity=gravity,
+        load=load,
+        allow_large_strain=wanted.allow_large_strain,
+    )
 
     def solve(omega: float) -> Modes:
         waiting.append(omega)
         try:
-            found = next(stream)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the answer
+                found = next(stream)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error, at) from error
         told(omega)

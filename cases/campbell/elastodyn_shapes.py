@@ -10,6 +10,7 @@ x is the fraction of the flexible blade from root to tip. A shape has no sign be
 downwind, and positive edge is ElastoDyn's, as the tip's displacement.
 """
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +19,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, section_mass, section_stiffness
 from ...core.element.sections import compliance
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered, participation
-from ...core.solve import mesh_modes
+from ...core.solve import AccuracyWarning, modes
 from ..input.errors import CaseError
 from ..judge.pairing import Array
 
@@ -43,6 +44,7 @@ class Polynomial:
         largest: largest deviation of the polynomial from the shape, of the tip's displacement.
         rms: root mean square of the same.
         condition: of the least-squares problem (2-norm): how many times an error of the shape can be larger in a coefficient.
+        uncertainty: relative, of the frequency; infinite where it is not known.
     """
 
     mode: str
@@ -52,6 +54,7 @@ class Polynomial:
     largest: float
     rms: float
     condition: float
+    uncertainty: float = np.inf
 
     def at(self, x: Array) -> Array:
         """Values at fractions ``x``."""
@@ -106,14 +109,17 @@ def principal(blade: Blade) -> Blade:
     )
 
 
-def polynomials(blade: Blade, omega: float, elements: int = 50) -> tuple[Polynomial, ...]:
-    """Flap 1, flap 2 and edge 1 of the principal blade at rotor speed ``omega``, rad/s.
+def polynomials(blade: Blade, omega: float, elements: int | None = None) -> tuple[Polynomial, ...]:
+    """Flap 1, flap 2 and edge 1 of the principal blade at rotor speed ``omega``, rad/s; see ``core.solve.modes``.
 
     Raises:
         CaseError: if one of them is not among the lowest modes.
     """
     plain = principal(blade)
-    return tuple(_of(mesh_modes(plain, omega, elements, 8), plain, name) for name in WANTED)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the answer
+        solved = modes(plain, omega, elements, 8)
+    return tuple(_of(solved, plain, name) for name in WANTED)
 
 
 def as_it_is(blade: Blade, solved: Modes) -> tuple[Polynomial, ...]:
@@ -127,7 +133,8 @@ def _of(solved: Modes, blade: Blade, name: str) -> Polynomial:
     if name not in named:
         raise CaseError(f"{blade.name}: no {name} among the lowest modes, {', '.join(named)}: ElastoDyn needs it")
     k = named.index(name)
-    return fit(name, float(solved.frequencies[k]), component(solved, k, name.split()[0]))
+    sure = float(solved.uncertainty[k]) if len(solved.uncertainty) else np.inf
+    return replace(fit(name, float(solved.frequencies[k]), component(solved, k, name.split()[0])), uncertainty=sure)
 
 
 def component(solved: Modes, k: int, family: str) -> Array:

@@ -34,6 +34,7 @@ class Encounter:
         omega: rad/s, where they cross or are closest.
         frequency: rad/s, their mean there.
         gap: rad/s: of a veering the smallest distance; of a crossing what a gap, if there is one, is narrower than.
+        uncertainty: relative, of the frequencies solved beside it; the gap's own is that of a difference (``gap_uncertainty``).
         exchanged: share of the shapes that has changed places from ``window[0]`` to ``window[1]``, 0 to 1.
         window: rad/s, between which speeds they pass each other.
         whole: whether they have passed each other within the speeds solved.
@@ -45,11 +46,17 @@ class Encounter:
     omega: float
     frequency: float
     gap: float
+    uncertainty: float
     exchanged: float
     window: tuple[float, float]
     whole: bool
     before: Array
     after: Array
+
+    @property
+    def gap_uncertainty(self) -> float:
+        """rad/s."""
+        return 2.0 * self.uncertainty * self.frequency
 
 
 def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter, ...]:
@@ -149,6 +156,7 @@ def _encounter(
         omega=omega,
         frequency=float(np.sqrt(square)),
         gap=gap,
+        uncertainty=float(tracks.uncertainty[a : b + 1, two].max()),
         exchanged=float(swapped / max(table.sum(), 1e-300)),
         window=(float(tracks.omega[a]), float(tracks.omega[b])),
         whole=whole,

@@ -26,11 +26,13 @@ class Southwell:
         rest: ω₀, rad/s.
         coefficient: φ.
         residual: largest deviation of the fitted frequency, relative.
+        uncertainty: of the coefficient, by those of the frequencies; not relative.
     """
 
     rest: float
     coefficient: float
     residual: float
+    uncertainty: float
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Resonance:
         per_rev: n.
         omega: rad/s, of the rotor.
         frequency: rad/s.
+        uncertainty: of both, relative: of the frequencies solved, and of what lies between them.
         apart: the speed's distance from the operating range, in parts of the range's nearer end; negative below, 0 inside;
             None without an operating range.
     """
@@ -50,6 +53,7 @@ class Resonance:
     per_rev: int
     omega: float
     frequency: float
+    uncertainty: float
     apart: float | None
 
 
@@ -63,7 +67,8 @@ class Margin:
         low, high: at the range's ends.
         least: the smallest within; 0 if they meet.
         omega: where that is, rad/s.
-        kept: whether it is as large as wanted.
+        uncertainty: of the margin, by the frequency's.
+        kept: whether it is certainly as large as wanted.
     """
 
     track: int
@@ -72,15 +77,17 @@ class Margin:
     high: float
     least: float
     omega: float
+    uncertainty: float
     kept: bool
 
 
 @dataclass(frozen=True)
 class Line:
-    """One track as a function of speed: monotone cubics through its squares over Ω²."""
+    """One track as a function of speed: monotone cubics through its squares over Ω²; relative uncertainties."""
 
     squares: Array
     values: Array
+    uncertainties: Array
 
     @property
     def first(self) -> float:
@@ -96,6 +103,13 @@ class Line:
         """Frequency, rad/s."""
         return float(np.sqrt(PchipInterpolator(self.squares, self.values)(omega**2)))
 
+    def uncertainty(self, omega: float) -> float:
+        """Relative, of ``at``: the larger of the neighbours', and how far a straight line between them is from the cubic."""
+        x = omega**2
+        k = int(np.clip(np.searchsorted(self.squares, x) - 1, 0, len(self.squares) - 2))
+        bent = abs(self.at(omega) ** 2 - float(np.interp(x, self.squares, self.values)))
+        return float(self.uncertainties[k : k + 2].max()) + 0.5 * bent / self.at(omega) ** 2
+
     def meets(self, n: int) -> Array:
         """Rotor speeds at which the frequency is n per revolution."""
         found = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
@@ -105,7 +119,9 @@ class Line:
 def line_of(tracks: Tracks, t: int) -> Line | None:
     """A track as a line; None if it is there at fewer than two speeds."""
     k = np.flatnonzero(tracks.place[:, t] >= 0)
-    return Line(tracks.omega[k] ** 2, tracks.frequencies[k, t] ** 2) if len(k) > 1 else None
+    if len(k) < 2:
+        return None
+    return Line(tracks.omega[k] ** 2, tracks.frequencies[k, t] ** 2, tracks.uncertainty[k, t])
 
 
 def southwell(tracks: Tracks, t: int) -> Southwell | None:
@@ -114,20 +130,31 @@ def southwell(tracks: Tracks, t: int) -> Southwell | None:
     if len(k) < 3:
         return None
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
-    (rest, slope), *_ = np.linalg.lstsq(np.stack([np.ones(len(k)), omega**2], axis=1), frequency**2, rcond=None)
+    inverse = np.linalg.pinv(np.stack([np.ones(len(k)), omega**2], axis=1))
+    rest, slope = inverse @ frequency**2
     fitted = np.sqrt(np.maximum(rest + slope * omega**2, 0.0))
     residual = float(np.abs(fitted / frequency - 1.0).max())
-    return Southwell(float(np.sqrt(max(rest, 0.0))), float(slope), residual)
+    doubt = float(np.abs(inverse[1]) @ (2.0 * tracks.uncertainty[k, t] * frequency**2))
+    return Southwell(float(np.sqrt(max(rest, 0.0))), float(slope), residual, doubt)
 
 
 def resonances(lines: Sequence[Line | None], per_rev: Sequence[int], operating: Range | None) -> tuple[Resonance, ...]:
     """Where each line meets each n per revolution, by speed."""
     found = []
     for t, line in enumerate(lines):
-        for n in per_rev if line else ():
-            for omega in line.meets(n) if line else ():
-                found.append(Resonance(t, n, float(omega), n * float(omega), _apart(float(omega), operating)))
+        if line is None:
+            continue
+        for n in per_rev:
+            for omega in line.meets(n).tolist():
+                found.append(Resonance(t, n, omega, n * omega, _meeting(line, n, omega), _apart(omega, operating)))
     return tuple(sorted(found, key=lambda r: (r.omega, r.per_rev)))
+
+
+def _meeting(line: Line, n: int, omega: float) -> float:
+    """Relative uncertainty of the speed at which a line meets n per revolution: f² − n² Ω² has its slope there."""
+    x = omega**2
+    slope = float(PchipInterpolator(line.squares, line.values).derivative()(x))
+    return line.uncertainty(omega) * n**2 / max(abs(n**2 - slope), 1e-300)
 
 
 def _apart(omega: float, operating: Range | None) -> float | None:
@@ -154,6 +181,7 @@ def margins(
             inside = [o for o in line.meets(n) if low <= o <= high]
             k = int(np.abs(values).argmin())
             least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
-            kept = bool(abs(least) >= wanted)
-            out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, kept))
+            sure = 0.0 if inside else (1.0 + least) * line.uncertainty(min(max(where, line.first), line.last))
+            kept = bool(abs(least) - sure >= wanted)
+            out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, sure, kept))
     return tuple(out)

@@ -61,6 +61,7 @@ class Tracks:
         omega: (n,) rotor speeds solved, rad/s, ascending: those asked for, and those between.
         asked: (n,) which were asked for.
         frequencies: (n, t) rad/s; NaN where a track has not begun, or has ended.
+        uncertainty: (n, t) relative; likewise, and infinite where it is not known.
         place: (n, t) from the lowest mode, 0 upwards; −1 where there is none.
         mac: (n, t) with the speed before; NaN where there is none.
         shapes: (n, t, 21, 4) complex; NaN where there is none.
@@ -74,6 +75,7 @@ class Tracks:
     omega: Array
     asked: NDArray[np.bool_]
     frequencies: Array
+    uncertainty: Array
     place: NDArray[np.intp]
     mac: Array
     shapes: NDArray[np.complex128]
@@ -209,14 +211,16 @@ def _tables(
 ) -> Tracks:
     n, t = len(points), len(kept)
     column = {name: i for i, name in enumerate(kept)}
-    frequencies, similar = np.full((n, t), np.nan), np.full((n, t), np.nan)
+    frequencies, sure, similar = (np.full((n, t), np.nan) for _ in range(3))
     place = np.full((n, t), -1)
     shapes = np.full((n, t, *points[0].shapes.shape[1:]), np.nan, complex)
     bound = np.full((n, t, t), np.nan)
     for k, modes in enumerate(points):
+        known = modes.uncertainty if len(modes.uncertainty) else np.full(len(modes.frequencies), np.inf)
         for p, name in enumerate(owner[k]):
             if name in column:
                 i = column[name]
+                sure[k, i] = known[p]
                 frequencies[k, i], place[k, i], shapes[k, i] = modes.frequencies[p], p, modes.shapes[p]
                 if k and name in owner[k - 1]:
                     similar[k, i] = links[k - 1].table[owner[k - 1].index(name), p]
@@ -225,7 +229,6 @@ def _tables(
             if pair[0] is not None and pair[1] is not None:
                 bound[k, pair[0], pair[1]] = bound[k, pair[1], pair[0]] = gap
     omega = np.array([modes.omega for modes in points])
-    known = tuple(Doubt(d.omega, column[d.track], d.frequency, d.mac, d.rival) for d in doubts if d.track in column)
-    return Tracks(
-        omega, np.isin(omega, speeds), frequencies, place, similar, shapes, tuple(points), bound, known, smallest
-    )
+    unclear = tuple(Doubt(d.omega, column[d.track], d.frequency, d.mac, d.rival) for d in doubts if d.track in column)
+    asked = np.isin(omega, speeds)
+    return Tracks(omega, asked, frequencies, sure, place, similar, shapes, tuple(points), bound, unclear, smallest)

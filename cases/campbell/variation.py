@@ -34,7 +34,7 @@ class Variation:
     lumped: Array
 
 
-def variations(case: str = "park-blade", elements: int = 50) -> tuple[Variation, ...]:
+def variations(case: str = "park-blade", elements: int | None = None) -> tuple[Variation, ...]:
     """Of each blade of a case that states the paper's discretisation, over 0 to 30 rpm."""
     known = library.load(case)
     lumping = known.text.discretisation

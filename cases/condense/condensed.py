@@ -7,11 +7,14 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.condense.compressed import chain_from_segments, chain_modes
+from ...core.condense.compressed import segment_modes
 from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
+from ...core.regular_files import LARGEST_DATA, read_bytes
+from ..input import atomic
 from ..input.errors import NO_STATE, CaseError, unsteady
+from ..input.names import Name
 
 Array = NDArray[np.float64]
 
@@ -31,14 +34,14 @@ class Condensed:
     segments: list[Segment]
 
 
-def modes(blade: Condensed, omega: float, count: int) -> Modes:
-    """The lowest modes at ``omega`` rad/s.
+def modes(blade: Condensed, omega: float, count: int, allow_large_strain: bool = False) -> Modes:
+    """The lowest modes at ``omega`` rad/s, with their relative uncertainties; see ``core.condense.compressed.segment_modes``.
 
     Raises:
-        CaseError: no stable steady state at this speed.
+        CaseError: no stable steady state at this speed, or one of large strain.
     """
     try:
-        return chain_modes(chain_from_segments(blade.segments, blade.root), omega, count)
+        return segment_modes(blade.segments, blade.root, omega, count, allow_large_strain=allow_large_strain)
     except NO_STATE as error:
         raise unsteady(blade.name, omega, error) from error
 
@@ -73,7 +76,7 @@ def write(path: Path, blade: Condensed) -> None:
     """Keep a compressed model as JSON, matrices row by row, SI."""
     pieces = [{key: value.tolist() for key, value in vars(s).items()} for s in blade.segments]
     told = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(told)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(told)) + b"\n")
 
 
 class _Piece(msgspec.Struct, forbid_unknown_fields=True):
@@ -84,7 +87,7 @@ class _Piece(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class _Kept(msgspec.Struct, forbid_unknown_fields=True):
-    name: str
+    name: Name
     root: list[list[float]]
     segments: list[_Piece]
 
@@ -96,10 +99,12 @@ def read(path: Path) -> Condensed:
         CaseError: no such file, not such a one, or a matrix of the wrong size.
     """
     try:
-        kept = msgspec.json.decode(path.read_bytes(), type=_Kept)
+        kept = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: correct the path") from None
-    except msgspec.DecodeError as error:
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
     sizes = {"rest": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []

@@ -14,6 +14,7 @@ from ...core.condense.segments import Segment, segment_from_matrix
 from ...core.condense.ties import CondensationError, FiniteElements, Tie
 from ...core.multibody.mechanism import inertia
 from ...core.space import spatial as sp
+from ..input import files
 from ..input.errors import CaseError
 from ..input.toml import convert, document, finite
 from .condensed import Condensed
@@ -48,6 +49,11 @@ def condense(path: Path) -> Condensation:
     Raises:
         CaseError: naming the file and field at fault.
     """
+    with files.reading(path):
+        return _condense(path)
+
+
+def _condense(path: Path) -> Condensation:
     data = document(path)
     finite(data, str(path))
     told = convert(data, CondenseFile, str(path))
@@ -107,7 +113,7 @@ def _one(path: Path, field: str, told: CondenseFile, piece: Piece, whole: Whole,
 def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Array:
     """Inertia (6, 6) of a body given in the model's axes, about ``frame`` and in its axes."""
     kilograms = 1.0 / metres
-    sizes = [np.size(row) for row in body.moments]
+    sizes = [len(row) if isinstance(row, list) else 1 for row in body.moments]
     if sizes not in ([1, 1, 1], [3, 3, 3]):
         raise CaseError(f"{path}: {field}body.moments: {body.moments}: neither three numbers nor three rows of three")
     moments = np.array(body.moments, float) * kilograms * metres**2

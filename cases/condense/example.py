@@ -16,9 +16,11 @@ from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
 from ...core.effects import FULL, Model
 from ...core.modes import Modes
+from ...core.regular_files import read_bytes
 from ...references.protocol.interface import CodeError
 from ...references.solid import calculix, hexahedra, timoshenko
 from ...references.solid.mesh import Bricks, clamped
+from ..input import atomic
 from ..input.errors import CaseError
 from . import solid_blades as solids
 from .condensed import names
@@ -165,7 +167,7 @@ def differences(values: Sequence[float], of: Sequence[float] | NDArray[np.float6
 
 def write(path: Path, found: Example) -> None:
     """Keep what was computed, as JSON."""
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(found)) + b"\n")
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Example:
@@ -174,7 +176,7 @@ def read(path: Path) -> Example:
     Raises:
         msgspec.DecodeError: if the file is not such a one.
     """
-    return msgspec.json.decode(path.read_bytes(), type=Example)
+    return msgspec.json.decode(read_bytes(path), type=Example)
 
 
 def _at_speed(

@@ -1,5 +1,6 @@
 """Exported matrices and tables of nodes, as a file for ``southwell condense`` names them, made into a model in SI."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from ...core.condense import exported, matrix_files, ties
 from ...core.condense.exported import Exported, MatrixFileError
 from ...core.condense.ties import CondensationError, FiniteElements
+from ..input import files
 from ..input.blades import read_table
 from ..input.errors import CaseError
 from .schema import Matrix, Model
@@ -19,6 +21,12 @@ Array = NDArray[np.float64]
 
 NODES = ("id", "x", "y", "z")
 FREEDOMS = ("node", "freedom")
+
+ROUNDING = 1e-9
+"""Of the largest entry: a negative one on the diagonal within it is zero."""
+
+LARGEST_ID = 2**31
+"""Of a node."""
 
 METRES = {"m kg s": 1.0, "mm t s": 1e-3}
 """Length of the unit. In mm t s a force is still one of N: stiffness and mass scale alike, N/mm and t by 1000."""
@@ -64,6 +72,9 @@ def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whol
         stiffness = _named(_load(path.parent, told.stiffness, "stiffness"), listed, place, path, field)
         if told.mass is not None:
             mass = _named(_load(path.parent, told.mass, "mass"), listed, place, path, field)
+        for what, matrix in (("stiffness", stiffness), ("mass", mass)):
+            if matrix is not None:
+                _no_negative(f"{path}: {field}{what}", matrix)
         model = exported.model(stiffness, place, mass)
     except (MatrixFileError, CondensationError) as error:
         raise CaseError(f"{path}: {field}{error}") from error
@@ -78,8 +89,11 @@ def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whol
 def _load(folder: Path, told: str | Matrix, what: str) -> Exported:
     name, chosen = (told.file, told.matrix) if isinstance(told, Matrix) else (told, what)
     path = folder / name
+    files.inside(path)
     try:
-        return matrix_files.stored(path) if path.with_suffix(".dof").is_file() else matrix_files.read(path, chosen)
+        return (
+            matrix_files.stored(path) if os.path.isfile(path.with_suffix(".dof")) else matrix_files.read(path, chosen)
+        )
     except FileNotFoundError:
         raise CaseError(
             f"{path}: no such file: it is looked for beside the file that names it; correct the name"
@@ -88,13 +102,29 @@ def _load(folder: Path, told: str | Matrix, what: str) -> Exported:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
 
 
+def _no_negative(where: str, matrix: Exported) -> None:
+    """Refuse what no finite element model has: a negative diagonal entry."""
+    diagonal = matrix.matrix.diagonal()
+    if diagonal.size and diagonal.min() < -ROUNDING * np.abs(diagonal).max():
+        k = int(diagonal.argmin())
+        freedom = f"node {matrix.nodes[k]}, freedom {matrix.directions[k] + 1}"
+        raise CaseError(f"{where}: {matrix.name}: {diagonal[k]:g} on the diagonal at {freedom}: negative: correct it")
+
+
 def _places(path: Path) -> dict[int, Array]:
     columns = read_table(path, NODES)
-    ids = columns["id"].astype(int)
+    ids = _integers(path, "id", columns["id"])
     values, times = np.unique(ids, return_counts=True)
     if (times > 1).any():
         raise CaseError(f"{path}: id: {values[times.argmax()]} is given {times.max()} times: a node has one place")
     return dict(zip(ids.tolist(), np.column_stack([columns[c] for c in NODES[1:]]), strict=True))
+
+
+def _integers(path: Path, column: str, values: Array) -> NDArray[np.intp]:
+    wrong = (values != np.round(values)) | (np.abs(values) >= LARGEST_ID)
+    if wrong.any():
+        raise CaseError(f"{path}: {column}: {values[wrong.argmax()]:g}: it is a label: give a whole number")
+    return values.astype(np.intp)
 
 
 def _named(
@@ -112,7 +142,11 @@ def _named(
     rows = int(matrix.matrix.diagonal().size)
     if isinstance(listed, str):
         table = read_table(path.parent / listed, FREEDOMS)
-        pairs, told = np.column_stack([table[c] for c in FREEDOMS]).astype(int), f"{listed} lists {len(table['node'])}"
+        at = path.parent / listed
+        pairs, told = (
+            np.column_stack([_integers(at, c, table[c]) for c in FREEDOMS]),
+            f"{listed} lists {len(table['node'])}",
+        )
     else:
         pairs = np.array([(n, f) for n in place for f in listed])
         told = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 from ...core.condense.ties import Kind
+from ..input.names import Name
 
 Three = tuple[float, float, float]
 Axis = Annotated[
@@ -62,7 +63,7 @@ class At(Struct, frozen=True, forbid_unknown_fields=True):
 class CondenseFile(Model, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A file for ``southwell condense``: one model cut at its sections, or ``[[segments]]`` with a model each."""
 
-    name: Annotated[str, Meta(min_length=1, description="what to call it")]
+    name: Name
     sections: Annotated[
         tuple[float | At, ...],
         Meta(min_length=2, description="from the root to the tip: coordinate along the span, or place"),

@@ -115,6 +115,33 @@ def timoshenko() -> float:
     return float(np.sqrt(root_scalar(free_tip, bracket=(1.0, CANTILEVER[0] ** 2)).root))
 
 
+def cornered() -> tuple[Blade, float]:
+    """The beam with a right angle in the plane of rotation at half its length, and its first frequency in that plane at rest.
+
+    Two cantilevers' halves of length a, neither of which stretches: the outer one rides along its own line on the end of the
+    inner, ``EI w₁‴ = −m a ω² w₁``; turning and moment pass the corner. Inner: C (cosh − cos) + D (sinh − sin); outer, at rest
+    across its line at the corner: A sin + B sinh + E (cos − cosh), free at its end.
+    """
+    half = 0.5 * LENGTH
+    curve = np.array([[0.0, 0.0, 0.0], [half, 0.0, 0.0], [half, half, 0.0]])
+    same = {name: np.repeat(getattr(BEAM, name)[:1], 3, axis=0) for name in ("stiffness", "mass", "twist")}
+    blade = replace(BEAM, name="beam with a corner", stations=[0.0, half, LENGTH], curve=curve, kinks=(half,), **same)
+
+    def fits(x: float) -> float:
+        c, s, C, S = np.cos(x), np.sin(x), np.cosh(x), np.sinh(x)
+        rows = [
+            [S + s, C - c, -1.0, -1.0, 0.0],  # w₁′ = w₂′
+            [C + c, S + s, 0.0, 0.0, 2.0],  # w₁″ = w₂″
+            [S - s + x * (C - c), C + c + x * (S - s), 0.0, 0.0, 0.0],  # w₁‴ + β⁴ a w₁
+            [0.0, 0.0, -s, S, -c - C],  # w₂″ at the end
+            [0.0, 0.0, -c, C, s - S],  # w₂‴ there
+        ]
+        return float(np.linalg.det(rows))
+
+    beta = root_scalar(fits, bracket=(0.5, 1.3)).root / half
+    return blade, float(np.sqrt(EI / MASS) * beta**2)
+
+
 SPEED = 3.0
 """rad/s: near the beam's first frequency at rest, so that what the rotation does is large."""
 

@@ -273,6 +273,12 @@ def coupled_planes(code: Code) -> None:
     _is(code, known.coupled_plank(), 0.0, float(CANTILEVER[0]))
 
 
+def corner(code: Code) -> None:
+    """Two straight pieces at right angles, at rest."""
+    blade, exact = known.cornered()
+    _is(code, blade, 0.0, exact, axis=1)
+
+
 def hinged_root(code: Code) -> None:
     """With a flap hinge at the rotor's axis the first flapwise mode is a straight line at Ω, whatever the stiffness."""
     _is(code, known.HINGED, known.SPEED, known.SPEED, axis=2)

@@ -90,6 +90,7 @@ CHECKS = (
     Check("tip mass at rest", "weighs: closed form", checks.tip_mass_weighs),
     Check("tip mass turning", "pulls: Bir's printed number", checks.tip_mass_pulls),
     Check("coupled planes", "refused, or the frequencies of the principal planes", checks.coupled_planes),
+    Check("kink", "a corner of the curve: refused, or the closed form of two beams at right angles", checks.corner),
     Check("hinged root", "refused, or a straight line at Ω", checks.hinged_root),
     Check("shear", "refused, or Timoshenko's frequency in closed form", checks.shear),
     Check("model", "effects declared are kept, and no others", checks.model),

@@ -8,8 +8,9 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ...references.protocol.worker import Answer, Failure
-from ...references.theories.exact_beam import ExactBeam
+from ...references.protocol import registry
+from ...references.protocol.process import Failure, Limits
+from ...references.protocol.worker import Answer
 from ..verify import columns
 from .core import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 from .seeding import Fault, Trial
@@ -21,8 +22,8 @@ def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """The code solves another blade than it is given."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
-            return right(name, alter(blade), runs, timeout)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
+            return right(name, alter(blade), runs, limits)
 
         return wrong
 
@@ -33,8 +34,8 @@ def told(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
     """What comes back is altered."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
-            found = right(name, blade, runs, timeout)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
+            found = right(name, blade, runs, limits)
             return [answer if isinstance(answer, Failure) else alter(answer) for answer in found]
 
         return wrong
@@ -46,8 +47,8 @@ def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
     """Another question is asked; the answer says that it is to the one that was put."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], timeout: float) -> list[Answer]:
-            found = right(name, blade, [alter(run) for run in runs], timeout)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
+            found = right(name, blade, [alter(run) for run in runs], limits)
             return [
                 answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])
                 for run, answer in zip(runs, found, strict=True)
@@ -87,18 +88,17 @@ def _wide(modes: Modes) -> Modes:
     return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
 
 
-def _raises(message: str) -> Callable[[Any], Any]:
-    def make(_: Any) -> Any:
-        def wrong(*args: Any) -> Any:
-            raise RuntimeError(message)
+def _found_at(path: str) -> Callable[[Any], Any]:
+    """The exact beam's adapter is another."""
 
-        return wrong
+    def make(right: Any) -> Any:
+        return lambda name: path if name == "exact-beam" else right(name)
 
     return make
 
 
 def _crashes(_: Any) -> Any:
-    return lambda name, blade, runs, timeout: (
+    return lambda name, blade, runs, limits: (
         [Failure("crashed", "the code's process ended with signal SIGSEGV")] * len(runs)
     )
 
@@ -152,7 +152,7 @@ FAULTS = (
     _adapter("digits lost", "six digits of a code on core's own discretisation", "1e-6",
              told(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
     Fault("unsupported() raises", "adapter", "the adapter raises where it should refuse", "no answer",
-          ((ExactBeam, "unsupported", _raises("licence server not reached")),), PARK),
+          ((registry, "locate", _found_at("southwell.cases.faults.raising:UNSUPPORTED")),), PARK),
     Fault("version() raises", "adapter", "the adapter raises where it should tell its version", "no answer",
-          ((ExactBeam, "version", _raises("no such binary")),), PARK),
+          ((registry, "locate", _found_at("southwell.cases.faults.raising:VERSION")),), PARK),
 )  # fmt: skip

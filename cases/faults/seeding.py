@@ -20,8 +20,10 @@ import msgspec
 import numpy as np
 
 from ...core.blade import Blade
-from ...references.protocol.registry import code, version_of
+from ...references.protocol import registry
+from ...references.protocol.description import Description, describe
 from ..input import library
+from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
 from ..verify import matrix
 
@@ -129,13 +131,28 @@ class Serial(Executor):
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
     """What the real matrix makes of a trial."""
-    case = library.load(trial.case.partition("/")[0])
-    (variant,) = (v for v in case.variants if v.name == trial.case)
-    changed = replace(variant, blade=trial.change(variant.blade), speeds=np.array(trial.speeds))
+    case, changed = _variant(trial)
     told = case.text.compare
     compare = msgspec.structs.replace(told, modes=trial.modes or told.modes, motions=trial.motions or told.motions)
     one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
-    return matrix.run([one], trial.codes, Serial(), parts=False).cells
+    return matrix.run([one], known(trial), Serial(), parts=False).cells
+
+
+def _variant(trial: Trial) -> tuple[Case, Variant]:
+    case = library.load(trial.case.partition("/")[0])
+    (variant,) = (v for v in case.variants if v.name == trial.case)
+    return case, replace(variant, blade=trial.change(variant.blade), speeds=np.array(trial.speeds))
+
+
+def known(trial: Trial) -> tuple[Description, ...]:
+    """Descriptions of a trial's codes; a fault may replace where a code is found."""
+    return _described(trial, tuple(registry.locate(name) for name in trial.codes))
+
+
+@lru_cache
+def _described(trial: Trial, _paths: tuple[str, ...]) -> tuple[Description, ...]:
+    variant = _variant(trial)[1]
+    return describe(trial.codes, [variant.blade])
 
 
 @lru_cache
@@ -144,15 +161,15 @@ def faultless(trial: Trial) -> tuple[Cell, ...]:
     return cells(trial)
 
 
-def execute(fault: Fault, known: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
-    """Run one fault's trial; ``known`` finds another fault by its name, ``canaries`` are those of history and gate."""
+def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
+    """Run one fault's trial; ``by_name`` finds another fault by its name, ``canaries`` are those of history and gate."""
     trial = fault.trial
     if fault.blinds:
-        return _blinding(fault, known(fault.blinds))
+        return _blinding(fault, by_name(fault.blinds))
     if trial is None:
         with seeded(fault.seams):
             return _control(fault, tuple(canaries()))
-    if absent := [name for name in trial.codes if not version_of(code(name))[0]]:
+    if absent := [one.asked for one in known(trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(trial)
     with seeded(fault.seams):
@@ -163,7 +180,7 @@ def execute(fault: Fault, known: Callable[[str], Fault], canaries: Callable[[], 
 def _blinding(fault: Fault, caught: Fault) -> Control:
     """A fault in what judges: with it, another is caught no longer, or cells that are right are bad."""
     assert caught.trial
-    if absent := [name for name in caught.trial.codes if not version_of(code(name))[0]]:
+    if absent := [one.asked for one in known(caught.trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(caught.trial)
     with seeded(fault.seams):

@@ -26,7 +26,7 @@ from ...core.space import spatial as sp
 from . import files
 from .errors import CaseError, nearest
 from .readers.sections import FromFile, Mounted, Sections
-from .readers.source import LONGEST
+from .readers.source import LONGEST, Unused, unused
 
 POISSON = 0.3
 """For the torsional stiffness of a dimensionless beam, which has no influence on its bending."""
@@ -118,6 +118,23 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         "EA [N]",
     )
     OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
+
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
+        """The blade, and the columns of its table that a switch of the case leaves out.
+
+        Raises:
+            CaseError: if the table is missing or malformed.
+        """
+        blade, path = self.blade(name, folder), folder / self.file
+        columns, left = read_table(path, self.COLUMNS, self.OPTIONAL), ()
+        for column, switch, dropped in (
+            ("twist [deg]", "twisted = false", not self.twisted),
+            ("cg_edge [m]", "centred = true", self.centred),
+        ):
+            if dropped and column in columns:
+                name_, _, unit = column.partition(" ")
+                left += unused(name_, columns[column], unit.strip("[]"), path, f"the case has {switch}")
+        return blade, left
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, its table read from ``folder``.

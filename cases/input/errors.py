@@ -14,8 +14,21 @@ NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError, EigensolverE
 """What the solver raises where there is no steady state to vibrate about, or its eigensolver fails."""
 
 
+LONGEST = 1000
+"""Characters of a message, whatever stands in a file."""
+
+
+def brief(message: str) -> str:
+    """A message in one line, its middle left out where that is long."""
+    line = " ".join(message.split())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST * 2 // 3]} … {line[-LONGEST // 4 :]}"
+
+
 class CaseError(ValueError):
     """Input that cannot be used. One line: the file, the field, the value, the likely cause, the remedy."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(brief(message))
 
 
 class FilesMissingError(CaseError):

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta, Struct
 
 from ...core.multibody.joints import Kind
-from .schema import Speeds
+from .names import Name, Typed
+from .schema import LOOSEST, Speeds
 
 Three = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0)]
@@ -127,8 +128,9 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
 
     modes: Annotated[int, Meta(ge=1, description="how many, from the lowest")]
     target: Annotated[
-        float, Meta(gt=0, description="largest difference: of frequencies relative, of damping ratios")
+        float, Meta(gt=0, le=LOOSEST, description="largest difference: of frequencies relative, of damping ratios")
     ] = 1e-8
+    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
@@ -141,9 +143,9 @@ class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
 class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A mechanism's file: see the structures above for what each table may say."""
 
-    name: Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9.-]*$", description="as printed")]
-    bodies: Annotated[dict[str, Any], Meta(min_length=1, description="name → BodyData")]
-    joints: Annotated[dict[str, Any], Meta(min_length=1, description="name → JointData")]
+    name: Typed
+    bodies: Annotated[dict[Name, Any], Meta(min_length=1, description="name → BodyData")]
+    joints: Annotated[dict[Name, Any], Meta(min_length=1, description="name → JointData")]
     title: Annotated[str, Meta(description="one line")] = ""
     description: Annotated[str, Meta(description="what it shows, and what in it is assumed")] = ""
     source: Annotated[str, Meta(description="where data come from")] = ""

@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Model
 from ...references import published
+from . import files
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
+from .names import Name, Typed
 from .readers.source import Unused
 from .toml import convert, document, finite
 
@@ -25,6 +27,9 @@ Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
 Values = list[Annotated[float, Meta(ge=0)]] | str
 
+
+LOOSEST = 0.5
+"""No target is wider: nothing that differs by more agrees."""
 
 Confirmations = Annotated[int, Meta(ge=0, le=20)]
 
@@ -47,8 +52,9 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
         tuple[Motion, ...],
         Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
     ] = get_args(Motion)
-    target: Annotated[float, Meta(gt=0, description="largest difference, relative")] = 1e-3
+    target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest difference, relative")] = 1e-3
     tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
         Meta(description="how many independent groups must agree with core: a number, or one for each variant by name"),
@@ -85,7 +91,7 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
 class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A case file."""
 
-    name: Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9.-]*$", description="as typed on the command line")]
+    name: Typed
     title: Annotated[str, Meta(description="one line, as printed over a table")]
     description: Annotated[str, Meta(description="what the case shows, and what in it is assumed")]
     source: Annotated[str, Meta(description="where data and numbers come from")]
@@ -93,7 +99,8 @@ class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
     speeds: Speeds
     compare: Compare
     variants: Annotated[
-        dict[str, dict[str, Any]], Meta(description="name → the keys of ``blade`` that differ; empty: the blade itself")
+        dict[Name, dict[str, Any]],
+        Meta(description="name → the keys of ``blade`` that differ; empty: the blade itself"),
     ] = {}
     discretisation: Discretisation | None = None
 
@@ -141,7 +148,8 @@ def read(path: Path) -> Case:
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
     """
-    return decode(document(path), str(path), path.parent)
+    with files.reading(path):
+        return decode(document(path), str(path), path.parent)
 
 
 def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:

@@ -12,6 +12,7 @@ from msgspec import inspect
 
 from . import files
 from .errors import CaseError, nearest
+from .names import RULE
 
 T = TypeVar("T")
 
@@ -20,13 +21,50 @@ def document(path: Path) -> dict[str, Any]:
     """The tables of a TOML file.
 
     Raises:
-        CaseError: if there is no such file, it is no text, or not TOML.
+        CaseError: if there is no such file, it is no text, not TOML, or nested too deeply.
     """
+    text = files.text(path, absent="correct the path, or give the name of a case")
     try:
-        return tomllib.loads(files.text(path, absent="correct the path, or give the name of a case"))
+        for k, line in enumerate(text.splitlines(), 1):
+            if line.count(".") > DEEPEST and max(part.count(".") for part in re.split("[,=]", line)) > DEEPEST:
+                raise CaseError(f"{path}: line {k}: more than {DEEPEST} dots in one key or value: correct that line")
+        found = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{path}: not TOML: {error}: correct that line") from error
+        raise CaseError(f"{path}: not TOML: {_short(str(error))}: correct that line") from error
+    except RecursionError:
+        raise _too_deep(path) from None
+    except ValueError:  # Python's own limit, against numbers that take minutes to read
+        raise CaseError(f"{path}: a whole number of thousands of digits: correct it") from None
+    if _depth(found) > DEEPEST:
+        raise _too_deep(path)
+    return found
 
+
+DEEPEST = 32
+"""Tables and lists within each other; of what is read none has more than 6."""
+
+
+def _too_deep(path: Path) -> CaseError:
+    return CaseError(f"{path}: more than {DEEPEST} tables or lists within each other: is it the right file?")
+
+
+def _depth(value: Any) -> int:
+    """Of tables and lists within each other, counted up to one too many."""
+    layer, depth = [value], 0
+    while layer and depth <= DEEPEST:
+        inner = [v for v in layer if isinstance(v, (dict, list))]
+        layer = [item for v in inner for item in (v.values() if isinstance(v, dict) else v)]
+        depth += bool(inner)
+    return depth
+
+
+def _short(value: str) -> str:
+    """Text from a file for a message, its middle left out where it is long."""
+    return value if len(value) <= SHOWN else f"{value[: SHOWN // 2]} … {value[-SHOWN // 2 :]}"
+
+
+SHOWN = 200
+"""Characters of a value in a message, at most."""
 
 LARGEST = 1e30
 """A number that nothing in a file can be, whatever its unit."""
@@ -47,7 +85,8 @@ def finite(value: Any, path: str, field: str = "") -> None:
     elif isinstance(value, float) and not math.isfinite(value):
         raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
     elif isinstance(value, int | float) and abs(value) > LARGEST:
-        raise CaseError(f"{path}: {field}: {value:.3g}: nothing is so large; a slip in the exponent? correct it")
+        shown = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
+        raise CaseError(f"{path}: {field}: {shown}: nothing is so large; a slip in the exponent? correct it")
 
 
 def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
@@ -58,8 +97,14 @@ def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
     """
     try:
         return msgspec.convert(data, kind)
+    except RecursionError:
+        raise _too_deep(Path(path)) from None
     except msgspec.ValidationError as error:
-        message, _, where = str(error).partition(" - at `$")
+        message, _, where = str(error).partition(" - at `")
+        if where.startswith("key"):
+            table = ".".join(filter(None, (under, where.partition("$")[2].strip("`."))))
+            raise CaseError(f"{path}: {table}: a key that is no name: {RULE}: correct it") from error
+        where = where.removeprefix("$")
         raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data, kind, under)}") from error
 
 
@@ -72,15 +117,16 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
             return f"{dotted}: unknown key: {nearest(key[1], _keys(kind, field, raw))}"
         return f"{dotted}: missing: add it"
     value, node = _walk(kind, field, raw)
+    if "matching regex" in message and isinstance(value, str):
+        message = f"not a name: {RULE}"
     choices = _choices(node)
     if not choices:  # the tag of a structure is in its own union, not among the structure's fields
         table, _, _ = field.rpartition(".")
         choices = _choices(_walk(kind, table, raw, whole=True)[1])
     if isinstance(value, str) and choices and "nvalid" in message:
-        return f"{full}: {value!r}: not one of its values: {nearest(value, choices)}"
-    return (
-        f"{full}: {value!r}: {message[0].lower()}{message[1:].replace('`', '')}: wrong sign, unit or type? correct it"
-    )
+        return f"{full}: {_short(repr(value))}: not one of its values: {nearest(value, choices)}"
+    said = message[0].lower() + message[1:].replace("`", "")
+    return f"{full}: {_short(repr(value))}: {said}: wrong sign, unit or type? correct it"
 
 
 def _choices(node: Any) -> tuple[str, ...]:

@@ -1,15 +1,22 @@
 """What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``.
 
-That file has one JSON object a line. Most are cells, by their fields; ``kind`` tells them from refinements' answers, from
-the settings of the cases, which come first, the negative controls, and the line about the run itself.
+That file has one JSON object a line, told apart by ``kind``. The first line is the plan: every case and code of the run. The
+last one is the completion record: how many lines of each kind precede it. A file without either, or without the cells that
+its plan asks for, is *unfinished*, and no command takes it for a result. Between them are the settings of the cases, cells,
+refinements' answers, negative controls, error budgets, origins, and one line about the run itself.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
+
+from ...core.regular_files import LARGEST_DATA, read_bytes
+from ..input import atomic
+from . import checks
 
 Verdict = Literal["pass", "fail", "inconclusive", "known difference", "estimate", "not applicable", "not run"]
 Unit = Literal["rad_s", "rpm", "gamma"]
@@ -178,6 +185,24 @@ class Setting:
 
 
 @dataclass(frozen=True)
+class Planned:
+    """A column of one case that a run was to have.
+
+    Attributes:
+        case: as in ``Cell``.
+        code: likewise.
+        speeds: number of speeds at which cells are due.
+        modes: number of cells due at each of them; a code without an answer there has one cell, of mode 0, that says why.
+            Zero where only some modes are known, as in a printed table.
+    """
+
+    case: str
+    code: str
+    speeds: int
+    modes: int
+
+
+@dataclass(frozen=True)
 class Run:
     """Everything a report needs.
 
@@ -190,6 +215,8 @@ class Run:
         controls: what became of core made wrong on purpose.
         shares: where differences come from.
         origins: where the answers of each column come from.
+        plan: every column that the run was to have.
+        unfinished: what is missing, in a sentence; empty if the run is complete.
     """
 
     cells: tuple[Cell, ...]
@@ -200,60 +227,106 @@ class Run:
     controls: tuple[Control, ...] = ()
     shares: tuple[Share, ...] = ()
     origins: tuple[Origin, ...] = ()
-
-
-def append(path: Path, cells: Iterable[Cell] = (), levels: Iterable[Level] = (), run: Run | None = None) -> None:
-    """Add lines to a results file: cells and levels as they come; of ``run``, its settings, controls, shares,
-    versions and command."""
-    lines: list[dict[str, Any]] = [{"kind": "cell", **msgspec.to_builtins(c)} for c in cells]
-    lines += [{"kind": "level", **msgspec.to_builtins(v)} for v in levels]
-    if run:
-        lines += [{"kind": "setting", **msgspec.to_builtins(s)} for s in run.settings]
-        lines += [{"kind": "control", **msgspec.to_builtins(c)} for c in run.controls]
-        lines += [{"kind": "share", **msgspec.to_builtins(s)} for s in run.shares]
-        lines += [{"kind": "origin", **msgspec.to_builtins(o)} for o in run.origins]
-        lines.append({"kind": "run", "versions": run.versions, "command": run.command})
-    with path.open("ab") as file:
-        file.writelines(msgspec.json.encode(line) + b"\n" for line in lines)
-
-
-def read(path: Path) -> Run:
-    """The run in a results file, rows in the file's order; a torn last line is left out.
-
-    Raises:
-        ValueError: naming file and line, if a whole line is not what this version writes.
-    """
-    rows: dict[type, list[Any]] = {kind: [] for kind in KINDS.values()}
-    about: dict[str, Any] = {}
-    for number, line in enumerate(path.read_bytes().split(b"\n")[:-1], 1):
-        try:
-            data = msgspec.json.decode(line)
-            kind = data.pop("kind")
-            if kind == "run":
-                about = {"versions": data["versions"], "command": data["command"]}
-            else:
-                rows[KINDS[kind]].append(msgspec.convert(data, KINDS[kind]))
-        except (msgspec.DecodeError, AttributeError, KeyError, TypeError) as error:
-            raise ValueError(
-                f"{path}: line {number}: not a result ({error}): was it written by another version?"
-            ) from error
-    return Run(
-        tuple(rows[Cell]),
-        tuple(rows[Level]),
-        settings=tuple(rows[Setting]),
-        controls=tuple(rows[Control]),
-        shares=tuple(rows[Share]),
-        origins=tuple(rows[Origin]),
-        **about,
-    )
+    plan: tuple[Planned, ...] = ()
+    unfinished: str = ""
 
 
 KINDS: dict[str, type] = {
+    "setting": Setting,
     "cell": Cell,
     "level": Level,
-    "setting": Setting,
     "control": Control,
     "share": Share,
     "origin": Origin,
 }
-"""What a line of each kind is."""
+"""What a line of each kind is, in the order of the file."""
+
+ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS}
+"""The field of ``Run`` that holds the lines of each kind."""
+
+
+def write(path: Path, run: Run) -> None:
+    """Write a complete run, in place of what is there.
+
+    Raises:
+        OSError: if it cannot be written; what was there before is unchanged.
+        ValueError: if the run is unfinished.
+    """
+    if what := run.unfinished or gaps(run):
+        raise ValueError(f"{path}: not written: {what}")
+    atomic.write(path, (msgspec.json.encode(line) + b"\n" for line in _lines(run)))
+
+
+def _lines(run: Run) -> Iterator[dict[str, Any]]:
+    yield {"kind": "plan", "columns": run.plan}
+    for kind, name in ROWS.items():
+        yield from ({"kind": kind, **msgspec.to_builtins(row)} for row in getattr(run, name))
+    yield {"kind": "run", "versions": run.versions, "command": run.command}
+    yield {"kind": "end", "lines": {kind: len(getattr(run, name)) for kind, name in ROWS.items()}}
+
+
+def gaps(run: Run) -> str:
+    """What the plan asks for and the cells do not have, in a sentence; empty if nothing."""
+    there: dict[tuple[str, str], dict[float, list[int]]] = {}
+    for cell in run.cells:
+        there.setdefault((cell.case, cell.code), {}).setdefault(cell.omega, []).append(cell.mode)
+    missing = [p for p in run.plan if not _done(p, there.get((p.case, p.code), {}))]
+    if not missing:
+        return ""
+    first = f"{missing[0].case} × {missing[0].code}"
+    more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+    return f"cells of {first}{more} are missing, of {len(run.plan)} planned"
+
+
+def _done(planned: Planned, modes: dict[float, list[int]]) -> bool:
+    answered = (0 in found or len(found) >= planned.modes for found in modes.values())
+    return len(modes) >= planned.speeds and all(answered)
+
+
+def read(path: Path) -> Run:
+    """The run in a results file, rows in the file's order. It is unfinished unless the file says that it is complete.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ValueError: naming file and line, if a whole line is not what this version writes.
+    """
+    rows: dict[str, list[Any]] = {kind: [] for kind in KINDS}
+    about: dict[str, Any] = {}
+    *lines, torn = read_bytes(path, LARGEST_DATA).split(b"\n")
+    kinds = []
+    for number, line in enumerate(lines, 1):
+        try:
+            data = msgspec.json.decode(line)
+            kinds.append(kind := data.pop("kind"))
+            if kind == "run":
+                about |= {
+                    "versions": msgspec.convert(data["versions"], dict[str, str]),
+                    "command": msgspec.convert(data["command"], str),
+                }
+            elif kind == "plan":
+                about["plan"] = msgspec.convert(data["columns"], tuple[Planned, ...])
+            elif kind == "end":
+                about["end"] = data["lines"]
+            else:
+                row = msgspec.convert(data, KINDS[kind])
+                checks.check(row)
+                rows[kind].append(row)
+        except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
+            raise ValueError(
+                f"{path}: line {number}: not a result ({error}): was it written by another version?"
+            ) from error
+    end = about.pop("end", None)
+    run = Run(**{ROWS[kind]: tuple(found) for kind, found in rows.items()}, **about)
+    return replace(run, unfinished=_unfinished(kinds, torn, end) or gaps(run))
+
+
+def _unfinished(kinds: list[str], torn: bytes, end: Any) -> str:
+    """Why the lines of a file, by kind, are not a whole run; empty if they are."""
+    count = Counter(kinds)
+    if kinds[:1] != ["plan"] or count["plan"] > 1:
+        return "the file does not begin with the plan of its run"
+    if torn or kinds[-1] != "end" or count["end"] > 1:
+        return "the file does not end with the completion record of its run"
+    if end != {kind: count[kind] for kind in KINDS} or count["run"] != 1:
+        return "the file has not the lines that its completion record counts"
+    return ""

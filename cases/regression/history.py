@@ -14,6 +14,8 @@ from pathlib import Path
 import msgspec
 import portalocker
 
+from ...core.regular_files import LARGEST_DATA, read_bytes
+from ..judge import checks
 from ..judge.results import Run, Verdict
 
 
@@ -141,15 +143,18 @@ def read(path: Path) -> History:
     """
     entries: list[Entry] = []
     torn: list[int] = []
-    for number, line in enumerate(path.read_bytes().split(b"\n"), 1):
+    for number, line in enumerate(read_bytes(path, LARGEST_DATA).split(b"\n"), 1):
         try:
             if line:
-                entries.append(msgspec.json.decode(line, type=Entry))
-        except msgspec.ValidationError as error:
+                found = msgspec.json.decode(line, type=Entry)
+                for point in found.cells:
+                    checks.check(point)
+                entries.append(found)
+        except (msgspec.ValidationError, checks.RowError) as error:
             raise ValueError(
                 f"{path}: line {number}: not a run ({error}): was it written by another version, or is it another file?"
             ) from error
-        except (msgspec.DecodeError, UnicodeDecodeError):
+        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
             torn.append(number)
     if torn and not entries:
         raise ValueError(

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.modes import Modes
-from ...references.protocol.worker import Answer, Failure
+from ...references.protocol.process import Failure
+from ...references.protocol.worker import Answer
 from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, pair, shares
 from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
@@ -16,10 +17,13 @@ from .refinement import Settled, Study, settle
 
 FAILED: dict[str, Verdict] = {
     "not installed": "not run",
+    "unsupported": "not applicable",
     "timed out": "inconclusive",
     "refused": "fail",
     "nonsense": "fail",
     "crashed": "fail",
+    "unknown": "fail",
+    "internal": "fail",
 }
 """What a code's failure means for its cell: whoever takes part and gives no answer has failed."""
 
@@ -64,8 +68,8 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
 
 def refined(head: Head, omega: float, reference: Reference, study: Study, order: int, bracket: bool = False) -> Rows:
     """A code's cells at one speed, one for each mode the case compares, and every refinement's frequencies."""
-    if not study.answers:
-        return [_failed(head, omega, study.failure)], []
+    if not study.answers or (study.failure and study.failure.kind == "nonsense"):
+        return [failed(head, omega, study.failure)], []
     settled = settle(study.answers, reference.core.wanted, order, bracket)
     late = f"finer: {study.failure.reason}" if study.failure else ""
     cells = []
@@ -106,7 +110,7 @@ def same(
     taken to have as much, or what it says itself.
     """
     if isinstance(theirs, Failure):
-        return [_failed(head, omega, theirs)], []
+        return [failed(head, omega, theirs)], []
     if isinstance(mine, Failure):
         return [empty(head, omega, "inconclusive", f"core with the same discretisation: {mine.reason}")], []
     wanted = reference.core.wanted
@@ -170,7 +174,7 @@ def given(head: Head, omega: float, reference: Reference, study: Study, order: i
         study: core's, the discretisation in question first, then ever finer ones of its kind.
     """
     if not study.answers:
-        return [_failed(head, omega, study.failure)], []
+        return [failed(head, omega, study.failure)], []
     first = replace(study, answers=study.answers[:1])
     coarse, levels = refined(head, omega, reference, first, order)
     fine, _ = refined(head, omega, reference, study, order)
@@ -188,7 +192,7 @@ def given(head: Head, omega: float, reference: Reference, study: Study, order: i
     return cells, levels
 
 
-def _failed(head: Head, omega: float, failure: Failure | None) -> Cell:
+def failed(head: Head, omega: float, failure: Failure | None) -> Cell:
     """The cell of a code that gave no answer."""
     failure = failure or Failure("nonsense", "no answer and no reason")
     return empty(head, omega, FAILED[failure.kind], failure.reason)

@@ -7,20 +7,22 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
-from typing import Any
+from typing import Any, Literal
 
 from ...core import velocity_transformation
 from ...core.blade import Blade, straight
 from ...core.effects import FULL, Model
 from ...core.modes import Modes
-from ...references.protocol.interface import CORE, Code, Independence, brackets, independence, motions
-from ...references.protocol.registry import cap, version_of
-from ...references.protocol.worker import Answer, Failure, answers, one_line
+from ...references.protocol.description import Description
+from ...references.protocol.interface import CORE, Independence
+from ...references.protocol.process import Failure, Limits
+from ...references.protocol.registry import cap
+from ...references.protocol.worker import Answer, answers
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Case, Discretisation, Variant
 from ..judge.results import Cell, Level, Verdict
 from . import core_solver
-from .cells import Head, empty, given, refined, rounding, same
+from .cells import Head, empty, failed, given, refined, rounding, same
 from .published_tables import about, rows
 from .reference import Reference, felt
 from .refinement import Refining, Wanted, solve
@@ -50,6 +52,8 @@ class Column:
         head: what its cells have in common.
         work: rows from core's references.
         origin: where its answers come from, as declared; None if nothing is.
+        due: where it owes cells: at every speed for every mode, at the highest speed, or only where it has numbers.
+        adapter: digest of the source of the code that answers; empty if it is this package's.
     """
 
     name: str
@@ -57,6 +61,8 @@ class Column:
     head: Head
     work: Callable[[Any], Rows]
     origin: Independence | None = None
+    due: Literal["everywhere", "highest speed", "somewhere"] = "everywhere"
+    adapter: str = ""
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds; without a reference there is nothing to compare with."""
@@ -70,9 +76,10 @@ class Column:
         return without + cells, levels
 
 
-def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float) -> list[Column]:
-    """All columns of one blade; ``codes`` by the name or import path they were asked for.
+def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: Limits) -> list[Column]:
+    """All columns of one blade; ``limits`` of each solution by a foreign code.
 
+    ``refused`` of each code is its answer to this blade; a code that was not shown it is asked when it is to solve it.
     Codes that take mechanisms only have none, unless there are no others.
     """
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
@@ -83,70 +90,74 @@ def columns(case: Case, variant: Variant, codes: dict[str, Any], timeout: float)
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
     head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
-    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade)))
+    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade), due="highest speed"))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         theory = CORE if computed else table.series.theory or table.source
         origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
-        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin))
-    takers = {name: code for name, code in codes.items() if hasattr(code, "solve")}
-    if codes and not takers:
-        out += [_mechanisms_only(variant.name, code, target) for code in codes.values()]
-    for name, code in takers.items():
-        told, raised = version_of(code)
-        head = Head(variant.name, code.name, told, "code", target, getattr(code, "shares", ""), motions(code))
-        column = _raised(head, raised) if raised else _code(head, name, code, blade, timeout)
-        out.append(replace(column, origin=_origin(code, blade)))
+        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin, due="somewhere"))
+    takers = [code for code in codes if code.blades]
+    if not takers:
+        out += [_mechanisms_only(variant.name, code, target) for code in codes]
+    for code in takers:
+        head = Head(variant.name, code.name, code.version or "", "code", target, code.shares, code.motions)
+        out.append(replace(_code(head, code, blade, limits), origin=_origin(code, blade)))
     return out
 
 
-def _mechanisms_only(case: str, code: Any, target: float) -> Column:
-    head = Head(case, code.name, version_of(code)[0], "code", target)
+def _mechanisms_only(case: str, code: Description, target: float) -> Column:
+    head = Head(case, code.name, code.version or "", "code", target)
     return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
 
 
-def _code(head: Head, name: str, code: Code, blade: Blade, timeout: float) -> Column:
-    try:
-        why = code.unsupported(blade)
-    except Exception as error:  # whatever a foreign code raises costs its own cells only
-        return _raised(head, f"unsupported(): {type(error).__name__}: {one_line(error)}")
-    if why:
-        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", why))
-    if not head.version:
-        return Column(code.name, FULL, head, partial(_absent, head, "not run", f"not installed: {code.hint}"))
-    model = felt(code.model, blade)
+def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column:
+    if code.failure:
+        return Column(code.name, FULL, head, failing_work(head, code.failure))
+    if code.refused and code.refused[0]:
+        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", code.refused[0]))
+    name, model = code.asked, felt(code.model, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)
         return Column(
             code.name,
             model,
             head,
-            partial(_same, head, name, blade, code.levels[-1], code.model, timeout),
+            partial(_same, head, name, blade, code.levels[-1], code.model, limits),
         )
-    refining = Refining(tuple(code.levels), code.order, cap(code), bracket=brackets(code))
-    return Column(code.name, model, head, partial(_refined, head, name, blade, refining, timeout))
+    refining = Refining(code.levels, code.order, cap(code), bracket=code.bracket)
+    return Column(code.name, model, head, partial(_refined, head, name, blade, refining, limits))
 
 
-def _origin(code: Any, blade: Blade) -> Independence | None:
+def _origin(code: Description, blade: Blade) -> Independence | None:
     """What a code declares; frames that core gives it are no matter where the sections' axes are those of the blade."""
-    declared = independence(code)
+    declared = code.independence
     plain = straight(blade) and not (blade.twist.any() or blade.precone or blade.pitch)
     return replace(declared, sections="blade") if declared and declared.theory != CORE and plain else declared
 
 
-def _raised(head: Head, what: str) -> Column:
-    return Column(head.code, FULL, head, partial(_absent, head, "fail", f"the adapter raised an exception: {what}"))
+def failing(head: Head, failure: Failure, speeds: Iterable[float]) -> Rows:
+    """A cell at every speed for a code, or a column of ours, that has no answer at any."""
+    return [failed(head, omega, failure) for omega in speeds], []
+
+
+def failing_work(head: Head, failure: Failure) -> Callable[[Any], Rows]:
+    """The work of a code that failed before it was asked anything."""
+    return partial(_failing, head, failure)
+
+
+def _failing(head: Head, failure: Failure, core: References) -> Rows:
+    return failing(head, failure, [omega for omega, _ in core])
 
 
 def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
     return [empty(head, omega, verdict, reason) for omega, _ in core], []
 
 
-def _refined(head: Head, name: str, blade: Blade, refining: Refining, timeout: float, core: References) -> Rows:
+def _refined(head: Head, name: str, blade: Blade, refining: Refining, limits: Limits, core: References) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
-        return answers(name, blade, runs, timeout)
+        return answers(name, blade, runs, limits)
 
     count = max(r.core.count for _, r in core)
     studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
@@ -168,9 +179,9 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     )
 
 
-def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, timeout: float, core: References) -> Rows:
+def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, limits: Limits, core: References) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
-    theirs = answers(name, blade, runs, timeout)
+    theirs = answers(name, blade, runs, limits)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
     mine, *again = (core_solver.answers(b, runs, "half_end", "parent", model) for b in (blade, *scaled))
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]

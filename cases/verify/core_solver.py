@@ -12,7 +12,8 @@ from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.solve import mesh_modes
-from ...references.protocol.worker import Answer, Failure, Run
+from ...references.protocol.process import Failure
+from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare, Discretisation
 from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights

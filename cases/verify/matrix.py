@@ -3,8 +3,8 @@
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from importlib.metadata import version
@@ -12,19 +12,21 @@ from pathlib import Path
 from platform import python_version
 from typing import Any
 
-from ...references.protocol.registry import code, version_of
+from ...core.blade import Blade
+from ...references.protocol.description import Description, describe
+from ...references.protocol.process import Failure, Limits, raised
+from ..input.errors import CaseError
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Level, Origin, Run, Share
+from ..judge.results import Cell, Level, Origin, Planned, Run, Share
 from . import error_budget, mechanism_columns
-from .columns import Column, Rows, columns
+from .columns import Column, Rows, columns, failing
+from .identity import adapter
 from .mechanism_case import MechanismCase, Turning
+from .names import unique
 from .reference import references
 from .settings import settings
 from .user_results import Added, check
 from .user_results import columns as added_columns
-
-TIMEOUT = 300.0
-"""Seconds a worker has for what it is asked at once: all speeds of one blade."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ class _Task:
     variant: Variant | Turning
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
+    modes: int
     column: Column | None = None
     shares: Callable[[], list[Share]] | None = None
 
@@ -63,32 +66,40 @@ class _Task:
 
 def run(
     cases: Sequence[Case | MechanismCase],
-    codes: Sequence[str],
+    codes: Sequence[str | Description],
     executor: Executor,
     on_progress: Callable[[Progress], None] = lambda _: None,
-    timeout: float = TIMEOUT,
+    seconds: float | None = None,
+    memory: int = Limits.memory,
     added: Sequence[Added] = (),
     parts: bool = True,
+    on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
 ) -> Run:
     """Every blade of ``cases`` through every one of ``codes``, judged.
 
     Args:
         cases: as read.
-        codes: names or import paths, see ``references.codes``.
+        codes: names or import paths, see ``references.protocol.registry``, or descriptions.
         executor: where tasks run: threads, processes, another machine's.
         on_progress: told when the run starts and whenever a task ends; an exception from it stops the run.
-        timeout: seconds for one worker.
+        seconds: that one solution by a foreign code may take; as each case says by default.
+        memory: bytes that it may take.
         added: results without a code, each a column more.
         parts: whether to say what core's differences are made of.
+        on_plan: told every column, before anything is solved.
 
     Raises:
-        CaseError: if core itself cannot solve a case, or results are added that are not of these cases.
+        CaseError: if core itself cannot solve a case, results are added that are not of these cases, or a name is given twice.
         UnknownCodeError: if a code is not known.
     """
-    known = {name: code(name) for name in codes}
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
-    check(added, blades, [c.name for c in known.values()])
-    plans = [task for case in cases for task in _tasks(case, known, timeout, added)]
+    known = _known(codes, [v.blade for v in blades])
+    unique(cases, known, added)
+    check(added, blades, [c.name for c in known])
+    shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
+    plans = [task for case in cases for task in _tasks(case, known, shown, _limits(case, seconds, memory), added)]
+    plan = tuple(_planned(task, column) for task in plans for column in task.columns)
+    on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
@@ -101,12 +112,16 @@ def run(
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 task, new = pending.pop(future), ([], [])
-                if task.column:
-                    rows[task.variant.name, task.column.name] = new = future.result()
+                speeds, answer = task.variant.speeds.tolist(), _answer(future)
+                if isinstance(answer, Failure):
+                    for column in [task.column] if task.column else task.columns:
+                        lost, _ = rows[task.variant.name, column.name] = failing(column.head, answer, speeds)
+                        new = (new[0] + lost, [])
+                elif task.column:
+                    rows[task.variant.name, task.column.name] = new = answer
                 else:
                     for column in task.columns:
-                        answer = executor.submit(column, task.variant.speeds.tolist(), future.result()[column.model])
-                        pending[answer] = replace(task, column=column)
+                        pending[executor.submit(column, speeds, answer[column.model])] = replace(task, column=column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
@@ -117,7 +132,7 @@ def run(
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions(known.values(), added),
+        versions=versions(known, added),
         settings=tuple(setting for case in cases for setting in settings(case)),
         shares=tuple(made_of),
         origins=tuple(
@@ -126,22 +141,68 @@ def run(
             for column in task.columns
             if column.origin
         ),
+        plan=plan,
     )
 
 
-def _tasks(case: Case | MechanismCase, codes: dict[str, Any], timeout: float, added: Sequence[Added]) -> list[_Task]:
+def _planned(task: _Task, column: Column) -> Planned:
+    speeds = {"everywhere": len(task.variant.speeds), "highest speed": 1, "somewhere": 0}[column.due]
+    return Planned(task.variant.name, column.head.code, speeds, task.modes if speeds else 0)
+
+
+def _known(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
+    """Descriptions of codes that have been shown every blade of the run."""
+    ready = {
+        c.asked: c
+        for c in codes
+        if isinstance(c, Description) and (c.failure or not c.blades or len(c.refused) == len(blades))
+    }
+    names = [c if isinstance(c, str) else c.asked for c in codes]
+    ready |= {c.asked: c for c in describe([name for name in names if name not in ready], blades)}
+    return [ready[name] for name in names]
+
+
+def _answer(future: Future[Any]) -> Any:
+    """What a task gave, or that it failed by an error of ours: that costs its cells, and no others."""
+    try:
+        return future.result()
+    except (CaseError, BrokenExecutor):
+        raise
+    except Exception as error:
+        return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")
+
+
+def _limits(case: Case | MechanismCase, seconds: float | None, memory: int) -> Limits:
+    compare = case.described.text.compare if isinstance(case, MechanismCase) else case.text.compare
+    return Limits(seconds or (compare.time_limit if compare else Limits.seconds), memory)
+
+
+def _tasks(
+    case: Case | MechanismCase,
+    codes: Sequence[Description],
+    shown: Mapping[str, Sequence[Description]],
+    limits: Limits,
+    added: Sequence[Added],
+) -> list[_Task]:
     """One for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         (turning,) = case.variants
-        made = tuple(mechanism_columns.columns(case, codes, timeout))
-        return [_Task(turning, made, partial(mechanism_columns.references, turning))]
+        made = _dated(mechanism_columns.columns(case, codes, limits), codes)
+        return [_Task(turning, made, partial(mechanism_columns.references, turning), turning.count)]
     out = []
     for v in case.variants:
-        made = (*columns(case, v, codes, timeout), *added_columns(v, added, case.text.compare.target))
+        made = _dated(columns(case, v, shown[v.name], limits), codes)
+        made += tuple(added_columns(v, added, case.text.compare.target))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        out.append(_Task(v, made, question, shares=partial(error_budget.solve, case, v)))
+        out.append(_Task(v, made, question, case.text.compare.modes, shares=partial(error_budget.solve, case, v)))
     return out
+
+
+def _dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
+    """The columns with the digests of their codes' sources."""
+    sources = {one.name: "" if one.failure else adapter(one.asked) for one in codes}
+    return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)
 
 
 def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:
@@ -153,12 +214,11 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
     return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
 
 
-def versions(codes: Iterable[Any], added: Sequence[Added] = ()) -> dict[str, str]:
+def versions(codes: Iterable[Description], added: Sequence[Added] = ()) -> dict[str, str]:
     """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
     files = {one.name: f"results in {Path(one.path).name}" for one in added}
-    told = {c.name: version_of(c) for c in codes}
-    theirs = {name: version or ("unknown" if raised else "not installed") for name, (version, raised) in told.items()}
+    theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
     return {"python": python_version(), **ours, **theirs, **files}
 
 

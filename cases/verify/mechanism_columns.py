@@ -18,10 +18,10 @@ from ...core import multibody as mb
 from ...core.effects import FULL, Model
 from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
-from ...references.protocol.mechanism_interface import MechanismModes, takes_mechanisms
+from ...references.protocol.description import Description
+from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer, answers
-from ...references.protocol.registry import version_of
-from ...references.protocol.worker import Failure, one_line
+from ...references.protocol.process import Failure, Limits
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError
 from ..input.mechanism_schema import ClosedForm
@@ -29,8 +29,8 @@ from ..judge.pairing import LEAST_MAC
 from ..judge.results import Cell, Verdict
 from ..judge.uncertainty import ROUNDING
 from ..judge.verdict import judge, unsigned
-from .cells import FAILED, Head, empty
-from .columns import Column, Rows
+from .cells import Head, empty, failed
+from .columns import Column, Rows, failing_work
 from .mechanism_case import MechanismCase, Turning
 
 Array = NDArray[np.float64]
@@ -72,38 +72,28 @@ def _reference(variant: Turning, omega: float) -> Reference:
     return Reference(modes, found.damping, tuple(name.partition(".")[0] for name in found.leading), weight)
 
 
-def columns(case: MechanismCase, codes: Mapping[str, Any], timeout: float) -> list[Column]:
-    """A column for each code and for the closed form; ``codes`` by the name or import path they were asked for.
+def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -> list[Column]:
+    """A column for each code and for the closed form; ``limits`` of each solution by a foreign code.
 
     Codes that take blades only have none, unless there are no others.
     """
     (variant,) = case.variants
     out = []
-    takers = {name: code for name, code in codes.items() if takes_mechanisms(code)}
-    for name, code in (takers or codes).items():
-        head = Head(case.name, code.name, version_of(code)[0], "same discretisation", case.target)
-        out.append(Column(code.name, FULL, head, _work(head, variant, name, code, timeout)))
+    for code in [code for code in codes if code.mechanisms] or codes:
+        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target)
+        out.append(Column(code.name, FULL, head, _work(head, variant, code, limits)))
     if form := variant.described.text.closed_form:
         head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
         out.append(Column(head.code, FULL, head, partial(_compared, head, variant, partial(_formula, form))))
     return out
 
 
-def _work(head: Head, variant: Turning, name: str, code: Any, timeout: float) -> Work:
-    if not takes_mechanisms(code):
+def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Work:
+    if code.failure:
+        return failing_work(head, code.failure)
+    if not code.mechanisms:
         return partial(_absent, head, "not applicable", "it takes blades, not mechanisms")
-    try:
-        _, raised = version_of(code)
-        why = code.unsupported_mechanism(variant.described.mechanism)
-    except Exception as error:  # whatever a foreign code raises costs its own cells only
-        raised, why = f"unsupported_mechanism(): {type(error).__name__}: {one_line(error)}", ""
-    if raised:
-        return partial(_absent, head, "fail", f"the adapter raised an exception: {raised}")
-    if why:
-        return partial(_absent, head, "not applicable", why)
-    if not head.version:
-        return partial(_absent, head, "not run", f"not installed: {code.hint}")
-    return partial(_compared, head, variant, partial(_ask, name, variant.described.guess, timeout))
+    return partial(_compared, head, variant, partial(_ask, code.asked, variant.described.guess, limits))
 
 
 def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[float, Reference]]) -> Rows:
@@ -111,9 +101,9 @@ def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[floa
 
 
 def _ask(
-    name: str, guess: Mapping[str, float], timeout: float, mechanisms: Sequence[mb.Mechanism], _: Sequence[float]
+    name: str, guess: Mapping[str, float], limits: Limits, mechanisms: Sequence[mb.Mechanism], _: Sequence[float]
 ) -> list[Answer]:
-    return answers(name, mechanisms, guess, timeout)
+    return answers(name, mechanisms, guess, limits)
 
 
 def _formula(form: ClosedForm, _: Sequence[mb.Mechanism], speeds: Sequence[float]) -> list[Answer]:
@@ -133,7 +123,7 @@ def _compared(head: Head, variant: Turning, solve: Solve, core: Sequence[tuple[f
 def cells(head: Head, omega: float, reference: Reference, answer: Answer, count: int) -> list[Cell]:
     """A code's cells at one speed: its partner of each of core's ``count`` lowest modes, by mass-weighted MAC."""
     if isinstance(answer, Failure):
-        return [empty(head, omega, FAILED[answer.kind], answer.reason)]
+        return [failed(head, omega, answer)]
     likeness = alike(reference, answer)
     partners = dict(zip(*(k.tolist() for k in linear_sum_assignment(-likeness)), strict=True))
     out = []

@@ -5,10 +5,12 @@ They do when told to, and when the process that started them is gone, however it
 
 import os
 import signal
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from multiprocessing import active_children, get_context, parent_process
+from pathlib import Path
 from threading import Thread, main_thread
 from time import sleep
 from types import FrameType
@@ -17,6 +19,8 @@ from typing import Any, ParamSpec, TypeVar
 P = ParamSpec("P")
 T = TypeVar("T")
 
+SAFE_PATH = "PYTHONSAFEPATH"
+
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 _leaving = False
@@ -24,15 +28,17 @@ _orphaned = False
 
 
 class Pool(ProcessPoolExecutor):
-    """``workers`` processes, one thread of linear algebra each."""
+    """``workers`` processes, one thread of linear algebra each; their temporary files, and those of the codes they run, are
+    in ``scratch`` if it is given: who removes that folder has removed all that a killed process left."""
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, scratch: Path | None = None) -> None:
         os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
-        super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin)
+        super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(scratch,))
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """As any executor's; a task that was handed over but not begun when the stop came is not begun."""
-        return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
+        with _safe_path():  # processes are started when they are first needed
+            return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
 
     def stop(self) -> None:
         """Interrupt every process and drop what is pending; returns when all are gone."""
@@ -43,7 +49,23 @@ class Pool(ProcessPoolExecutor):
         self.shutdown(wait=True, cancel_futures=True)
 
 
-def _begin() -> None:
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Python processes that are started meanwhile execute no ``random.py`` of the current folder."""
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        os.environ.pop(SAFE_PATH)
+        if before is not None:
+            os.environ[SAFE_PATH] = before
+
+
+def _begin(scratch: Path | None) -> None:
+    os.environ.pop(SAFE_PATH, None)  # it was meant for this process, and not for what foreign codes start
+    if scratch:
+        os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
     Thread(target=_follow_parent, daemon=True).start()

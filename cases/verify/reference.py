@@ -6,7 +6,7 @@ from functools import cache
 
 from ...core.blade import Blade
 from ...core.effects import FULL, Model
-from ...references.protocol.worker import Failure
+from ...references.protocol.process import Failure
 from ..input.errors import CaseError
 from ..input.schema import Compare
 from ..judge.pairing import pair

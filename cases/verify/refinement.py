@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.modes import Modes
-from ...references.protocol.worker import Answer, Failure, Run
+from ...references.protocol.process import Failure
+from ...references.protocol.worker import Answer, Run
 from ..judge.pairing import Pair, pair
 from ..judge.uncertainty import Estimate, from_bracket, from_refinement, widened
 
@@ -91,11 +92,13 @@ def solve(
     failed: dict[float, Failure] = {}
     while runs:
         for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
+            wrong = omega in failed and failed[omega].kind == "nonsense"  # stays, whatever other refinements give
             if isinstance(answer, Failure):
-                failed[omega] = answer
+                failed[omega] = failed[omega] if wrong else answer
             else:
-                failed.pop(omega, None)
                 solved[omega].append(answer)
+                if not wrong:
+                    failed.pop(omega, None)
         finer = 2 * levels[-1]
         levels.append(finer)
         open_ = [omega for omega in speeds if omega not in failed]

@@ -41,6 +41,10 @@ ALIASES = {"edgewise": "chordwise", "edge": "chordwise", "lag": "chordwise", "fl
 NUMBER = re.compile(r"\d+(\.\d*)?([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?")
 
 
+MOST, DIGITS = 1e9, 40
+"""The largest speed or frequency in any unit, and the characters of a number."""
+
+
 @dataclass(frozen=True)
 class Given:
     """One frequency of the file.
@@ -115,18 +119,20 @@ def _header(header: Sequence[str], where: str) -> tuple[str, str]:
 
 
 def _given(where: str, line: int, row: dict[str, str], speed: str, frequency: str) -> Given:
-    def number(column: str, least: float = 0.0) -> float:
+    def number(column: str, least: float = 0.0, most: float = MOST) -> float:
         text = row[column]
-        if not NUMBER.fullmatch(text) or float(text) < least:
+        if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
             wanted = "a number above 0" if least else "a number, 0 or more"
-            raise CaseError(f"{where}: {column}: {text!r} is not {wanted}: correct it, with a point for decimals")
+            raise CaseError(
+                f"{where}: {column}: {text!r} is not {wanted}, and at most {most:g}: correct it, with a point for decimals"
+            )
         return float(text)
 
     omega = number(speed)
-    number(frequency, least=1e-300)
+    number(frequency, least=1e-9)
     value = from_print(row[frequency], FREQUENCY[frequency])
     if row.get("uncertainty [%]", ""):
-        value = Estimate(value.value, number("uncertainty [%]") / 100.0)
+        value = Estimate(value.value, number("uncertainty [%]", most=100.0) / 100.0)
     family, mode = _mode(where, row.get("family", ""), row["mode"])
     slack = from_print(row[speed]).uncertainty if omega else 0.0
     unit = SPEED[speed]
@@ -193,7 +199,7 @@ def columns(variant: Variant, added: Sequence[Added], target: float) -> list[Col
         mine = [row for row in one.rows if row.blade in ("", variant.name)]
         if mine:
             head = Head(variant.name, one.name, f"from {Path(one.path).name}", "code", target, "nothing")
-            out.append(Column(one.name, FULL, head, partial(_rows, head, mine)))
+            out.append(Column(one.name, FULL, head, partial(_rows, head, mine), due="somewhere"))
     return out
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from ...core.blade import Blade
 from ...core.effects import FULL, Model
 from ...core.modes import STATIONS, Modes
-from ...references.protocol.worker import Answer, Failure
+from ...references.protocol.process import Failure
+from ...references.protocol.worker import Answer
 from ...references.protocol.worker import Run as Asked
 from ..input.errors import CaseError
 from ..input.schema import Compare, Variant

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import Blade
+from ..input import atomic
 from ..input.errors import CaseError
 from ..input.readers.beamdyn import DAMPING
 from ..input.readers.beamdyn_axis import Axis, measured, roll
@@ -47,8 +48,8 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
     degrees = np.degrees(roll(axis, z) - blade.twist)
     sections = blade_file(path)
     points = np.stack([blade.curve[:, 2], -blade.curve[:, 1], z, degrees], axis=1)
-    path.write_text(_main_text(blade.name, points, sections.name), encoding="utf-8")
-    sections.write_text(_blade_text(blade, axis.arc / axis.arc[-1], given), encoding="utf-8")
+    atomic.write(path, _main_text(blade.name, points, sections.name))
+    atomic.write(sections, _blade_text(blade, axis.arc / axis.arc[-1], given))
     return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
 from ..campbell.elastodyn_shapes import polynomials
+from ..input import atomic
 from ..input.errors import CaseError
 from ..input.readers.elastodyn import COLUMNS, MULTIPLIERS
 from ..input.readers.elastodyn_unused import DAMPING
@@ -88,7 +89,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
             for power, x in enumerate(row, 2)
         ),
     ]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    atomic.write(path, "\n".join(lines) + "\n")
     return Mount(length=blade.length, hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 

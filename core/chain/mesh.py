@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import trapezoid
 
 from ..blade import Blade, mass_at, stiffness_at
 
@@ -49,7 +50,7 @@ def _layer(blade: Blade, omega: float) -> float:
     s = np.linspace(0.0, blade.length, 401)
     mass = mass_at(blade, s)[:, 0, 0]
     tension = omega**2 * (
-        float(np.trapezoid(mass * (blade.hub_radius + s), s)) + blade.tip_mass[0, 0] * (blade.hub_radius + blade.length)
+        float(trapezoid(mass * (blade.hub_radius + s), s)) + blade.tip_mass[0, 0] * (blade.hub_radius + blade.length)
     )
     EI = np.diagonal(stiffness_at(blade, s[:1])[0])[4:].min()
     return float(np.sqrt(EI / tension)) if tension > 0 and np.isfinite(EI) else blade.length

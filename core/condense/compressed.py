@@ -8,11 +8,13 @@ torsion (a section that twists under tension shortens too). A solid does show th
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import solve
+from ..chain import accuracy
 from ..effects import FULL, Model
 from ..element import beams as bm
 from ..element.beams import Beams, Points
@@ -20,6 +22,7 @@ from ..element.discretize import Chain
 from ..element.measures import even
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
+from .joined import joined
 from .segments import Segment
 from .ties import CondensationError
 
@@ -71,6 +74,45 @@ def chain_modes(
         UnstableError: the steady state is not stable.
     """
     return solve.chain_modes(chain, omega, count, model=model, gravity=gravity)
+
+
+def segment_modes(
+    segments: Sequence[Segment], root: Array, omega: float, count: int = 10, *, allow_large_strain: bool = False
+) -> Modes:
+    """The lowest modes of segments end to end, with their relative uncertainties as a model of the blade they are cut from.
+
+    These are told from the same blade with a half and a quarter of the segments, each two joined; infinite for fewer than
+    four. Torsion and stretch converge with second order, bending with fourth; the slower counts.
+
+    Args:
+        segments: as for ``chain_from_segments``.
+        root: likewise.
+        omega: rad/s.
+        count: how many modes (fewer if there are fewer).
+        allow_large_strain: accept steady strains above ``solve.LARGEST_STRAIN``.
+
+    Raises:
+        CondensationError: no segments.
+        SteadyStateError: no steady state at this speed.
+        LargeStrainError: one with strains that linear elements do not describe.
+        UnstableError: the steady state is not stable.
+    """
+    fine = chain_modes(chain_from_segments(segments, root), omega, count)
+    if fine.strain > solve.LARGEST_STRAIN and not allow_large_strain:
+        raise solve.LargeStrainError(
+            f"omega: {omega:.6g} rad/s: steady strain {fine.strain:.0%}: linear elements do not describe it: the speed is too "
+            "high or the blade too soft; check units, or allow large strains"
+        )
+    m = len(fine.frequencies)
+    unknown = replace(fine, uncertainty=np.full(m, np.inf))
+    if len(segments) < 4:
+        return unknown
+    half = joined(segments)
+    levels = [chain_modes(chain_from_segments(s, root), omega, m).frequencies for s in (joined(half), half)]
+    if min(len(f) for f in levels) < m:
+        return unknown
+    sure = accuracy.estimate(np.array([*levels, fine.frequencies]), order=2).of_finest
+    return replace(fine, uncertainty=sure + fine.rounding)
 
 
 def _centred(inertia: Array) -> tuple[Array, Array]:

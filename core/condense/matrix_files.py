@@ -9,7 +9,7 @@ Read are, told apart by what is in them (the last by name):
   (FORMAT=COORDINATE, no freedoms named), either triangle or both, commas or blanks between;
 * Nastran ``DMIG`` in fixed fields, small (8) or large (16, ``DMIG*``), as punched by EXTSEOUT(DMIGPCH); real matrices that
   are square (1) or symmetric (6, either triangle), exponents with ``E``, ``D`` or a bare sign;
-* Matrix Market, coordinate or array, by scipy (no freedoms named);
+* Matrix Market, coordinate or array (no freedoms named), see ``matrix_market``;
 * CalculiX ``*FREQUENCY, SOLVER=MATRIXSTORAGE`` by ``stored``: ``row column value`` in ``.sti`` and ``.mas``, with the freedoms
   ``node.component`` of the rows beside them in ``.dof``.
 
@@ -21,10 +21,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 import scipy.sparse as ss
 
+from ..regular_files import LARGEST_DATA, read_bytes
+from . import matrix_market
 from .exported import Exported, MatrixFileError, assembled, labelled
+from .matrix_words import real, whole
 
 REAL = (1, 2)
 SQUARE, SYMMETRIC = 1, 6
@@ -42,13 +44,13 @@ def read(path: Path, what: str = "stiffness") -> Exported:
         MatrixFileError: not one of these forms, broken off, or without that matrix.
         OSError: if there is no such file.
     """
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    text = read_bytes(path, LARGEST_DATA).decode("utf-8-sig", errors="replace")
     if "\0" in text:
         raise MatrixFileError(
             f"{path.name}: not a text file: a binary export, or UTF-16? export or save it as text in UTF-8"
         )
     if text.startswith("%%MatrixMarket"):
-        return _matrix_market(path)
+        return matrix_market.read(path.name, text)
     lines = text.upper().splitlines()
     if any(line.startswith("*USER ELEMENT") for line in lines):
         return _user_element(path.name, lines, what.upper())
@@ -65,23 +67,15 @@ def stored(path: Path) -> Exported:
         OSError: if either file is missing.
     """
     matrix: Any = read(path).matrix
-    words = [w.split(".") for w in path.with_suffix(".dof").read_text().split()]
+    beside = path.with_suffix(".dof")
+    words = [w.split(".") for w in read_bytes(beside, LARGEST_DATA).decode(errors="replace").split()]
     rows = matrix.shape[0]
     if len(words) != rows:
         raise MatrixFileError(f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: of another run?")
-    freedoms = np.array([[_whole(path.with_suffix(".dof").name, k, v) for v in w] for k, w in enumerate(words, 1)])
+    if any(len(w) != 2 for w in words):
+        raise MatrixFileError(f"{beside.name}: not node.component in each line: of another program?")
+    freedoms = np.array([[whole(beside.name, k, v) for v in w] for k, w in enumerate(words, 1)])
     return labelled(path.name, matrix, freedoms)
-
-
-def _matrix_market(path: Path) -> Exported:
-    try:
-        matrix: Any = scipy.io.mmread(path)
-    except (ValueError, OverflowError) as error:
-        raise MatrixFileError(f"{path.name}: not a Matrix Market file: {error}") from error
-    rows, columns = matrix.shape
-    if rows != columns:
-        raise MatrixFileError(f"{path.name}: a matrix of {rows} × {columns}: a stiffness is square")
-    return Exported(path.name, ss.csr_array(matrix))
 
 
 def _user_element(name: str, lines: list[str], what: str) -> Exported:
@@ -95,17 +89,19 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
             if "ELEMENT NODES" in line:
                 card = "nodes"
             elif card == "nodes" and re.fullmatch(r"[*\s\d,]+", line):
-                nodes += [int(v) for v in re.findall(r"\d+", line)]
+                nodes += [whole(name, number, v) for v in re.findall(r"\d+", line)]
         elif line.startswith("*"):
             kind = re.search(r"^\*MATRIX\s*,\s*TYPE\s*=\s*(\w+)", line)
             card = kind[1] if kind else ""
             if kind:
                 triangles[card] = []
         elif card == "nodes":
-            given = [_whole(name, number, w) for w in words]
+            given = [whole(name, number, w) for w in words]
+            if not given:
+                continue
             active[given[0] if active else 1] = given[1:] if active else given
         elif card:
-            triangles[card] += [_real(name, number, w) for w in words]
+            triangles[card] += [real(name, number, w) for w in words]
     key = _chosen(name, "*MATRIX, TYPE", list(triangles), what)
     freedoms: list[tuple[int, int]] = []
     now: list[int] = []
@@ -135,8 +131,8 @@ def _triplets(name: str, lines: list[str]) -> Exported:
                 f"{name}, line {number}: {len(words)} columns: each line has row, column, value, or node, freedom, node, "
                 "freedom, value; broken off, or another form?"
             )
-        labels.append([_whole(name, number, w) for w in words[:-1]])
-        values.append(_real(name, number, words[-1]))
+        labels.append([whole(name, number, w) for w in words[:-1]])
+        values.append(real(name, number, words[-1]))
     if not labels:
         raise MatrixFileError(f"{name}: no matrix in it: see core.matrix_files for the forms that are read")
     at = np.array(labels, dtype=np.intp)
@@ -163,23 +159,23 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
         if line.startswith("DMIG"):
             matrix = words[0]
             if words[1] == "0":
-                forms[matrix] = _whole(name, number, words[2]), _whole(name, number, words[3])
+                forms[matrix] = whole(name, number, words[2]), whole(name, number, words[3])
                 entries[matrix], values[matrix] = [], []
                 continue
             if matrix not in forms:
                 raise MatrixFileError(
                     f"{name}, line {number}: column of {matrix} before its header: was the start cut off?"
                 )
-            column = _whole(name, number, words[1]), _whole(name, number, words[2])
+            column = whole(name, number, words[1]), whole(name, number, words[2])
             words = words[4:] if width == 8 else []
         elif not matrix or line[:1] not in "+* " or not line.strip():
             matrix = matrix if not line.strip() or line.startswith("$") else ""
             continue
         for k in range(0, len(words) - 2, 4):
             if words[k]:
-                row = _whole(name, number, words[k]), _whole(name, number, words[k + 1])
+                row = whole(name, number, words[k]), whole(name, number, words[k + 1])
                 entries[matrix].append((*row, *column))
-                values[matrix].append(_real(name, number, words[k + 2]))
+                values[matrix].append(real(name, number, words[k + 2]))
     key = _chosen(name, "DMIG", list(entries), what)
     form, numbers = forms[key]
     if form not in (SQUARE, SYMMETRIC) or numbers not in REAL:
@@ -196,18 +192,3 @@ def _chosen(name: str, kind: str, there: list[str], what: str) -> str:
     if what not in there and len(there) > 1:
         raise MatrixFileError(f"{name}: {kind} {what} is not in it; there are {', '.join(there)}")
     return what if what in there else there[0]
-
-
-def _whole(name: str, number: int, word: str) -> int:
-    try:
-        return int(word)
-    except ValueError:
-        raise MatrixFileError(f"{name}, line {number}: {word!r} is not a whole number: columns shifted?") from None
-
-
-def _real(name: str, number: int, word: str) -> float:
-    """Fortran's and Nastran's way of writing included: 1.5D+03, 1.5+3."""
-    try:
-        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word.upper().replace("D", "E")))
-    except ValueError:
-        raise MatrixFileError(f"{name}, line {number}: {word!r} is not a number: columns shifted?") from None

@@ -102,6 +102,23 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
     return here.state, here.reduced, _tangent(tree, here).rounding
 
 
+def again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:
+    """The steady state found again, by one of Newton's steps from a place a rounding away: how sure it is.
+
+    Raises:
+        MechanismError: as ``steady``.
+    """
+    free, eps = _free(tree), float(np.finfo(float).eps)
+    q = state.q.copy()
+    sign = np.random.default_rng(1921).choice([-1.0, 1.0], len(free))
+    turns = tree.screw[free, 3:].any(1)
+    q[free] += eps * sign * np.maximum(np.abs(q[free]), np.where(turns, 1.0, _length(state.kinematics.poses)))
+    here = _residual(tree, _closed(tree, q, free)[0], independent=independent)
+    q = here.state.q.copy()
+    q[free] += _tangent(tree, here).step(here)
+    return _residual(tree, _closed(tree, q, free)[0], independent=independent).state
+
+
 # ---------------------------------------------------------------------------------------------------------------- loops
 
 

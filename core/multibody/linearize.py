@@ -66,11 +66,18 @@ def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Dampe
     """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
 
     Raises:
+        MechanismError: a coordinate that moves nothing and that nothing holds.
         EigenError: if the eigenvalue solver fails.
     """
     M, C, K = 0.5 * (linear.M + linear.M.T), linear.C, linear.K
     if not len(M):  # everything is prescribed
         return eigen.Eigen(np.zeros(0), np.zeros((0, 0), np.complex128))
+    idle = ~(M.any(axis=1) | C.any(axis=1) | linear.K.any(axis=1))
+    if idle.any():
+        raise MechanismError(
+            f"coordinate {linear.names[int(idle.argmax())]!r}: nothing that it moves has mass, and no spring or damper holds "
+            "it: give its body mass, or prescribe its motion"
+        )
     rigid = unresisted(linear.tree, linear.state, linear.names)
     if not _conservative(linear):
         return eigen.damped(M, C, K, count, rigid)

@@ -13,6 +13,7 @@ from ..element.beams import Beams
 from ..element.discretize import discretize
 from .linearize import Linear, linearize, modes
 from .mechanism import Mechanism
+from .rounding import rounding
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -24,6 +25,7 @@ class Solution:
 
     Attributes:
         values: (m,) complex eigenvalues λ, 1/s, by modulus: one of each conjugate pair, and real ones.
+        uncertainty: (m,) relative, of the frequencies, and absolute, of the damping ratios: rounding, see ``rounding``.
         shapes: (m, n) motion of all coordinates in each mode, the largest 1; zero where motion is prescribed.
         coordinates: names of the n coordinates.
         steady: their values in the steady state, m or rad, by name.
@@ -33,6 +35,7 @@ class Solution:
     """
 
     values: Complex
+    uncertainty: Array
     shapes: Complex
     coordinates: tuple[str, ...]
     steady: dict[str, float]
@@ -90,6 +93,7 @@ def solve(
         shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
     return Solution(
         values=values,
+        uncertainty=rounding(linear, found),
         shapes=shapes,
         coordinates=tree.coordinates,
         steady=dict(zip(tree.coordinates, linear.state.q.tolist(), strict=True)),

@@ -1,20 +1,26 @@
-"""A straight blade as rigid segments on elastic hinges: the links of a kinematic tree, for a code that takes one.
+"""A blade as rigid segments on elastic hinges: the links of a kinematic tree, for a code that takes one.
 
 An element bends, twists, stretches and shears in one hinge, by its whole compliance and where the compliance in bending
 has its centroid (the middle, if uniform); what lies between two hinges is a rigid body with the blade's own mass and
-inertia. What lies before the first belongs to the hub. This is a lumped model of second order.
+inertia. What lies before the first belongs to the hub, or to the root's joint: sliding along its axes x, y, z and then turning
+about them, as far as they are not held. This is a lumped model of second order.
 
-Sliding joints sit half on either side of the turning ones, so that a stretched hinge still turns at its middle
-(all on one side would cost an order: the middle would be off by half the stretch).
+The hinge has the place and axes of its section, so that the line may be curved; its 6×6 compliance is the integral of the
+sections', each rotated into its axes, so that strains may couple.
+
+All joints but the last turning one sit half on either side of it: a stretched hinge still turns at its middle, and the order
+of finite rotations, which do not commute, does not matter. All on one side would cost an order.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at, stiffness_at, twist_at
-from ...core.space.spatial import rotation, skew
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped, mass_at, stiffness_at
+from ...core.space.spatial import skew
+from ..theories.reference_line import line, root_axes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -28,15 +34,17 @@ class Tree:
 
     Attributes:
         strain: (n,) what the joint lets happen (``core.blade``'s order of strains).
-        stiffness: (n,) N/m or N m.
+        stiffness: (n,) of each joint by itself, N/m or N m.
+        coupling: (n, n) what one joint of a hinge bears when another moves, zero on the diagonal.
         offset, turn: (n, 3), (n, 3, 3) from the link before; from the hub's axes, coned, for the first.
         segment: (e,) the link that carries the segment, the last of each hinge.
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
-        reach: (e,) distance from a hinge to the end of its element, m.
+        reach: (e, 3) from a hinge to the end of its element, in the hinge's axes, m.
     """
 
     strain: Index
     stiffness: Array
+    coupling: Array
     offset: Array
     turn: Array
     segment: Index
@@ -47,57 +55,99 @@ class Tree:
 
 
 def plant(blade: Blade, elements: int) -> Tree:
-    """A blade as a tree of ``elements`` equal elements."""
+    """A blade as a tree of ``elements`` equal elements, behind the joint at its root if that is not clamped."""
     ends = np.linspace(0.0, blade.length, elements + 1)
-    hinges, stiff = _hinges(blade, ends)
-    slide = [strain for strain in SLIDE if np.isfinite(stiff[0, strain])]
-    turn = [strain for strain in TURN if np.isfinite(stiff[0, strain])]
-    hinge = np.array([*slide, *turn, *slide[::-1]])
-    n = len(hinge)
-    offset, axes = np.zeros((elements, n, 3)), np.tile(np.eye(3), (elements, n, 1, 1))
-    offset[:, 0, 0] = np.diff(hinges, prepend=-blade.hub_radius)
-    cone = rotation(1, np.array(-blade.precone))
-    offset[0, 0] = cone @ offset[0, 0]
-    axes[:, 0] = rotation(0, np.diff(twist_at(blade, hinges), prepend=-blade.pitch))
-    axes[0, 0] = cone @ axes[0, 0]
-    mass, centre, inertia = _segments(blade, hinges)
+    hinges = _hinges(blade, ends)
+    place, axes = _frames(blade, hinges)
+    soft = np.isfinite(np.diagonal(blade.stiffness[0]))
+    slide, turn = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
+    hinge = np.array([*slide, *turn, *turn[-2::-1], *slide[::-1]])
+    stiffness = list(_stiffness(blade, ends, axes, hinge))
+    joints = [hinge] * elements
+    reach = (axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
+    if not clamped(blade):
+        free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
+        joints, stiffness = [free, *joints], [np.diag(blade.root[free]), *stiffness]
+        hinges, reach = np.append(0.0, hinges), np.concatenate([np.zeros((1, 3)), reach])
+        place = np.concatenate([_frames(blade, hinges[:1])[0], place])
+        axes = np.concatenate([root_axes(blade)[None], axes])
+    count = np.array([len(joint) for joint in joints])
+    first = np.cumsum(count) - count
+    n = int(count.sum())
+    before = np.concatenate([np.eye(3)[None], axes[:-1]]).mT
+    offset, joint_turn = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
+    offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
+    joint_turn[first] = before @ axes
+    mass, centre, inertia = _segments(blade, hinges, place, axes)
+    full: Array = np.asarray(block_diag(*stiffness), float)
+    own = np.diagonal(full)
     return Tree(
-        strain=np.tile(hinge, elements),
-        stiffness=(stiff[:, hinge] * np.where(np.isin(hinge, slide), 2.0, 1.0)).ravel(),
-        offset=offset.reshape(-1, 3),
-        turn=axes.reshape(-1, 3, 3),
-        segment=np.arange(1, elements + 1) * n - 1,
+        strain=np.concatenate(joints),
+        stiffness=own,
+        coupling=full - np.diag(own),
+        offset=offset,
+        turn=joint_turn,
+        segment=first + count - 1,
         mass=mass,
         centre=centre,
         inertia=inertia,
-        reach=ends[1:] - hinges,
+        reach=reach,
     )
 
 
-def _hinges(blade: Blade, ends: Array) -> tuple[Array, Array]:
-    """Where each element's bending compliance has its centroid (e,), and its stiffness as a whole (e, 6), ``1/∫ ds/k``."""
+def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
+    """Places (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
+    at = line(blade, s[:, None])
+    return at.place[:, 0], at.axes[:, 0]
+
+
+def _hinges(blade: Blade, ends: Array) -> Array:
+    """(e,) where each element's bending compliance has its centroid."""
     s, weight = _gauss(np.union1d(ends, blade.stations))
-    compliance = weight[:, None] / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)
+    bend = weight * (1.0 / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]]).sum(1)
+    element, total = np.searchsorted(ends, s) - 1, np.zeros((2, len(ends) - 1))
+    np.add.at(total[0], element, bend)
+    np.add.at(total[1], element, bend * s)
+    return total[1] / total[0]
+
+
+def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
+    """(e, k, k) of the joints ``hinge`` of each element: the inverse of the compliance ``∫ R c Rᵀ ds`` of its sections.
+
+    A strain's two joints add up to it, and by what they differ they bear its own stiffness.
+    """
+    s, weight = _gauss(np.union1d(ends, blade.stations))
     element = np.searchsorted(ends, s) - 1
-    total, moment = np.zeros((len(ends) - 1, 6)), np.zeros((len(ends) - 1, 6))
-    np.add.at(total, element, compliance)
-    np.add.at(moment, element, compliance * s[:, None])
-    bend = [BEND_Y, BEND_Z]
-    with np.errstate(divide="ignore"):
-        return moment[:, bend].sum(1) / total[:, bend].sum(1), 1 / total
+    strains = np.unique(hinge)
+    section = np.linalg.inv(stiffness_at(blade, s)[:, strains[:, None], strains])
+    own = np.zeros((len(s), 6, 6))
+    own[:, strains[:, None], strains] = section
+    R = np.zeros((len(s), 6, 6))
+    R[:, :3, :3] = R[:, 3:, 3:] = axes[element].mT @ _frames(blade, s)[1]
+    compliance = np.zeros((len(ends) - 1, 6, 6))
+    np.add.at(compliance, element, weight[:, None, None] * (R @ own @ R.mT))
+    stiffness = np.zeros_like(compliance)
+    stiffness[:, strains[:, None], strains] = np.linalg.inv(compliance[:, strains[:, None], strains])
+    first = np.array([k == list(hinge).index(strain) for k, strain in enumerate(hinge)])
+    sign = np.where(first, 1.0, -1.0)
+    same = (hinge[:, None] == hinge) & ((hinge == hinge[:, None]).sum(1) > 1)
+    apart = sign[:, None] * sign * same
+    out = stiffness[:, hinge[:, None], hinge]
+    return out + apart * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
 
 
-def _segments(blade: Blade, hinges: Array) -> tuple[Array, Array, Array]:
+def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[Array, Array, Array]:
     """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of what each hinge carries up to the next, or the tip."""
     s, weight = _gauss(np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]]))
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1
-    turn = rotation(0, twist_at(blade, s) - twist_at(blade, hinges)[hinge])
-    m, lever = body[:, 0, 0], skew(np.outer(s - hinges[hinge], [1.0, 0.0, 0.0]))
-    offset = turn @ -body[:, :3, 3:] @ np.swapaxes(turn, 1, 2)  # momentum m (v + ω × c) makes the block -m [c]×
+    there, section = _frames(blade, s)
+    turn, lever = axes[hinge].mT @ section, skew((axes[hinge].mT @ (there - place[hinge])[..., None])[..., 0])
+    m = body[:, 0, 0]
+    offset = turn @ -body[:, :3, 3:] @ turn.mT  # momentum m (v + ω × c) makes the block -m [c]×
     first = offset + m[:, None, None] * lever
-    second = turn @ body[:, 3:, 3:] @ np.swapaxes(turn, 1, 2) - first @ lever - lever @ offset
+    second = turn @ body[:, 3:, 3:] @ turn.mT - first @ lever - lever @ offset
     sums = [np.zeros((len(hinges), *part.shape[1:])) for part in (m, first, second)]
     for total, part in zip(sums, (m, first, second), strict=True):
         np.add.at(total, hinge, part)

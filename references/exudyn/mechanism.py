@@ -157,7 +157,7 @@ def stages(tree: Tree, made: System, q: Array) -> Stages:
     force, _, J = made.balance(q)
     if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
         raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
-    multipliers = _least(J[free], -force[free])
+    multipliers = ranked(J[free]).solve(-force[free])
     M, C, K = made.matrices(q)
     return Stages(tree.coordinates[: len(q)], q, M, C, K, made.curvature(q, multipliers), J, multipliers, free)
 
@@ -176,16 +176,16 @@ def _settle(tree: Tree, made: System, q: Array) -> Array:
     for _ in range(60):
         force, gap, J = made.balance(q)
         force, J = force[free], J[free]
-        close = -_least(J.T, gap)
+        close = -ranked(J.T).solve(gap)
         if np.abs(gap).max(initial=0.0) > 1e-3:  # assemble first
             q = q.copy()
             q[free] += close * min(1.0, 0.5 / max(float(np.abs(close).max()), 0.5))
             continue
-        multipliers = _least(J, -force)
+        multipliers = ranked(J).solve(-force)
         K = made.matrices(q)[2] + made.curvature(q, multipliers)
         null = ranked(J.T).null
         K = K[np.ix_(free, free)]
-        along = _least(null.T @ K @ null, null.T @ (force - K @ close), 1e-13)
+        along = _balanced(null.T @ K @ null, null.T @ (force - K @ close))
         step = close + null @ along
         change = float(np.abs(step).max(initial=0.0))
         q = q.copy()
@@ -199,9 +199,11 @@ def _settle(tree: Tree, made: System, q: Array) -> Array:
     raise CodeError("Exudyn finds no steady state near the guess: give a better one")
 
 
-def _least(a: Array, b: Array, rank: float = 1e-9) -> Array:
-    """The smallest x with the smallest a x − b."""
-    return np.asarray(np.linalg.lstsq(a, b, rcond=rank)[0], np.float64)
+def _balanced(K: Array, force: Array) -> Array:
+    """Newton's step of coordinates of unlike units, each by its own stiffness; least along what nothing resists."""
+    size = np.sqrt(np.abs(np.diagonal(K)))
+    size = np.where(size > 0, size, 1.0)
+    return ranked(K / size[:, None] / size).solve(force / size) / size
 
 
 CODE = ExudynMechanism()

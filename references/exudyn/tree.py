@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
+from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import FULL
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
@@ -29,8 +29,12 @@ JOINT = ("PrismaticX", "PrismaticY", "PrismaticZ", "RevoluteX", "RevoluteY", "Re
 """Exudyn's joint for each strain; also axis 0, 1, 2, 0, 1, 2."""
 
 
+RAMPS = (1, 4, 16)
+"""Numbers of equal increments of the speed's square in which it is raised, tried in turn."""
+
+
 class ExudynTree:
-    """See the module; straight blades with twist, taper, shear, precone, pitch and tip mass."""
+    """See the module; coupled, curved, twisted, tapered blades with shear, precone, pitch, tip mass and root joint."""
 
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
@@ -46,13 +50,9 @@ class ExudynTree:
         return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped, the sections couple, or the blade is curved or rigid in bending."""
-        if not clamped(blade):
-            return "the root is not clamped: the first segment is the hub's"
-        if coupled(blade):
-            return "sections couple (off-diagonal entries): the hinges' joints have a spring each"
-        if not straight(blade):
-            return "prebend or sweep: the hinges are laid along a straight line"
+        """A reason if the curve has kinks, or the blade is rigid in bending."""
+        if blade.kinks:
+            return f"a kink at {blade.kinks[0]:g} m: the sections of an element have one hinge's axes"
         if np.isinf(blade.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any():
             return "rigid in bending: a hinge without joints"
         return None
@@ -108,21 +108,47 @@ def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
             jointVelocityOffsetVector=zero,
         )
     )
+    if tree.coupling.any():
+        coupling = np.zeros((n, n))
+        coupling[1:, 1:] = tree.coupling
+        mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))
     ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
     if omega:
-        ex.settle(exu, mbs, omega)
+        _settle(exu, mbs, omega, n)
     M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 
+def _settle(exu: Any, mbs: Any, omega: float, n: int) -> None:
+    """Move the tree to its steady state, the speed raised from rest in as few steps as suffice.
+
+    Exudyn's Newton method is undamped, and its load steps scale no inertia forces: far from the steady state it wanders.
+
+    Raises:
+        CodeError: none was found by the finest steps either.
+    """
+    data, initial = mbs.systemData, exu.ConfigurationType.Initial
+    for steps in RAMPS:
+        data.SetODE2Coordinates(np.zeros(n), configuration=initial)
+        try:
+            for k in range(1, steps + 1):
+                rate = omega * np.sqrt(k / steps)
+                data.SetODE2Coordinates_t(np.append(rate, np.zeros(n - 1)), configuration=initial)
+                ex.settle(exu, mbs, omega)
+            return
+        except CodeError:
+            if steps == RAMPS[-1]:
+                raise
+
+
 def jacobian(tree: Tree, q: Array, point: Array) -> Array:
-    """(e, 6, n): velocity of the point at ``point`` (m) along each segment and its angular velocity, per joint rate.
+    """(e, 6, n): velocity of each segment's ``point`` (e, 3), m in its axes, and its angular velocity, per joint rate.
 
     In the axes of the first link's parent, with the joints at ``q`` (n,).
     """
     n = len(q)
-    to = np.repeat(point, np.diff(tree.segment, prepend=-1))
+    to = np.repeat(point, np.diff(tree.segment, prepend=-1), axis=0)
     R, p = np.eye(3), np.zeros(3)
     axis, origin, where = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     for k, strain in enumerate(tree.strain):
@@ -133,7 +159,7 @@ def jacobian(tree: Tree, q: Array, point: Array) -> Array:
             p = p + axis[k] * q[k]
         else:
             R = R @ rotation(strain % 3, q[k])
-        where[k] = p + R[:, 0] * to[k]
+        where[k] = p + R @ to[k]
     turns = np.isin(tree.strain, TURN)[:, None]
     out = np.zeros((len(tree.segment), 6, n))
     for row, k in zip(out, tree.segment, strict=True):
@@ -144,15 +170,15 @@ def jacobian(tree: Tree, q: Array, point: Array) -> Array:
 
 
 def _shapes(blade: Blade, tree: Tree, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) at the common stations: a spline through the elements' ends, level at the root across the blade."""
+    """(m, 21, 4) at the common stations: a spline through the elements' ends, level at a clamped root across the blade."""
     moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
     cone = rotation(1, np.array(-blade.precone))
     moved[:, :3] = cone.T @ moved[:, :3]
-    ends = np.concatenate([np.zeros((1, *moved.shape[1:])), moved])
+    ends = np.concatenate([np.zeros((1, *moved.shape[1:])), moved]) if clamped(blade) else moved
     s = np.linspace(0.0, blade.length, len(ends))
     along = CubicSpline(s, ends[:, [0, 3]])(STATIONS * blade.length)
     level: Any = ((1, np.zeros_like(ends[0, 1:3])), "not-a-knot")
-    across = CubicSpline(s, ends[:, 1:3], bc_type=level)(STATIONS * blade.length)
+    across = CubicSpline(s, ends[:, 1:3], bc_type=level if clamped(blade) else "not-a-knot")(STATIONS * blade.length)
     shapes = np.stack([along[:, 0], across[:, 0], across[:, 1], along[:, 1]], axis=1)
     shapes[:, :3] = cone @ shapes[:, :3]
     return shapes.transpose(2, 0, 1)

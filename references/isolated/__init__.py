@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..protocol.interface import CodeError
+from .hashes import PLATFORMS, requirements
 
 
 class EnvironmentMissingError(RuntimeError):
@@ -84,11 +85,22 @@ def install(environment: Environment) -> Path:
     shutil.rmtree(folder, ignore_errors=True)
     venv.create(folder, with_pip=True)
     pip = [str(environment.python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    for arguments in (environment.requires, ("--no-deps", *environment.bare)):
-        done = subprocess.run([*pip, *arguments], capture_output=True, text=True, check=False)
-        if done.returncode:
-            said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
-            raise EnvironmentMissingError(f"{environment.name}: pip install {' '.join(arguments)}: {said[-1]}")
+    pins = (*environment.requires, *environment.bare)
+    (folder / "requirements.txt").write_text(requirements(pins), encoding="utf-8")
+    # no dependencies: all are pinned; no source: what builds it would be fetched without a hash
+    options = [
+        "--require-hashes",
+        "--no-deps",
+        "--only-binary=:all:",
+        "--requirement",
+        str(folder / "requirements.txt"),
+    ]
+    done = subprocess.run([*pip, *options], capture_output=True, text=True, check=False)
+    if done.returncode:
+        said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
+        raise EnvironmentMissingError(
+            f"{environment.name}: pip install {' '.join(pins)}: {said[0]} (hashes are known of the files for {PLATFORMS})"
+        )
     (folder / READY).write_text(f"southwell {version('southwell')}\n", encoding="utf-8")
     return folder
 

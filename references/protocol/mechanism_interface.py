@@ -2,14 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.effects import Model
-from ...core.multibody.mechanism import Mechanism
 from .interface import Shares
+
+if TYPE_CHECKING:
+    from ...core.multibody.mechanism import Mechanism
 
 Complex = NDArray[np.complex128]
 
@@ -57,11 +59,11 @@ class MechanismCode(Protocol):
         """Version of the foreign code, or None if it is not installed."""
         ...
 
-    def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
+    def unsupported_mechanism(self, mechanism: "Mechanism") -> str | None:
         """Why this code cannot solve this mechanism, or None if it can."""
         ...
 
-    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
         """All modes about the steady state near ``guess``.
 
         Raises:

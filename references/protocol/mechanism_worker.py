@@ -3,20 +3,20 @@
 The request holds the code's import path, a guess, and mechanisms; the answer is a line for each: modes, or a failure.
 """
 
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from ...core.multibody.mechanism import Mechanism
+from . import boundary, registry, wire
+from .child import Reply, blunder, failed, serve
 from .interface import CodeError
 from .mechanism_interface import MechanismCode, MechanismModes
-from .registry import code as find
-from .registry import locate
-from .worker import Failure, converse, one_line, protocol_stream
+from .process import Failure, Limits, one_line
+from .worker import declined, exchange
 
 Answer = MechanismModes | Failure
 
@@ -26,73 +26,60 @@ class Request:
     """What a child is asked: modes of each mechanism, near one guess."""
 
     code: str
+    folder: str | None
     guess: dict[str, float]
     mechanisms: list[Mechanism]
 
 
-@dataclass(frozen=True)
-class Reply:
-    """What it says of one mechanism: either of the two."""
-
-    modes: MechanismModes | None = None
-    failure: Failure | None = None
-
-
-def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], timeout: float) -> list[Answer]:
+def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:
     """What a code answers to each of ``mechanisms``, in their order; arguments as for ``worker.answers``.
 
     Raises:
         UnknownCodeError: if there is no such code.
     """
-    request = Request(locate(name), dict(guess), list(mechanisms))
-    lines, ended = converse(__name__, encode(request).decode(), timeout)
-    replies = [decode(line, Reply) for line in lines[: len(mechanisms)]]
-    solved = [r.modes or r.failure or ended for r in replies]
-    return solved + [ended] * (len(mechanisms) - len(solved))
+    request = encode(Request(**registry.address(name), guess=dict(guess), mechanisms=list(mechanisms)))
+    return exchange(__name__, request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data))
 
 
-def encode(value: Any) -> bytes:
-    """A frozen structure as JSON; a complex array ends in an axis of length two."""
+def encode(value: Request) -> bytes:
+    """A request as JSON."""
     return msgspec.json.encode(value, enc_hook=_plain)
 
 
-def decode(text: str, kind: type[Any]) -> Any:
-    """What ``encode`` was given."""
-    return msgspec.json.decode(text, type=kind, dec_hook=_array)
+def decode(data: Any) -> Request:
+    """The request that ``encode`` was given, from plain data."""
+    return msgspec.convert(data, Request, dec_hook=lambda _, value: np.array(value, dtype=float))
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
-        return (np.stack([value.real, value.imag], axis=-1) if np.iscomplexobj(value) else value).tolist()
-    raise TypeError(f"{type(value).__name__} cannot be sent to a worker: {value!r}")
-
-
-def _array(kind: Any, value: Any) -> Any:
-    out = np.array(value, dtype=float)
-    return out[..., 0] + 1j * out[..., 1] if np.dtype[np.complex128] in get_args(kind) else out
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} cannot be sent to another process: {value!r}")
 
 
 def _solve(code: MechanismCode, mechanism: Mechanism, guess: Mapping[str, float]) -> Reply:
-    if code.version() is None:
-        return Reply(failure=Failure("not installed", code.hint))
+    if no := declined(code, "unsupported_mechanism", mechanism):
+        return no
     try:
         modes = code.solve_mechanism(mechanism, guess)
+        if not isinstance(modes, MechanismModes):
+            return failed("nonsense", f"solve_mechanism(): {type(modes).__name__}, not MechanismModes")
+        return {"modes": wire.encode(modes)}
     except CodeError as error:
-        return Reply(failure=Failure("refused", one_line(error)))
-    except Exception as error:  # whatever a foreign code raises is its answer to this mechanism, and no other's
-        return Reply(failure=Failure("nonsense", f"{type(error).__name__}: {one_line(error)}"))
-    return Reply(modes)
+        return failed("refused", one_line(error))
+    except BaseException as error:  # whatever a foreign code raises is its answer to this mechanism, and no other's
+        return blunder(error)
+
+
+def _answer(data: Any) -> Iterator[Reply]:
+    request = decode(data)
+    code = registry.loaded(data)
+    for mechanism in request.mechanisms:
+        yield failed(code.kind, code.reason) if isinstance(code, Failure) else _solve(code, mechanism, request.guess)
 
 
 def main() -> None:
     """Answer the one request on standard input."""
-    request: Request = decode(sys.stdin.read(), Request)
-    with protocol_stream() as protocol:
-        code: Any = find(request.code)
-        for mechanism in request.mechanisms:
-            protocol.write(encode(_solve(code, mechanism, request.guess)).decode() + "\n")
-            protocol.flush()
-
-
-if __name__ == "__main__":
-    main()
+    serve(_answer)

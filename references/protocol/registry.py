@@ -1,16 +1,18 @@
 """The codes by name: ours, those of installed packages (entry-point group ``southwell.codes``), and any by import path.
 
-A code's module is imported only when the code is asked for, so that a missing or broken foreign package costs nothing
-to those who do not use it.
+``code`` and ``loaded`` import a code: foreign code runs then, and may do anything. Only a worker process calls them; everybody
+else learns of a code by ``description.describe``, and has it solve by ``worker.answers``.
 """
 
+import os
+import sys
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.metadata import entry_points
-from typing import Any
+from typing import Any, Protocol, TypedDict
 
-from .interface import Code
 from .mechanism_interface import takes_mechanisms
+from .process import Failure, one_line, raised
 
 GROUP = "southwell.codes"
 
@@ -21,6 +23,7 @@ OURS = {
     "exudyn-ancf": "southwell.references.exudyn.ancf:CODE",
     "exudyn-tree": "southwell.references.exudyn.tree:CODE",
     "scikit-fem": "southwell.references.scikit_fem.beam:CODE",
+    "scikit-fem-reissner": "southwell.references.scikit_fem.reissner:CODE",
     "pinocchio": "southwell.references.joint_chains.pinocchio:CODE",
     "drake": "southwell.references.joint_chains.drake:CODE",
     "mujoco": "southwell.references.joint_chains.mujoco:CODE",
@@ -34,6 +37,13 @@ OURS = {
     "exact-beam": "southwell.references.theories.exact_beam:CODE",
 }
 """Name → ``module:attribute`` of the codes that come with the package."""
+
+
+class Address(TypedDict):
+    """Where a worker process finds a code: its import path, and a folder that is searched last for its module."""
+
+    code: str
+    folder: str | None
 
 
 class UnknownCodeError(ValueError):
@@ -70,42 +80,80 @@ def locate(name: str) -> str:
     raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
 
 
+def address(name: str) -> Address:
+    """Where a worker process finds a code: its import path, and the folder that may hold its module.
+
+    That is the current one, searched last, of a code that is asked for by its import path; else none.
+
+    Raises:
+        UnknownCodeError: as ``locate``.
+    """
+    return {"code": locate(name), "folder": os.getcwd() if ":" in name else None}
+
+
+def loaded(request: dict[str, Any]) -> Any:
+    """The code at an ``address``, imported now, or why it cannot be, whatever it raises."""
+    if (folder := request["folder"]) and folder not in sys.path:
+        sys.path.append(folder)  # last, so that no file in it takes the place of an installed module
+    try:
+        return code(request["code"])
+    except UnknownCodeError as error:
+        return Failure("unknown", one_line(error))
+    except BaseException as error:  # an exit, too
+        return Failure("nonsense", f"import: {raised(error)}")
+
+
 def code(name: str) -> Any:
     """The code called ``name`` (as for ``locate``), imported now: an ``interface.Code``, a ``MechanismCode``, or both.
 
     Raises:
-        UnknownCodeError: if it is not known, or what the path leads to cannot be imported or is not a code.
+        UnknownCodeError: if it is not known, or the path leads nowhere or to what is not a code.
+        BaseException: what else its module raises.
     """
     path = locate(name)
     module, _, attribute = path.partition(":")
+    advice = "is it module:attribute, and installed or in this folder?"
+    if not module or module.startswith("."):
+        raise UnknownCodeError(f"code: {name!r}: no module is named: {advice}")
     try:
-        found = getattr(import_module(module), attribute)
-    except Exception as error:  # whatever a foreign module does when it is imported
-        what = error if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: {error}"
-        raise UnknownCodeError(
-            f"code: {name!r} cannot be loaded from {path}: {what}: is it module:attribute, and installed or in this folder?"
-        ) from error
+        holder = import_module(module)
+    except ImportError as error:
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}: {advice}") from error
+    if not hasattr(holder, attribute):
+        told = f"module {module!r} has no attribute {attribute!r}"
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {advice}")
+    found = getattr(holder, attribute)
     needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
     if missing:
-        raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.interface.Code")
+        raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.protocol.interface.Code")
     return found
 
 
-def version_of(code: Any) -> tuple[str, str]:
-    """A code's version, empty if it is not installed, and what it raised instead of telling, empty if nothing."""
-    try:
-        return str(code.version() or ""), ""
-    except Exception as error:  # whatever a foreign code raises costs its own cells only
-        return "", f"version(): {type(error).__name__}: {' '.join(str(error).split())}"
-
-
-CAPS = {"pinocchio": 40, "drake": 80, "mujoco": 80, "pybmodes": 320, "sharpy": 96, "frame3dd": 100}
+CAPS = {
+    "pinocchio": 40,
+    "drake": 80,
+    "mujoco": 80,
+    "pybmodes": 320,
+    "sharpy": 96,
+    "frame3dd": 100,
+    "scikit-fem-reissner": 96,
+}
 """Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
-freedoms, pyBModes dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
+freedoms, pyBModes and scikit-fem-reissner dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
 grows as the cube."""
 
 
-def cap(code: Code) -> int:
+class Refinable(Protocol):
+    """A code, or its description."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+
+    @property
+    def levels(self) -> tuple[int, ...]: ...  # noqa: D102
+
+
+def cap(code: Refinable) -> int:
     """The finest refinement a code is taken to."""
     return CAPS.get(code.name, 8 * code.levels[-1])

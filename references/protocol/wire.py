@@ -11,9 +11,10 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
+from .mechanism_interface import MechanismModes
 
 
-def encode(value: Blade | Modes) -> dict[str, Any]:
+def encode(value: Blade | Modes | MechanismModes) -> dict[str, Any]:
     """A dictionary of plain lists, numbers and strings, ready for ``json.dumps``."""
     return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
 

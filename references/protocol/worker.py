@@ -1,156 +1,122 @@
-"""Foreign codes at arm's length: each runs in a process of its own, under a time limit, and speaks JSON.
+"""Foreign codes that take blades, each in a process of its own: ``process`` for the limits, ``boundary`` for what comes back.
 
-The child, ``python -m southwell.references.protocol.worker``, reads one request on its standard input ::
+The process reads one request ::
 
-    {"code": "module:attribute", "blade": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
 
-and writes one line for each run as soon as it is solved: ``{"modes": {…}}`` or ``{"kind": …, "error": …}``. A crash or
-a time limit therefore loses only what was not finished. Whatever the foreign code prints goes to standard error.
+imports the code, asks for its version and whether it takes the blade, and writes one line for each run as soon as it is solved:
+``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. A crash or a limit loses only what was not finished.
 """
 
-import contextlib
 import json
-import os
-import signal
-import subprocess
-import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, TextIO
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
 
 from ...core.blade import Blade
 from ...core.modes import Modes
+from . import boundary, registry
+from .boundary import NonsenseError
+from .child import Reply, blunder, failed, serve
 from .interface import Code, CodeError
-from .registry import code as find
-from .registry import locate
-from .wire import decode_blade, decode_modes, encode
+from .process import Failure, Limits, converse, one_line
+from .wire import decode_blade, encode
+
+T = TypeVar("T")
 
 Run = tuple[float, int, int]
 """Rotor speed (rad/s), elements, number of modes."""
 
-
-@dataclass(frozen=True)
-class Failure:
-    """Why a run has no modes.
-
-    Attributes:
-        kind: ``crashed``, ``timed out``, ``nonsense`` (an answer that cannot be one), ``refused`` (the code says it
-            could not answer), ``not installed``.
-        reason: one line for a table.
-    """
-
-    kind: Literal["crashed", "timed out", "nonsense", "refused", "not installed"]
-    reason: str
-
-
 Answer = Modes | Failure
 
 
-def answers(name: str, blade: Blade, runs: Sequence[Run], timeout: float) -> list[Answer]:
+def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> list[Answer]:
     """What a code answers to each of ``runs``, in their order.
 
     Args:
-        name: of the code, or its import path (see ``references.codes.locate``).
+        name: of the code, or its import path (see ``registry.locate``).
         blade: the blade to solve.
         runs: what to solve, in this order; put first what matters most.
-        timeout: seconds for all of them together.
+        limits: of each run.
 
     Raises:
         UnknownCodeError: if there is no such code.
     """
-    request = json.dumps({"code": locate(name), "blade": encode(blade), "runs": [list(run) for run in runs]})
-    lines, ended = converse(__name__, request, timeout)
-    solved = [_answer(line) for line in lines[: len(runs)]]
-    return solved + [ended] * (len(runs) - len(solved))
+    request = {**registry.address(name), "blade": encode(blade), "runs": [list(run) for run in runs]}
+
+    def modes(number: int, data: Any) -> Modes:
+        omega, _, count = runs[number]
+        return boundary.modes(data, omega, count)
+
+    return exchange(__name__, json.dumps(request).encode(), len(runs), limits, modes)
 
 
-def converse(module: str, request: str, timeout: float) -> tuple[list[str], Failure]:
-    """The lines that ``python -m module`` writes in answer to a request, and why there are no more.
+def exchange(
+    module: str, request: bytes, count: int, limits: Limits, made: Callable[[int, Any], T]
+) -> list[T | Failure]:
+    """The answers to ``count`` questions, each validated by ``made(number, data)``; a failure for each that has none."""
+    lines, ended = converse(module, request, count, limits)
+    out: list[T | Failure] = []
+    for number, line in enumerate(lines):
+        try:
+            data = boundary.reply(line, number)
+        except NonsenseError as error:
+            ended = Failure("nonsense", str(error))
+            break
+        try:
+            out.append(boundary.failure(data) or made(number, data.get("modes")))
+        except (ValueError, TypeError) as error:  # of the schema, or of the class that is made of it
+            out.append(Failure("nonsense", one_line(error)))
+    return out + [ended] * (count - len(out))
+
+
+def declined(code: Any, asked: str, question: object) -> Reply | None:
+    """Why a code does not get as far as solving, if it does not: not installed, not supported, or what it raised.
 
     Args:
-        module: what to run, in a process of its own that ends with this call.
-        request: its standard input.
-        timeout: seconds.
+        code: any.
+        asked: its method that says whether it takes the question: ``unsupported``.
+        question: a blade or a mechanism.
     """
-    limits = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    child = subprocess.Popen(
-        [sys.executable, "-m", module],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env={**os.environ, **limits},
-        text=True,
-        encoding="utf-8",
-        errors="replace",
-        start_new_session=True,
-    )
-    ended = None
     try:
-        out, err = child.communicate(request, timeout)
-    except subprocess.TimeoutExpired:
-        ended = Failure("timed out", f"no answer within {timeout:g} s")
-        _kill(child)
-        out, err = child.communicate()
-    except BaseException:
-        _kill(child)
-        raise
-    return out.split("\n")[:-1], ended or _crash(child.returncode, err)
+        why = getattr(code, asked)(question)
+    except BaseException as error:  # an exit, too
+        return blunder(error, f"{asked}()")
+    if not (why is None or isinstance(why, str)):
+        return failed("nonsense", f"{asked}(): {one_line(repr(why))}: neither a reason nor None")
+    if why:
+        return failed("unsupported", one_line(why))
+    try:
+        return failed("not installed", f"not installed: {one_line(code.hint)}") if code.version() is None else None
+    except BaseException as error:
+        return blunder(error, "version()")
 
 
-def _kill(child: subprocess.Popen[str]) -> None:
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(child.pid, signal.SIGKILL)
-
-
-def _answer(line: str) -> Answer:
-    data = json.loads(line)
-    return decode_modes(data["modes"]) if "modes" in data else Failure(data["kind"], data["error"])
-
-
-def _crash(status: int, err: str) -> Failure:
-    last = (err.strip().splitlines() or [""])[-1].strip()
-    how = f"signal {signal.Signals(-status).name}" if status < 0 else f"exit status {status}"
-    return Failure("crashed", f"the code's process ended with {how}" + (f": {last}" if last else ""))
-
-
-def _solve(code: Code, blade: Blade, run: Run) -> dict[str, object]:
+def _solve(code: Code, blade: Blade, run: Run) -> Reply:
     omega, elements, count = run
     try:
         modes = code.solve(blade, omega, elements, count)
+        if not isinstance(modes, Modes):
+            return failed("nonsense", f"solve(): {type(modes).__name__}, not Modes")
+        return {"modes": encode(modes)}
     except CodeError as error:
-        return {"kind": "refused", "error": one_line(error)}
-    except Exception as error:  # whatever a foreign code raises is its answer to this run, and no other's
-        return {"kind": "nonsense", "error": f"{type(error).__name__}: {one_line(error)}"}
-    if not len(modes.frequencies) or (modes.frequencies[1:] < modes.frequencies[:-1]).any():
-        return {"kind": "nonsense", "error": f"frequencies {modes.frequencies.tolist()} are not ascending"}
-    return {"modes": encode(modes)}
+        return failed("refused", one_line(error))
+    except BaseException as error:  # whatever a foreign code raises is its answer to this run, and no other's
+        return blunder(error)
 
 
-def one_line(error: Exception) -> str:
-    """An error's message without line breaks."""
-    return " ".join(str(error).split())
-
-
-def protocol_stream() -> TextIO:
-    """Standard output for the protocol alone: whatever a foreign code prints goes to standard error from here on."""
-    stream = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)
-    return stream
+def _answer(request: Any) -> Iterator[Reply]:
+    runs, code = request["runs"], registry.loaded(request)
+    if isinstance(code, Failure):
+        yield from [failed(code.kind, code.reason)] * len(runs)
+        return
+    blade = decode_blade(request["blade"])
+    if no := declined(code, "unsupported", blade):
+        yield from [no] * len(runs)
+        return
+    for run in runs:
+        yield _solve(code, blade, run)
 
 
 def main() -> None:
     """Answer the one request on standard input."""
-    request = json.load(sys.stdin)
-    with protocol_stream() as protocol:
-        code, blade = find(request["code"]), decode_blade(request["blade"])
-        for run in request["runs"]:
-            if code.version() is None:
-                answer: dict[str, object] = {"kind": "not installed", "error": code.hint}
-            else:
-                answer = _solve(code, blade, run)
-            protocol.write(json.dumps(answer) + "\n")
-            protocol.flush()
-
-
-if __name__ == "__main__":
-    main()
+    serve(_answer)

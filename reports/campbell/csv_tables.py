@@ -2,11 +2,13 @@
 
 import csv
 from collections.abc import Iterable, Sequence
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from ...cases.campbell.diagram import Campbell
+from ...cases.input import atomic
 from ...core.participation import FAMILIES
 
 
@@ -28,6 +30,8 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             int(tracks.place[k, t]) + 1,
             repr(float(tracks.frequencies[k, t])),
             f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
+            f"{tracks.uncertainty[k, t]:.6g}",
+            f"{tracks.solved[k].strain:.6g}",
             *[f"{share:.6f}" for share in diagram.shares[k, t]],
             f"{tracks.mac[k, t]:.6f}" if np.isfinite(tracks.mac[k, t]) else "",
         )
@@ -36,13 +40,22 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         if tracks.place[k, t] >= 0
     ]
     speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
-    columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz", *FAMILIES, "mac_with_speed_before"]
+    columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz"]
+    columns += ["relative_uncertainty", "steady_strain", *FAMILIES, "mac_with_speed_before"]
     resonances = [
-        (diagram.label_at(r.track, r.omega), r.per_rev, r.omega, r.frequency, "" if r.apart is None else r.apart)
+        (
+            diagram.label_at(r.track, r.omega),
+            r.per_rev,
+            r.omega,
+            r.frequency,
+            f"{r.uncertainty:.6g}",
+            "" if r.apart is None else r.apart,
+        )
         for r in diagram.resonances
     ]
     margins = [
-        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, int(m.kept)) for m in diagram.margins
+        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, f"{m.uncertainty:.6g}", int(m.kept))
+        for m in diagram.margins
     ]
     met = [
         (
@@ -50,6 +63,8 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             e.omega,
             e.frequency,
             e.gap,
+            f"{e.uncertainty:.6g}",
+            f"{e.gap_uncertainty:.6g}",
             *[diagram.label(t) for t in e.tracks],
             e.exchanged,
             *e.window,
@@ -57,22 +72,33 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         )
         for e in diagram.encounters
     ]
-    window = ("from_rad_s", "to_rad_s")
+    where, sure, window = (
+        ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s"),
+        "relative_uncertainty",
+        ("from_rad_s", "to_rad_s"),
+    )
     files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
         "campbell.csv": (columns, lines),
-        "resonances.csv": (("name", "per_rev", "omega_rad_s", "frequency_rad_s", "from_operating_range"), resonances),
-        "margins.csv": (("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "kept"), margins),
+        "resonances.csv": (
+            ("name", "per_rev", "omega_rad_s", "frequency_rad_s", sure, "from_operating_range"),
+            resonances,
+        ),
+        "margins.csv": (
+            ("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "uncertainty", "kept"),
+            margins,
+        ),
         "encounters.csv": (
-            ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s", "lower", "upper", "exchanged", *window, "whole"),
+            (*where, sure, "gap_uncertainty_rad_s", "lower", "upper", "exchanged", *window, "whole"),
             met,
         ),
     }
     out = []
     for name, (heads, rows) in files.items():
         path = folder / name
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(heads)
-            writer.writerows(rows)
+        text = StringIO(newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(heads)
+        writer.writerows(rows)
+        atomic.write(path, text.getvalue())
         out.append(path)
     return tuple(out)

@@ -11,7 +11,7 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.encounters import Encounter
 from ..shared.style import INK, MUTED, WIDTH, house, title
 from ..shared.units import Units
-from .marks import blend
+from .marks import blend, gap
 
 ACROSS = 3
 
@@ -103,4 +103,4 @@ def _named(e: Encounter, units: Units) -> str:
 
 def _words(diagram: Campbell, e: Encounter, units: Units) -> str:
     names = " and ".join(diagram.label_at(t, e.window[0]) for t in e.tracks)
-    return f"{names}, gap {e.gap * units.frequencies:.2g} {units.frequency}" if e.kind == "veering" else names
+    return f"{names}, gap {gap(e, units, 2)} {units.frequency}" if e.kind == "veering" else names

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
 from ...core.participation import FAMILIES
+from ..shared.certain import certain
 from ..shared.style import MUTED, WIDTH, beside, house, key, title
 from ..shared.units import Units
 from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
@@ -112,7 +113,8 @@ def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, flo
 
 def _below(diagram: Campbell, units: Units) -> str:
     wanted = diagram.wanted
-    words = [f"{len(wanted.speeds)} speeds, {wanted.elements} elements"]
+    mesh = f"accuracy {wanted.accuracy:g}" if wanted.elements is None else f"{wanted.elements} elements"
+    words = [f"{len(wanted.speeds)} speeds, {mesh}"]
     if len(diagram.tracks.omega) > len(wanted.speeds):
         words[0] += f", {len(diagram.tracks.omega) - len(wanted.speeds)} speeds between where modes meet"
     if wanted.operating:
@@ -150,7 +152,8 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
 
 
 def _label(diagram: Campbell, t: int, units: Units) -> str:
-    return f"{diagram.label(t)}  {diagram.tracks.frequencies[-1, t] * units.frequencies:.3f}"
+    frequency, sure = diagram.tracks.frequencies[-1, t], diagram.tracks.uncertainty[-1, t]
+    return f"{diagram.label(t)}  {certain(float(frequency * units.frequencies), float(sure), 4)}"
 
 
 def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

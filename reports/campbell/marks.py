@@ -8,7 +8,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 
 from ...cases.campbell.diagram import Campbell
+from ...cases.campbell.encounters import Encounter
 from ...core.participation import FAMILIES, MIXED
+from ..shared.certain import certain
 from ..shared.style import INK, MUTED
 from ..shared.units import Units
 
@@ -137,7 +139,7 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
             *at, marker="D" if veers else "x", ms=7.5 if veers else 5, mfc="none", mec=INK, mew=1.0, zorder=5, ls=""
         )
         if veers:
-            text = f"veering\ngap {e.gap * units.frequencies:.2g} {units.frequency}"
+            text = f"veering\ngap {gap(e, units, 2)} {units.frequency}"
             axes.annotate(
                 text,
                 at,
@@ -153,6 +155,13 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
     for d in diagram.tracks.doubts:
         at = (d.omega[0] * units.speeds, d.frequency * units.frequencies)
         axes.annotate("?", at, ha="center", va="center", size=10, weight="bold", color=RED, zorder=7)
+
+
+def gap(e: Encounter, units: Units, digits: int = 3) -> str:
+    """The gap of two modes that meet; where it drowns in their uncertainty, what it is less than."""
+    if not e.gap_uncertainty < 0.5 * e.gap:
+        return f"< {(e.gap + e.gap_uncertainty) * units.frequencies:.{digits}g}"
+    return certain(e.gap * units.frequencies, e.gap_uncertainty / e.gap, digits)
 
 
 def legend(diagram: Campbell) -> list[Line2D]:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..shared.style import house, save
 from ..shared.units import Units
@@ -47,7 +48,7 @@ def write(
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
-    page.write_text(_page(diagram, k, units, command, about, extra), encoding="utf-8")
+    atomic.write(page, _page(diagram, k, units, command, about, extra))
     return (page, *written)
 
 
@@ -63,7 +64,9 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
     save(figure, vector)
     with house():
-        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
     return vector, raster
 
 
@@ -74,6 +77,7 @@ def _page(
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
         f"{tables.verdict(diagram, units)}\n",
+        *[f"{line}.\n" for line in tables.notes(diagram, units)],
         "![Natural frequencies along rotor speed](campbell.svg)\n",
         *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
         *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Sequence
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,10 @@ from scipy.interpolate import CubicSpline
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import POWERS, WANTED, Polynomial
+from ...cases.input import atomic
 from ...core.modes import STATIONS
 from ...core.participation import gyration, in_blade_axes, spoken
+from ..shared.certain import certain
 from ..shared.style import FAINT, MUTED, WIDTH, house, key, spread, title
 from ..shared.units import Units
 from .marks import DASHES, FAMILY_COLOURS
@@ -69,7 +72,8 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
             _panel(axes, shapes[place], arm)
             hertz = diagram.tracks.frequencies[k, t] * units.frequencies
             name = diagram.local[k][t]
-            axes.set_title(f"{name}   {hertz:.4g} {units.frequency}", size=9.5, pad=17)
+            shown = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
+            axes.set_title(f"{name}   {shown} {units.frequency}", size=9.5, pad=17)
             axes.annotate(
                 spoken(diagram.shares[k, t]),
                 (0, 1),
@@ -132,7 +136,7 @@ def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units
     for kind, group in (("for ElastoDyn", found), ("of the blade as it is", other)):
         for p in group:
             numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
-            frequency = f"{p.frequency * units.frequencies:.4f}"
+            frequency = certain(p.frequency * units.frequencies, p.uncertainty)
             rows.append((WANTED[p.mode], kind, frequency, *numbers, f"{100 * p.largest:.2f} %", f"{p.condition:.0f}"))
     head = ("shape", "which", units.frequency, *[f"x{'⁰¹²³⁴⁵⁶'[n]}" for n in POWERS], "fit error", "condition")
     note = (
@@ -155,12 +159,14 @@ def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
     order, shapes = scaled(diagram, k)
     path = folder / "shapes.csv"
     parts = [f"{what}_{part}" for what in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["name", "frequency_rad_s", "omega_rad_s", "fraction", "span_m", *parts])
-        for t, shape in zip(order, shapes, strict=True):
-            about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), float(diagram.tracks.omega[k]))
-            for x, motion in zip(STATIONS, shape, strict=True):
-                numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
-                writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    text = StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["name", "frequency_rad_s", "relative_uncertainty", "omega_rad_s", "fraction", "span_m", *parts])
+    for t, shape in zip(order, shapes, strict=True):
+        sure = f"{diagram.tracks.uncertainty[k, t]:.6g}"
+        about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), sure, float(diagram.tracks.omega[k]))
+        for x, motion in zip(STATIONS, shape, strict=True):
+            numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
+            writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    atomic.write(path, text.getvalue())
     return path

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ...cases.input import atomic
 from ...cases.input.properties import Sections, sections
 from ...core.blade import Blade
 from ..shared.style import COLOURS, MUTED, WIDTH, house
@@ -74,6 +75,6 @@ def write(blade: Blade, folder: Path) -> list[Path]:
     figure = draw(blade)
     paths = [folder / "span.svg", folder / "span.png"]
     with house():
-        figure.savefig(paths[0], metadata={"Date": None})
-        figure.savefig(paths[1], dpi=150, metadata={"Software": None})
+        atomic.through(paths[0], lambda file: figure.savefig(file, format="svg", metadata={"Date": None}))
+        atomic.through(paths[1], lambda file: figure.savefig(file, format="png", dpi=150, metadata={"Software": None}))
     return paths

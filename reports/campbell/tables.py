@@ -5,12 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 from tabulate import tabulate
 
 from ...cases.campbell.diagram import Campbell, Margin
+from ...cases.campbell.encounters import Encounter
+from ...cases.campbell.margins import Southwell
+from ...cases.campbell.sweep import Named
 from ...core.participation import MIXED, spoken
+from ..shared.certain import certain, relative, remarks
 from ..shared.units import Units
+from .marks import gap
 
 TOO_NEAR = "✘"
 
@@ -52,17 +58,19 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
         fit = diagram.southwell[t]
         row = [diagram.label(t), spoken(diagram.shares[k[0], t])]
         for end in (0, -1):
-            f = tracks.frequencies[end, t] * units.frequencies
-            row.append(f"{f:.4f}" if np.isfinite(f) else "–")
+            f, sure = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
+            row.append(certain(float(f), float(sure)) if np.isfinite(f) else "–")
+        row.append(relative(float(np.nanmax(tracks.uncertainty[:, t]))))
         rise = tracks.frequencies[-1, t] / tracks.frequencies[0, t] - 1.0
-        row.append(f"{100 * rise:+.2f} %" if np.isfinite(rise) else "–")
-        row += [f"{fit.coefficient:.4g}", _small(fit.residual)] if fit else ["–", "–"]
+        row.append(_rise(float(rise), float(tracks.uncertainty[0, t] + tracks.uncertainty[-1, t])))
+        row += [*_southwell(fit, float(np.nanmax(tracks.uncertainty[:, t])))] if fit else ["–", "–"]
         rows.append(tuple(row))
     frequency = units.frequency
     at = _at(units, first)
-    head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "change")
+    head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "± relative", "change")
     note = (
         f"Kinetic energy {at}: flap, edge and axial motion of the mass centres, torsion about them, in the blade's axes. "
+        "± relative: the largest at any speed. "
         "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
     )
     return Sheet("Modes", (*head, "φ", "residual"), tuple(rows), note)
@@ -72,8 +80,23 @@ def _at(units: Units, omega: float) -> str:
     return f"at {units.at(omega)}" if omega else units.at(omega)
 
 
-def _small(relative: float) -> str:
-    return f"{100 * relative:.2g} %" if relative >= 1e-6 else "< 0.0001 %"
+def _rise(rise: float, doubt: float) -> str:
+    """A change in percent, two decimals at most; ``doubt`` is that of the ratio, relative."""
+    if not np.isfinite(rise):
+        return "–"
+    sure = 100 * (1.0 + rise) * doubt
+    if not sure < 50:
+        return "?"
+    places = 2 if sure <= 0.01 else max(int(-np.ceil(np.log10(sure))), 0)
+    return f"{100 * rise:+.{places}f} %"
+
+
+def _southwell(fit: Southwell, sure: float) -> tuple[str, str]:
+    """φ with the digits that the frequencies leave it, four at most, and the residual where it exceeds their uncertainty."""
+    size = abs(fit.coefficient)
+    told = certain(fit.coefficient, fit.uncertainty / size if size else np.inf, 4)
+    least = max(sure, 1e-6)
+    return told, f"{100 * fit.residual:.2g} %" if fit.residual >= least else f"< {100 * least:.1g} %"
 
 
 def _margins(diagram: Campbell, units: Units) -> Sheet:
@@ -108,8 +131,8 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
         row = [
             diagram.label_at(r.track, r.omega),
             f"{r.per_rev}P",
-            f"{r.omega * units.speeds:.3f}",
-            f"{r.frequency * units.frequencies:.4f}",
+            certain(r.omega * units.speeds, r.uncertainty),
+            certain(r.frequency * units.frequencies, r.uncertainty),
         ]
         if r.apart is not None:
             row.append(f"{TOO_NEAR} within" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
@@ -125,14 +148,13 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
 def _encounters(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for e in diagram.encounters:
-        gap = f"{e.gap * units.frequencies:.3g}"
         lower, upper = (diagram.label_at(t, e.window[0]) for t in e.tracks)
         rows.append(
             (
                 e.kind,
                 f"{e.omega * units.speeds:.3f}",
-                f"{e.frequency * units.frequencies:.4f}",
-                gap if e.kind == "veering" else f"< {gap}" if e.gap * units.frequencies >= 1e-9 else "none",
+                certain(e.frequency * units.frequencies, e.uncertainty, 5),
+                gap(e, units) if e.kind == "veering" else _narrower(e, units),
                 f"{lower} × {upper}",
                 f"{100 * e.exchanged:.0f} %" + ("" if e.whole else ", the rest beyond the speeds or others in between"),
                 f"{spoken(e.before[0])} → {spoken(e.after[0])}",
@@ -154,12 +176,18 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
     return Sheet("Modes that meet", head, tuple(rows), note)
 
 
+def _narrower(e: Encounter, units: Units) -> str:
+    """What the gap of a crossing, if it has one, is narrower than."""
+    most = (e.gap + e.gap_uncertainty) * units.frequencies
+    return "?" if not np.isfinite(most) else f"< {most:.3g}" if most >= 1e-9 else "none"
+
+
 def _doubts(diagram: Campbell, units: Units) -> Sheet:
     rows = tuple(
         (
             diagram.label(d.track),
             f"{d.omega[0] * units.speeds:.4f} – {d.omega[1] * units.speeds:.4f}",
-            f"{d.frequency * units.frequencies:.4f}",
+            f"{d.frequency * units.frequencies:.4g}",
             f"{d.mac:.2f}" if d.mac else "none",
             f"{d.rival:.2f}",
         )
@@ -175,7 +203,7 @@ def terminal(sheet: Sheet) -> Table:
     """For the console; what is too near is red."""
     out = Table(
         box=box.SIMPLE_HEAD,
-        title=sheet.title,
+        title=escape(sheet.title),
         title_justify="left",
         title_style="bold",
         caption=sheet.note or None,
@@ -202,6 +230,25 @@ def markdown(sheet: Sheet) -> str:
     table = tabulate(rows, [h.replace("|", "\\|") for h in sheet.head], tablefmt="pipe", disable_numparse=True)
     note = f"\n\n{sheet.note}" if sheet.note else ""
     return f"## {sheet.title}\n\n{table}{note}\n"
+
+
+def notes(diagram: Campbell, units: Units) -> list[str]:
+    """Large steady strains, and an accuracy that was not reached."""
+    tracks, wanted = diagram.tracks, diagram.wanted
+    rows = [
+        Named(
+            omega,
+            int(tracks.place[k, t]) + 1,
+            diagram.local[k][t],
+            float(tracks.frequencies[k, t]),
+            float(tracks.uncertainty[k, t]),
+            tracks.solved[k].strain,
+        )
+        for k, omega in enumerate(tracks.omega.tolist())
+        for t in range(tracks.count)
+        if tracks.place[k, t] >= 0
+    ]
+    return remarks(rows, wanted.accuracy if wanted.elements is None else None, units)
 
 
 def margins_kept(diagram: Campbell) -> bool:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
 from ...cases.campbell.variation import PRINTED, Variation
+from ..shared.certain import certain
 from ..shared.style import INK, WIDTH, beside, house, title
 from ..shared.units import RPM
 from .marks import DASHES, FAMILY_COLOURS
@@ -49,7 +50,13 @@ def figure(variations: Sequence[Variation]) -> Figure:
                 change = 100 * (hertz / hertz[0] - 1.0)
                 left.plot(speeds, hertz, **look)
                 right.plot(speeds, change, **look)
-                ends[0].append((float(hertz[-1]), f"{diagram.label(t)}  {hertz[-1]:.3f}", FAMILY_COLOURS[family]))
+                ends[0].append(
+                    (
+                        float(hertz[-1]),
+                        f"{diagram.label(t)}  {certain(float(hertz[-1]), float(diagram.tracks.uncertainty[-1, t]), 4)}",
+                        FAMILY_COLOURS[family],
+                    )
+                )
                 ends[1].append((float(change[-1]), f"{diagram.label(t)}  {change[-1]:.1f} %", FAMILY_COLOURS[family]))
             for rpm, largest in PRINTED.items():
                 right.plot(rpm, 100 * largest, marker="x", ms=7, mew=1.6, color=INK, zorder=5, clip_on=False)

@@ -3,7 +3,6 @@
 Frequencies and speeds are in rad/s, as they are kept; digits enough to show a change of 1e-9.
 """
 
-import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -13,6 +12,8 @@ from rich.console import RenderableType
 from rich.markup import escape
 from rich.table import Table
 
+from ...cases.input.errors import CaseError
+from ...cases.input.toml import document
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone, Timing
 from ...cases.regression.history import Caught, Entry, Point
 from ..shared.markdown import plain, table
@@ -218,8 +219,8 @@ def case_files(folder: Path) -> dict[str, Path]:
         if any(part.startswith(".") for part in inside.parts):
             continue
         try:
-            name = tomllib.loads(path.read_text(encoding="utf-8")).get("name")
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError):
+            name = document(path).get("name")
+        except CaseError:
             continue
         if isinstance(name, str):
             found.setdefault(name, inside)

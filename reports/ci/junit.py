@@ -22,10 +22,14 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
     """The document.
 
     A cell fails if its verdict is a miss, or if a gate found it worse (``strict``: or moved); answers that are gone and
-    controls that are no longer caught are failed test cases of their own. A solution's time is shared by its modes.
+    controls that are no longer caught are failed test cases of their own; a run that is incomplete is a test case with an
+    error, the first. A solution's time is shared by its modes.
     """
     findings = _findings(found, strict) if found else {}
     root = Element("testsuites", name="southwell")
+    if told := summary.incomplete(run):
+        test = _test(SubElement(root, "testsuite", name="the run"), "southwell", "the run is complete", 0.0)
+        SubElement(test, "error", type="incomplete", message=_text(told)).text = _text(told)
     shared: dict[tuple[str, str, float], int] = {}
     for c in run.cells:
         shared[c.case, c.code, c.omega] = shared.get((c.case, c.code, c.omega), 0) + 1
@@ -39,9 +43,8 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
         _regressions(root, found)
     for suite in root:
         suite.set("tests", str(len(suite)))
-        for kind in ("failure", "skipped"):
-            suite.set("failures" if kind == "failure" else kind, str(len(suite.findall(f"testcase/{kind}"))))
-        suite.set("errors", "0")
+        for kind, name in {"failure": "failures", "error": "errors", "skipped": "skipped"}.items():
+            suite.set(name, str(len(suite.findall(f"testcase/{kind}"))))
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True)
 

@@ -5,7 +5,6 @@ when a test has the mark.
 """
 
 import fnmatch
-import shlex
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 
 if TYPE_CHECKING:
     from ...cases.input.schema import Case, Variant
-    from ...cases.judge.results import Cell, Run
+    from ...cases.judge.results import Cell
     from ...cases.verify.user_solver import Yours
 
 MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
@@ -43,9 +42,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Names the mark; gathers results if a report is wanted, where there is one process that sees them all."""
     config.addinivalue_line("markers", HELP)
-    folder = config.getoption("--southwell-report")
-    if folder and not hasattr(config, "workerinput"):
-        config.pluginmanager.register(Report(folder, config), "southwell-report")
+    if folder := config.getoption("--southwell-report"):
+        from .pytest_report import Report, Told
+
+        gathers = Told() if hasattr(config, "workerinput") else Report(folder, config)
+        config.pluginmanager.register(gathers, "southwell-report")
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
     from ...cases.input.errors import CaseError
     from ...cases.input.library import select
+    from ...cases.verify.names import unique
     from ...cases.verify.user_solver import Yours
 
     told = config.getoption("--southwell-target")
@@ -90,6 +92,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     try:
         some = [select(n) for n in wanted.split(",")] if wanted else None
         cases = [select(n) for n in yours.cases] or some or _all()
+        unique(cases, [], [])
         only = {v.name for c in some or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error
@@ -203,62 +206,3 @@ def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
 
     told = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
     return msgspec.json.encode({"cells": cells, "levels": levels, "settings": told}).decode()
-
-
-class Report:
-    """Gathers what tests found, and writes the report when all are done."""
-
-    def __init__(self, folder: Path, config: pytest.Config) -> None:
-        self.folder, self.config = folder, config
-        self.parts: list[str] = []
-
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Keep what one test found."""
-        if report.when == "call":
-            self.parts += [str(value) for name, value in report.user_properties if name == PROPERTY]
-
-    @pytest.hookimpl(trylast=True)
-    def pytest_sessionfinish(self) -> None:
-        """Write results.jsonl and report.md."""
-        from ...cases.judge import results
-        from ..verification import report as matrix_report
-
-        run = self._run()
-        if not run.cells:
-            return
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            path = self.folder / "results.jsonl"
-            path.write_bytes(b"")
-            results.append(path, run.cells, run.levels, run)
-            matrix_report.write(run, self.folder)
-        except OSError as error:
-            raise pytest.UsageError(
-                f"--southwell-report {self.folder}: cannot be written ({error.strerror})"
-            ) from error
-
-    def pytest_terminal_summary(self, terminalreporter: Any) -> None:
-        """Say where the report is."""
-        if self.parts:
-            terminalreporter.write_line(f"southwell: {self.folder / 'report.md'}")
-
-    def _run(self) -> "Run":
-        import msgspec
-
-        from ...cases.judge.results import Cell, Level, Run, Setting
-        from ...cases.verify import matrix
-
-        decoded = [msgspec.json.decode(part) for part in self.parts]
-
-        def rows(kind: str, row: Any) -> tuple[Any, ...]:
-            """Each once: tests of one blade repeat its setting, and the cell of a speed without an answer."""
-            distinct = {msgspec.json.encode(one): one for part in decoded for one in part[kind]}
-            return tuple(msgspec.convert(one, row) for one in distinct.values())
-
-        return Run(
-            cells=rows("cells", Cell),
-            levels=rows("levels", Level),
-            versions=matrix.versions({}),
-            command=shlex.join(["pytest", *self.config.invocation_params.args]),
-            settings=rows("settings", Setting),
-        )

@@ -3,14 +3,20 @@
 A command's module is imported when the command runs: `southwell --help` loads no numerical library.
 """
 
-import os
 import sys
+import traceback
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, redirect_stderr, redirect_stdout
 
 from cyclopts import App, CycloptsError, Group, UnusedCliTokensError
 
-from .exit_status import BAD_INPUT, INTERRUPTED, PASSED, UsageError
+from ..shared import streams
+from ..shared.log_safe import LogSafe
+from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASSED, listed
+from .errors import IncompleteError, UsageError
+
+OUTSIDE = "--allow-outside"
+"""An option of every command, wherever it stands."""
 
 ONE_BLADE, VERIFY, OTHER, CI, LAST = (
     Group.create_ordered(name)
@@ -64,15 +70,15 @@ def build(listing: bool = False) -> App:
     """The application; with ``listing`` each command has its line in the list but is not imported for it."""
     built = App(
         name="southwell",
-        help="""Verify the natural frequencies of rotating blades.
+        help=f"""Verify the natural frequencies of rotating blades.
 
         Southwell solves a blade with its own multibody solver and with independent codes, and reports every difference
         with its uncertainty and, where known, its cause. For one command: southwell COMMAND --help.
 
-        Exit status: 0 passed; 1 a comparison failed or is inconclusive, or a margin is violated with --strict;
-        2 invalid input; 130 interrupted.
+        Exit status: {listed()}.
         """,
         help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
+        help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
         group_commands=LAST,
         version=_version,
         suppress_keyboard_interrupt=False,
@@ -89,36 +95,66 @@ app = build()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """The entry point; ends the process with the command's status."""
-    if "" not in sys.path:
-        sys.path.append("")  # a code named by its import path may lie in the current folder, as python -m finds it
+    """The entry point; ends the process with the command's status, see ``statuses``."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    streams.prepare()
+    with (
+        redirect_stdout(LogSafe(sys.stdout)),  # pyright: ignore[reportArgumentType]
+        redirect_stderr(LogSafe(sys.stderr)),  # pyright: ignore[reportArgumentType]
+        _outside_allowed() if OUTSIDE in words else nullcontext(),
+    ):
+        status = _status([word for word in words if word != OUTSIDE])
+        streams.finish()
+    sys.exit(status)
+
+
+def _status(words: list[str]) -> int:
+    """Run a command; its exit status."""
     try:
-        chosen = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
-        runs = bool(words) and words[0] in {name for _, name, *_ in COMMANDS}
-        with _one_thread() if runs else nullcontext():
-            status = chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+        status = _run(words)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        unexpected = " ".join(error.unused_tokens or ())
-        print(f"southwell: {unexpected}: unexpected argument; see --help", file=sys.stderr)
-        status = BAD_INPUT
+        status = _told(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
     except (CycloptsError, UsageError) as error:
-        status = _bad_input(error)
+        status = _told(error, BAD_INPUT)
+    except IncompleteError as error:
+        status = _told(error, INCOMPLETE)
     except KeyboardInterrupt:
-        print("southwell: interrupted", file=sys.stderr)
-        status = INTERRUPTED
-    except BrokenPipeError:  # the reader of a pipe has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = PASSED
-    except ValueError as error:
+        status = _told("interrupted", INTERRUPTED)
+    except OSError as error:
+        what = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
+        status = _told(what, BAD_INPUT)
+    except Exception as error:
         from ...cases.input.errors import CaseError
         from ...references.protocol.registry import UnknownCodeError
 
-        if not isinstance(error, CaseError | UnknownCodeError):
-            raise
-        status = _bad_input(error)
-    sys.exit(status)
+        if isinstance(error, CaseError | UnknownCodeError):
+            return _told(error, BAD_INPUT)
+        traceback.print_exc()
+        what = f"internal error: {type(error).__name__}: {error}: please report it, with the lines above"
+        status = _told(what, INTERNAL)
+    return status
+
+
+def _run(words: list[str]) -> int:
+    chosen = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
+    runs = bool(words) and words[0] in {name for _, name, *_ in COMMANDS}
+    with _one_thread() if runs else nullcontext():
+        return chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+
+
+def _told(what: object, status: int) -> int:
+    """Say in one line why there is no more; the status."""
+    from ...cases.input.errors import brief
+
+    print(f"southwell: {brief(str(what))}", file=sys.stderr)
+    return status
+
+
+def _outside_allowed() -> AbstractContextManager[object]:
+    from ...cases.input import files
+
+    return files.outside_allowed(True)
 
 
 def _one_thread() -> AbstractContextManager[object]:
@@ -126,8 +162,3 @@ def _one_thread() -> AbstractContextManager[object]:
     from threadpoolctl import threadpool_limits
 
     return threadpool_limits(1)
-
-
-def _bad_input(error: Exception) -> int:
-    print(f"southwell: {' '.join(str(error).split())}", file=sys.stderr)
-    return BAD_INPUT

@@ -1,6 +1,8 @@
 """Types of arguments, and the finished run that several commands read."""
 
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +12,8 @@ from cyclopts.validators import Number
 from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
+from ...cases.verify import journal
+from .errors import IncompleteError, UsageError
 
 RESULTS = "results.jsonl"
 
@@ -19,37 +23,81 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
     try:
         return int(tokens[0].value)
     except ValueError:
-        raise ValueError(f"{tokens[0].value!r} is not a whole number: give one, as in 10") from None
+        raise ValueError(f"{tokens[0].value[:40]!r} is not a whole number: give one, as in 10") from None
 
 
-Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1))]
+Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1_000_000))]
 Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
+Workers = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1024))]
+
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
 """Of one blade; more than the most are gigabytes and minutes, and change nothing."""
+
+Positive = Annotated[float, Parameter(validator=Number(gt=0, lte=86_400))]
+"""Seconds, or gibibytes."""
 
 Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 """A relative uncertainty."""
 
 Flag = Annotated[bool, Parameter(negative=())]
 
+
+CONTINUE = "run the same `southwell verify` again, which continues where it was stopped"
+"""What to do about an incomplete run."""
+
 Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_default=False, consume_multiple=False)]
 """Changes of a blade's properties, each as ``NAME=*FACTOR``."""
 
 
+@contextmanager
+def writing(out: Path) -> Iterator[None]:
+    """While a command writes in the folder ``out``, which is made if there is none and locked.
+
+    Raises:
+        UsageError: if it cannot be made or written.
+        CaseError: if another process is writing in it.
+    """
+    with ExitStack() as stack:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(journal.locked(out))
+        except OSError as error:
+            raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
+        yield
+
+
 def finished(path: Path) -> Run:
-    """The run in a report's folder, or in its results file.
+    """The complete run in a report's folder, or in its results file.
 
     Raises:
         CaseError: if there is none.
+        IncompleteError: if it is not complete.
     """
-    file = path / RESULTS if path.is_dir() else path
+    run = found(path)
+    if run.unfinished:
+        raise IncompleteError(f"{path}: incomplete: {run.unfinished}: {CONTINUE}")
+    return run
+
+
+def found(path: Path) -> Run:
+    """The run in a report's folder, or in its results file; of a folder, the one that was begun last, complete or not.
+
+    Raises:
+        CaseError: if there is none.
+        IncompleteError: if not a single cell of it is there.
+    """
+    file = path
+    if os.path.isdir(path):
+        file = path / journal.NAME if (path / journal.NAME).exists() else path / RESULTS
     try:
-        run = results.read(file)
+        run = journal.read(file) if file.name == journal.NAME else results.read(file)
     except OSError as error:
         told = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
         raise CaseError(f"{file}: {told}") from error
     except ValueError as error:
         raise CaseError(str(error)) from error
+    if not run.cells and run.unfinished:
+        raise IncompleteError(f"{file}: incomplete: there are no cells in it: {CONTINUE}")
     if not run.cells:
-        raise CaseError(f"{file}: no results in it: the run was cut short before its first; run `southwell verify`")
+        raise CaseError(f"{file}: no results in it: run `southwell verify`")
     return run

@@ -32,10 +32,11 @@ from ..campbell import tables as tables
 from ..campbell.tables import Sheet
 from ..shared import not_used
 from ..shared.console import Watch, output
+from ..shared.paths import file_name
 from ..shared.units import RPM, Units
 from . import campbell_options as options
-from .arguments import Changes, Elements, Flag, Whole
-from .exit_status import UsageError
+from .arguments import Accuracy, Changes, Elements, Flag, Whole, Workers
+from .errors import UsageError
 from .mounting import Mounting
 from .subjects import Subject, changed, single
 from .subjects import subjects as find_subjects
@@ -52,11 +53,13 @@ def command(
     per_rev: str = "1:6",
     operating: str | None = None,
     margin: str = "10%",
-    elements: Elements = 50,
+    elements: Elements | None = None,
+    accuracy: Accuracy = 1e-6,
+    allow_large_strain: Flag = False,
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
-    workers: Whole = 1,
+    workers: Workers = 1,
     changes: Changes = (),
     against: str | None = None,
     verify: Flag = False,
@@ -89,7 +92,11 @@ def command(
     margin
         Required distance from nP over the operating range, relative to nP: `10%`, `10` or `0.1`.
     elements
-        Number of beam elements.
+        Number of beam elements of equal length. Default: at each speed as many as --accuracy requires.
+    accuracy
+        Largest relative uncertainty of a frequency, without --elements.
+    allow_large_strain
+        Accept steady strains above 20 %.
     azimuth
         Azimuth in degrees, 0 with the blade up, for the gravity load. Default: no gravity.
     tilt
@@ -130,10 +137,12 @@ def command(
             operating=options.operating(operating, units, speeds) if operating else None,
             margin=options.margin(margin),
             elements=elements,
+            accuracy=accuracy,
+            allow_large_strain=allow_large_strain,
             gravity=options.gravity(azimuth, tilt),
             load=options.load(load, subject.blade),
         )
-        folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+        folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
         _check(out)
         diagram = solve(subject.blade, wanted, units, workers)
         extra = []
@@ -175,7 +184,7 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
 def _check(out: Path) -> None:
     """Raise before minutes of work if the folder cannot be written."""
     there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
-    if not there.is_dir():
+    if not os.path.isdir(there):
         raise _unwritable(out, f"{there} is a file")
     if not os.access(there, os.W_OK):
         raise _unwritable(out, f"no permission in {there}")
@@ -255,5 +264,7 @@ def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[She
     for line in subject.about:
         console.print(line, style="dim", markup=False)
     not_used.show(subject.unused, console)
+    for line in tables.notes(diagram, units):
+        console.print(line, style="yellow", markup=False, soft_wrap=True)
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)

@@ -11,6 +11,9 @@ from ...core.blade import Blade
 from ..shared.units import RAD_S, RPM, Units
 from .mounting import angle
 
+MOST_PER_REV = 1000
+"""Multiple of the rotor's speed, at most."""
+
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     """Speeds (rad/s) and their unit; None if neither option is given."""
@@ -45,13 +48,17 @@ def per_rev(text: str) -> tuple[int, ...]:
     """``1:6`` or ``1,2,3,6``."""
     first, colon, last = text.partition(":")
     try:
-        found = tuple(range(int(first), int(last) + 1)) if colon else tuple(sorted({int(p) for p in text.split(",")}))
+        found = (
+            tuple(range(int(first), min(int(last), MOST_PER_REV + 1) + 1))
+            if colon
+            else tuple(sorted({int(p) for p in text.split(",")}))
+        )
     except ValueError:
         raise CaseError(
             f"--per-rev: {text!r} is neither first:last nor whole numbers with commas, as in 1:6 or 1,3,6"
         ) from None
-    if not found or found[0] < 1:
-        raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last, as in 1:6")
+    if not found or found[0] < 1 or found[-1] > MOST_PER_REV:
+        raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last ≤ {MOST_PER_REV}, as in 1:6")
     return found
 
 

@@ -13,12 +13,13 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from ...cases.condense import condensed, condensing, example
 from ...cases.condense.condensed import Condensed
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..condense import page
 from ..shared.console import output
 from ..shared.units import RAD_S
 from . import campbell_options
-from .arguments import Whole
+from .arguments import Flag, Whole
 
 EXAMPLE = "example"
 FILE, SEGMENTS, DATA = page.FILE, "segments.json", "condensation.json"
@@ -33,6 +34,7 @@ def command(
     omega: str | None = None,
     rpm: str | None = None,
     modes: Whole = 6,
+    allow_large_strain: Flag = False,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
 ) -> int:
     """Condense finite element matrices of a blade to a multibody model.
@@ -53,6 +55,8 @@ def command(
         Rotor speeds in rpm, in the same form.
     modes
         Number of modes, from the lowest.
+    allow_large_strain
+        Accept steady strains above 20 %.
     out
         Output folder.
     """
@@ -70,7 +74,7 @@ def command(
     else:
         told = condensing.condense(path)
         blade = told.blade
-    found = [(speed, condensed.modes(blade, speed, modes)) for speed in speeds]
+    found = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
     text = page.own(blade, found, units, told, _line())
     folder = _folder(out)
     _write(folder, text, blade)
@@ -114,7 +118,7 @@ def _folder(out: Path) -> Path:
 def _write(folder: Path, text: str, blade: Condensed) -> None:
     try:
         condensed.write(folder / SEGMENTS, blade)
-        (folder / FILE).write_text(text, encoding="utf-8")
+        atomic.write(folder / FILE, text)
     except OSError as error:
         raise _unwritable(folder, error) from error
 

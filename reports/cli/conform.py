@@ -5,8 +5,9 @@ from collections import Counter
 from rich import box
 from rich.table import Table
 
-from ...cases.conformance.suite import CHECKS, judge
-from ...references.protocol import registry as registry
+from ...cases.conformance.worker import outcomes
+from ...references.protocol.description import describe
+from ...references.protocol.registry import UnknownCodeError
 from ..shared.console import output
 
 MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"}
@@ -23,17 +24,18 @@ def command(code: str, /) -> int:
     code
         Name (`southwell codes`), or import path `module:attribute` of an adapter.
     """
-    known = registry.code(code)
-    if not hasattr(known, "solve"):
-        raise registry.UnknownCodeError(f"code: {code!r} takes mechanisms, not blades: there are no checks for it")
+    (known,) = describe([code])
+    if not known.blades:
+        raise UnknownCodeError(f"code: {code!r} takes mechanisms, not blades: there are no checks for it")
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("", "check", "law, or reason"):
         table.add_column(head, overflow="fold")
-    outcomes = [judge(known, check) for check in CHECKS]
-    for outcome in outcomes:
+    found = outcomes(code)
+    for outcome in found:
         table.add_row(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law)
     console = output()
     console.print(table, markup=False)
-    tally = Counter(outcome.verdict for outcome in outcomes)
-    console.print(f"{known.title}: " + ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict]))
+    tally = Counter(outcome.verdict for outcome in found)
+    counted = ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict])
+    console.print(f"{known.title or known.name}: {counted}", markup=False)
     return 1 if tally["fail"] or tally["not run"] else 0

@@ -1,5 +1,6 @@
 """``southwell convert``: a blade of any readable format, written as TOML, BeamDyn or ElastoDyn files."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
@@ -64,7 +65,7 @@ def command(
         raise CaseError(
             f"{out}: ends in {out.suffix or 'nothing'}: give the format with --to toml, beamdyn or elastodyn"
         )
-    if out.exists():
+    if os.path.lexists(out):
         raise CaseError(f"{out}: exists already: give another name, or remove it")
     subjects = find_subjects(blade, (mounting or Mounting()).mount())
     if len(subjects) > 1:

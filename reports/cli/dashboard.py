@@ -7,7 +7,9 @@ from cyclopts import Parameter
 
 from ...cases.input.errors import CaseError
 from ..dashboard.write import write
-from .arguments import finished
+from ..shared.statuses import INCOMPLETE, PASSED
+from ..shared.summary import incomplete
+from .arguments import found
 from .history import load
 
 
@@ -19,6 +21,8 @@ def command(
     """Write a static site of one or several runs.
 
     The site needs neither a server nor a network connection.
+
+    Status 3 if a run is incomplete; its pages say so.
 
     Parameters
     ----------
@@ -34,10 +38,13 @@ def command(
     names = [folder.name or str(folder.resolve()) for folder in folders]
     if len(set(names)) < len(names):
         names = [str(folder) for folder in folders]
-    runs = {name: finished(folder) for name, folder in zip(names, folders, strict=True)}
+    runs = {name: found(folder) for name, folder in zip(names, folders, strict=True)}
+    for name, run in runs.items():
+        if told := incomplete(run):
+            print(f"{name}: {told}")
     kept = load(history) if history is not None else None
     try:
         print(write(runs, kept, out))
     except OSError as error:
         raise CaseError(f"{error.filename}: {error.strerror}: give another --history or --out") from error
-    return 0
+    return INCOMPLETE if any(run.unfinished for run in runs.values()) else PASSED

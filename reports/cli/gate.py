@@ -1,5 +1,6 @@
 """``southwell gate``: a run against an earlier one; status 1 if something got worse."""
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,15 +10,20 @@ import msgspec
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError, nearest
 from ...cases.judge.results import Run
 from ...cases.regression import history
 from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
 from ...cases.regression.history import Entry
+from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..ci import gate_text, junit
 from ..shared.console import output
+from ..shared.log_safe import commands
+from ..shared.statuses import FAILED, INCOMPLETE, PASSED
+from ..shared.summary import incomplete
 from ..verification import report as matrix_report
-from .arguments import RESULTS, finished
+from .arguments import RESULTS, finished, found
 from .history import load
 
 Flag = Annotated[bool, Parameter(negative=())]
@@ -39,7 +45,7 @@ def command(
     """Compare a run with an earlier one; status 1 if anything got worse.
 
     Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected. Changed frequencies are listed.
-    Run times are informational.
+    Run times are informational. An incomplete run does not pass: status 3.
 
     Parameters
     ----------
@@ -63,7 +69,7 @@ def command(
     annotations
         Print GitHub workflow commands that mark the files of cases that got worse.
     """
-    run = finished(folder)
+    run = found(folder)
     after = history.entry(run, str(folder))
     if commit and not against:
         raise CaseError(f"--commit {commit}: of which history? Give it by --against")
@@ -71,24 +77,28 @@ def command(
     if partial:
         before = within(before, after)
     missed = [c.control for c in run.controls if c.missed]
-    found = compare(before, after, earlier, tolerance, missed)
+    gate = compare(before, after, earlier, tolerance, missed)
     console = output()
-    for shown in gate_text.tables(found):
+    if told := incomplete(run):
+        console.print(told, markup=False, soft_wrap=True)
+    for shown in gate_text.tables(gate):
         console.print(shown)
-    console.print(gate_text.verdict(found, strict), markup=False, soft_wrap=True)
+    console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
     if annotations:
-        for line in gate_text.annotations(found, Path()):
-            print(line)
+        for line in gate_text.annotations(gate, Path()):
+            print(line, file=commands())
     if junit_file:
-        _write("--junit", junit_file, lambda: junit_file.write_bytes(junit.render(run, found, strict)))
+        _write("--junit", junit_file, lambda: atomic.write(junit_file, junit.render(run, gate, strict)))
     if summary:
-        _write("--summary", summary, lambda: _append(summary, _page(run, found, strict)))
-    return 0 if found.passed(strict) else 1
+        _write("--summary", summary, lambda: _append(summary, _page(run, gate, strict)))
+    if run.unfinished:
+        return INCOMPLETE
+    return PASSED if gate.passed(strict) else FAILED
 
 
 def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
     """The run to compare with, and those whose times show noise."""
-    if path.is_dir() or _is_run(path):
+    if os.path.isdir(path) or _is_run(path):
         if commit:
             raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")
         return replace(history.entry(finished(path), str(path)), date="", machine=""), ()
@@ -106,16 +116,15 @@ def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
 def _is_run(path: Path) -> bool:
     """Whether a file is a run's results: its lines say of what kind they are."""
     try:
-        with path.open("rb") as file:
-            first = msgspec.json.decode(file.readline())
-    except (OSError, msgspec.DecodeError):
+        first = msgspec.json.decode(read_bytes(path, LARGEST_DATA).partition(b"\n")[0])
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
         return path.name == RESULTS
     return isinstance(first, dict) and "kind" in first
 
 
-def _page(run: Run, found: Comparison, strict: bool) -> str:
+def _page(run: Run, gate: Comparison, strict: bool) -> str:
     """What the run found, and what the gate did."""
-    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(found, strict), matrix_report.heat(run)]
+    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(gate, strict), matrix_report.heat(run)]
     return "\n\n".join(parts) + "\n"
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from ...cases.input.errors import CaseError
@@ -67,7 +68,7 @@ def listing(file: Path, /) -> int:
     for entry in load(file).entries:
         verdicts = [p.verdict for p in entry.cells]
         counts = [str(verdicts.count(v)) for v in ("pass", "fail", "inconclusive")]
-        table.add_row(entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine)
+        table.add_row(*map(escape, (entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine)))
     console.output().print(table)
     return 0
 

@@ -15,9 +15,11 @@ from ...cases.verify.settings import settings
 from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import registry as registry
+from ...references.protocol.description import describe
 from ..shared import console
+from ..shared.statuses import PASSED
 from .arguments import RESULTS, finished
-from .exit_status import PASSED, UsageError
+from .errors import UsageError
 
 
 def cases() -> int:
@@ -62,13 +64,12 @@ def codes(*, pages: Path | None = None) -> int:
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("code", "title", "version", "shares with core", "omits"):
         table.add_column(head, overflow="fold")
-    for name in registry.names():
-        known = registry.code(name)
-        found = known.version()
+    for known in describe(registry.names()):
+        found = f"✔ {known.version}" if known.version else f"○ not found; {known.hint}"
         table.add_row(
             known.name,
             known.title,
-            Text(f"✔ {found}" if found else f"○ not found; {known.hint}"),
+            Text(f"✘ {known.failure.reason}" if known.failure else found),
             known.shares,
             ", ".join(known.model.lacks()) or "nothing",
         )

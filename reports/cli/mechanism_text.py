@@ -4,23 +4,42 @@ from typing import Any
 
 import numpy as np
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from ...core.multibody.solution import Solution
+from ..shared.certain import certain, relative
+
+NOTE = (
+    "± rounding: relative for frequencies, absolute for damping ratios; nothing is discretised, so there is no other "
+    "numerical error"
+)
+"""What the uncertainties are."""
 
 ROTATIONS = (".rx", ".ry", ".rz")
 
 
 def modes(found: Solution, title: str) -> Table:
-    """A row for each mode: frequency, damping ratio, the coordinate that leads."""
-    out = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
-    for head in ("mode", "rad/s", "Hz", "damping ratio"):
+    """A row for each mode: frequency, damping ratio, the coordinate that leads, each with the digits that rounding leaves."""
+    out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
+    for head in ("mode", "rad/s", "Hz", "damping ratio", "± rounding"):
         out.add_column(head, justify="right")
     out.add_column("led by")
     for row in _rows(found):
-        numbers = (f"{row['frequency_rad_s']:.7g}", f"{row['frequency_hz']:.7g}", f"{row['damping_ratio']:.6f}")
-        out.add_row(str(row["mode"]), *numbers, row["led_by"] + ("; grows" if row["damping_ratio"] < -1e-9 else ""))
+        sure = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
+        numbers = (certain(row["frequency_rad_s"], sure), certain(row["frequency_hz"], sure))
+        grows = row["damping_ratio"] < -max(1e-9, sure)
+        told = (_ratio(row["damping_ratio"], sure), relative(sure))
+        out.add_row(str(row["mode"]), *numbers, *told, escape(row["led_by"]) + ("; grows" if grows else ""))
     return out
+
+
+def _ratio(damping: float, sure: float) -> str:
+    """Six decimals at most, and none that are uncertain."""
+    if not sure < 0.5:
+        return "?"
+    places = 6 if sure <= 1e-6 else int(-np.ceil(np.log10(sure)))
+    return f"{round(damping, places) + 0.0:.{places}f}"
 
 
 ROUNDING = 1e-14
@@ -36,7 +55,7 @@ def state(found: Solution) -> Table:
     out.add_column("in vibration")
     for name, value in found.steady.items():
         shown = f"{value:.7g}" if abs(value) > ROUNDING else "0"
-        out.add_row(name, shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
+        out.add_row(escape(name), shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
     return out
 
 
@@ -65,10 +84,11 @@ def _rows(found: Solution) -> list[dict[str, Any]]:
             "frequency_rad_s": abs(value),
             "frequency_hz": abs(value) / (2 * np.pi),
             "damping_ratio": float(damping),
+            "relative_uncertainty": float(sure) if np.isfinite(sure) else None,
             "led_by": led_by,
         }
-        for k, (value, damping, led_by) in enumerate(
-            zip(found.values.tolist(), found.damping, found.leading, strict=True), 1
+        for k, (value, damping, sure, led_by) in enumerate(
+            zip(found.values.tolist(), found.damping, found.uncertainty, found.leading, strict=True), 1
         )
     ]
 

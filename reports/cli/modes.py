@@ -15,13 +15,15 @@ from ...core.velocity_transformation import MOST_ELEMENTS
 from ..campbell import changes as changes_table
 from ..campbell import tables
 from ..shared import not_used
+from ..shared.certain import remarks
 from ..shared.console import output
+from ..shared.statuses import PASSED
 from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
 from .arguments import Accuracy, Changes, Elements, Flag, Whole
-from .exit_status import PASSED, UsageError
+from .errors import UsageError
 from .mounting import Mounting
 
 
@@ -105,7 +107,7 @@ def modes(
             )
             for table in terminal.frequencies(found, title, shown, console.width):
                 console.print(table)
-            for line in terminal.remarks(found, accuracy if elements is None else None, shown):
+            for line in remarks(found, accuracy if elements is None else None, shown):
                 console.print(line, markup=False, soft_wrap=True)
             if other:
                 compared = blade_changes(blade, other.blade, at, modes, elements or ELEMENTS)
@@ -136,7 +138,7 @@ def mechanism(
     time
         Time in seconds at which motions that depend on time are evaluated.
     json
-        Print JSON.
+        Print JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is that of rounding.
     """
     described = library.mechanism(name)
     found = described.solve(modes, time)
@@ -148,6 +150,7 @@ def mechanism(
     console.print(answer.modes(found, described.text.title or described.text.name))
     console.print(answer.state(found))
     console.print(answer.redundant(found), markup=False, soft_wrap=True)
+    console.print(answer.NOTE, markup=False, soft_wrap=True)
     return PASSED
 
 

@@ -3,14 +3,18 @@
 from pathlib import Path
 
 from ...cases.judge.results import Run
+from ...cases.verify import journal
 from ..shared.console import output
+from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
-from .arguments import RESULTS, Flag, finished
-from .exit_status import PASSED, UsageError
+from .arguments import RESULTS, Flag, found, writing
+from .errors import UsageError
 
 
 def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     """Rewrite the report of a finished run from its results.jsonl.
+
+    Of a run that was stopped, what there is of it is shown, with status 3; the report of an earlier complete run is kept.
 
     Parameters
     ----------
@@ -21,7 +25,11 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     pdf
         Also write report.pdf; requires the extra `pdf` (WeasyPrint).
     """
-    written = show(finished(folder / RESULTS), folder)
+    run = found(folder if folder.is_dir() else folder / RESULTS)
+    with writing(folder):
+        written = show(run, folder)
+    if written is None:
+        return INCOMPLETE
     if html or pdf:
         from ..verification import html as page
 
@@ -32,23 +40,36 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
                 print(page.pdf(written))
             except page.PdfError as error:
                 raise UsageError(str(error)) from error
-    return PASSED
+    return INCOMPLETE if run.unfinished else PASSED
 
 
-def show(run: Run, folder: Path) -> Path:
-    """Write the report and print its summary; the path of the report."""
+def show(run: Run, folder: Path) -> Path | None:
+    """Write the report and print its summary; the path of the report.
+
+    None, and nothing is written, if the run is unfinished and the report there is of a complete one.
+    """
     from ..verification import (
         report as matrix_report,  # with its figures half of a command's time to start, and of every worker's
     )
 
-    report = matrix_report.write(run, folder)
+    keep = bool(run.unfinished) and (folder / RESULTS).exists()
+    report = None if keep else matrix_report.write(run, folder)
+    show_tables(run)
+    kept = f"{folder / RESULTS}: of an earlier run, unchanged"
+    told = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
+    output().print(told, markup=False, soft_wrap=True)
+    return report
+
+
+def show_tables(run: Run) -> None:
+    """The headline, the matrix and the controls on standard output."""
+    from ..verification import report as matrix_report
+
     console = output()
     for line in matrix_report.headline(run):
-        console.print(line.replace("**", ""), markup=False)
+        console.print(line.replace("**", ""), markup=False, soft_wrap=True)
     for table in terminal.matrix(run, console.width):
         console.print(table)
     console.print(terminal.legend(), style="dim", markup=False)
     if run.controls:
         console.print(terminal.controls(run))
-    console.print(f"{report}, {folder / RESULTS}", markup=False, soft_wrap=True)
-    return report

@@ -12,11 +12,13 @@ from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.input.properties import Mass, Sections, about_hub, about_root, sections, tip
 from ...core.blade import Blade, straight
 from ..shared import not_used
 from ..shared.console import output
+from ..shared.paths import file_name
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
 
@@ -70,7 +72,7 @@ def command(
         for table in stations(subject.blade, None if all else ROWS):
             console.print(table)
         if out is not None:
-            folder = out / subject.blade.name.partition("/")[2] if len(subjects) > 1 else out
+            folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             try:
                 written = write(subject.blade, folder)
             except OSError as error:
@@ -120,7 +122,7 @@ def _body(found: Mass) -> str:
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
     """Facts in a table, and how the blade was read."""
     table = Table(
-        box=None, show_header=False, pad_edge=False, title=blade.name, title_justify="left", title_style="bold"
+        box=None, show_header=False, pad_edge=False, title=escape(blade.name), title_justify="left", title_style="bold"
     )
     table.add_column(style="dim")
     table.add_column(overflow="fold")
@@ -174,5 +176,5 @@ def write(blade: Blade, folder: Path) -> list[Path]:
     values = np.column_stack([rows(blade, found), angles, blade.curve])
     written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
     lines = [",".join(COLUMNS + MORE), *written]
-    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    atomic.write(table, "\n".join(lines) + "\n")
     return [*span.write(blade, folder), table]

@@ -1,5 +1,6 @@
 """Which blades a command is asked for: a blade's file in any format that is read, or a case's blades."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -90,6 +91,10 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
 def is_blade_file(name: str) -> bool:
     """Whether a name is that of a blade's file, and not of a case."""
     path = Path(name)
-    if name in library.names() or name.partition("/")[0] in library.names() or not (path.suffix or path.is_file()):
+    if (
+        name in library.names()
+        or name.partition("/")[0] in library.names()
+        or not (path.suffix or os.path.isfile(path))
+    ):
         return False
-    return path.suffix.lower() != ".toml" or (path.is_file() and southwell_toml.is_one(path))
+    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.is_one(path))

@@ -3,49 +3,62 @@
 import os
 import re
 import shlex
+import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from msgspec.structs import replace as replaced
 
 from ...cases.faults import table
+from ...cases.input import atomic, library, mechanisms
 from ...cases.input import changes as blade_changes
-from ...cases.input import library, mechanisms
 from ...cases.input.changes import Change, parse
 from ...cases.input.default_case import default_case
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
-from ...cases.judge.results import Run, Setting
-from ...cases.verify import lumping, matrix, mechanism_case, user_results
+from ...cases.judge.results import Control, Level, Planned, Run, Setting
+from ...cases.verify import journal, lumping, matrix, mechanism_case, user_results
+from ...cases.verify import names as names_of
+from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
+from ...references.protocol.description import Description, describe
+from ...references.protocol.process import Limits
 from ..ci import junit as xml
 from ..shared import console, summary
+from ..shared.statuses import INCOMPLETE, INTERRUPTED
 from ..shared.units import RPM, Units
 from . import campbell_options
-from .arguments import RESULTS, Changes, Count, Whole
-from .exit_status import INTERRUPTED, UsageError
+from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, writing
+from .errors import UsageError
 from .mounting import Mounting
 from .report import show
 from .subjects import is_blade_file, subjects
+
+SCRATCH = "results.partial.tmp"
+"""Folder in ``--out`` for temporary files of this run and of the codes it runs."""
 
 
 def command(
     *case: str,
     codes: str | None = None,
     out: Path = Path("southwell-report"),
-    workers: Whole | None = None,
+    workers: Workers | None = None,
     add: tuple[str, ...] = (),
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
+    time_limit: Positive | None = None,
+    memory_limit: Positive = Limits.memory / 2**30,
     rpm: str | None = None,
     omega: str | None = None,
     changes: Changes = (),
@@ -54,8 +67,10 @@ def command(
     """Solve blades with every code, compare the results and write a report.
 
     Writes results.jsonl (one row per cell), report.md and figures. Status 1 if a cell fails or is inconclusive, if nothing was
-    compared, if fewer independent groups confirm a blade than its case requires, or if a seeded fault is not detected. An
-    interrupted run keeps and reports what is finished; status 130.
+    compared, if fewer independent groups confirm a blade than its case requires, or if a seeded fault is not detected.
+
+    Answers are stored as they are computed. After an interruption (status 130), or if the run was killed or the disk is full
+    (status 3), the same command continues. Earlier results are replaced when the new ones are complete.
 
     Parameters
     ----------
@@ -65,7 +80,7 @@ def command(
     codes
         Names separated by commas (`southwell codes`), or import paths `module:attribute`. Default: all codes.
     out
-        Output folder; results of an earlier run in it are replaced.
+        Output folder; only one run at a time may write in it.
     workers
         Worker processes (default: one per processor).
     add
@@ -77,6 +92,10 @@ def command(
         Seeded faults to run: `fast` (seven), `all`, `none`, or names separated by commas.
     witnesses
         Number of independent groups that must confirm each blade. Default: as the case says; none with `--codes`.
+    time_limit
+        Seconds for one solution by another code. Default: as the case says, otherwise 300.
+    memory_limit
+        Memory in GiB for one solution by another code, including the processes that it starts.
     rpm
         Rotor speeds of a blade file in rpm: a range `first:last:step` or a list `0,5,10`.
     omega
@@ -93,9 +112,11 @@ def command(
             "--rpm, --omega, --length and the like are for blade files: a case says its own speeds and mounting"
         )
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-    known = [registry.code(name) for name in names]
+    blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+    known = describe(names, [v.blade for v in blades])
     files = [_added(text) for text in add]
-    user_results.check(files, [v for c in chosen if isinstance(c, Case) for v in c.variants], [c.name for c in known])
+    names_of.unique(chosen, known, files)
+    user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     plain = not (rpm or omega or changes or decks.mount != Mount())
     line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
@@ -109,20 +130,30 @@ def command(
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    path = _fresh(out)
-    results.append(path, run=about)
-    run, complete = _solve(chosen, names, files, about, path, workers or os.cpu_count() or 1, seeded)
-    if run.cells:
-        show(run, out)
-        if junit:
-            _junit(run, junit)
-    if not complete:
-        kept = (
-            f"the report has the {len(run.cells)} cells that were finished" if run.cells else "nothing was finished yet"
-        )
-        print(f"southwell: interrupted: {kept}", file=sys.stderr)
-        return INTERRUPTED
-    return summary.status(run)
+    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
+    with writing(out), _journal(out) as kept:
+        run, stopped = _solve(chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits)
+        try:
+            if run.cells:
+                show(run, out)
+                if junit:
+                    _junit(run, junit)
+        except OSError as error:
+            stopped = stopped or Stopped(_said(error), INCOMPLETE)
+        if not stopped:
+            kept.remove()
+            return summary.status(run)
+    told = f"{len(run.cells)} cells are kept" if run.cells else "nothing was finished yet"
+    print(f"southwell: {stopped.what}: {told}; {CONTINUE}", file=sys.stderr)
+    return stopped.status
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """Why a run came to no end, in words, and the status that says so."""
+
+    what: str
+    status: int
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
@@ -134,55 +165,64 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
 
 def _added(text: str) -> Added:
     name, equals, path = text.partition("=")
-    if not (equals and path and re.fullmatch(r"\w[\w .+-]*", name)):
+    if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
         raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
     return user_results.read(name, Path(path))
 
 
 def _solve(
     chosen: Sequence[Case | MechanismCase],
-    names: Sequence[str],
+    codes: Sequence[Description],
     files: Sequence[Added],
     about: Run,
-    path: Path,
+    kept: Journal,
+    out: Path,
     workers: int,
     seeded: Sequence[str],
-) -> tuple[Run, bool]:
-    """The run, and whether it is complete; rows go to ``path`` as they come, and in order once all are there."""
-    pool, watch = Pool(workers), console.Watch()
+    limits: Mapping[str, Any],
+) -> tuple[Run, Stopped | None]:
+    """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once."""
+    scratch = out / SCRATCH
+    shutil.rmtree(scratch, ignore_errors=True)  # a killed run's
+    pool, watch = Pool(workers, scratch.resolve()), console.Watch()
+    executor = Remembering(pool, kept)
+    lumped: list[Future[tuple[Level, ...]]] = []
+    tried: list[Future[list[Control]]] = []
 
-    def keep(step: matrix.Progress) -> None:
-        results.append(path, step.cells, step.levels)
-        watch.show(step)
+    def begin(plan: tuple[Planned, ...]) -> None:
+        kept.begin(replace(about, plan=plan))
+        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+        lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
+        tried.extend(executor.submit(table.run, part) for part in _shared_out(seeded, workers))
 
     try:
+        scratch.mkdir()
         with watch:
-            lumped = [
-                pool.submit(lumping.lumping, v.blade)
-                for c in chosen
-                if isinstance(c, Case)
-                for v in c.variants
-                if v.name == lumping.CASE
-            ]
-            tried = [pool.submit(table.run, part) for part in _shared_out(seeded, workers)]
-            done = matrix.run(chosen, names, pool, keep, added=files)
+            done = matrix.run(chosen, codes, executor, watch.show, added=files, on_plan=begin, **limits)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
+        controls = tuple(found[name] for name in seeded)
+        run = replace(done, levels=levels, controls=controls)
+        run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
+        if missing := results.gaps(run):
+            return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
+        results.write(out / RESULTS, run)
+        return run, None
     except KeyboardInterrupt:
-        return results.read(path), False
+        stopped = Stopped("interrupted", INTERRUPTED)
     except BrokenProcessPool:
-        lost = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
-        print(f"southwell: {lost}", file=sys.stderr)
-        return results.read(path), False
+        why = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
+        stopped = Stopped(why, INCOMPLETE)
+    except OSError as error:
+        stopped = Stopped(_said(error), INCOMPLETE)
     finally:
         pool.stop()
-    controls = tuple(found[name] for name in seeded)
-    run = replace(about, cells=done.cells, levels=levels, controls=controls, shares=done.shares, origins=done.origins)
-    ordered = path.with_suffix(".part")
-    ordered.unlink(missing_ok=True)
-    results.append(ordered, run.cells, run.levels, run)
-    ordered.replace(path)
-    return run, True
+        shutil.rmtree(scratch, ignore_errors=True)
+    return replace(journal.read(kept.path), unfinished=stopped.what), stopped
+
+
+def _said(error: OSError) -> str:
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
 def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
@@ -239,18 +279,15 @@ def everything() -> tuple[str, ...]:
     return (*(name for name in library.names() if name not in absent), *library.mechanisms())
 
 
-def _fresh(out: Path) -> Path:
+def _journal(out: Path) -> Journal:
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        path = out / RESULTS
-        path.write_bytes(b"")
+        return Journal(out)
     except OSError as error:
         raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
-    return path
 
 
 def _junit(run: Run, path: Path) -> None:
     try:
-        path.write_bytes(xml.render(run))
+        atomic.write(path, xml.render(run))
     except OSError as error:
         raise UsageError(f"--junit {path}: cannot be written ({error.strerror}): give another file") from error

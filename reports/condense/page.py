@@ -7,10 +7,14 @@ from pathlib import Path
 import numpy as np
 from tabulate import tabulate
 
+from ...cases.campbell.sweep import Named
 from ...cases.condense.condensed import Condensed, body, names
 from ...cases.condense.condensing import Condensation
 from ...cases.condense.example import EXACT_TARGET, TARGET, Drawn, Example, Speed, cantilever, differences, largest
+from ...cases.input import atomic
 from ...core.modes import Modes
+from ...core.regular_files import read_bytes
+from ..shared.certain import certain, relative, remarks
 from ..shared.style import house, save
 from ..shared.units import RAD_S, Units
 from .figure import stages
@@ -31,7 +35,7 @@ FORCES = ("axial", "along y", "along z", "torsion", "about y", "about z")
 def beside(folder: Path) -> str:
     """What ``southwell condense`` wrote into a report's folder, a heading lower; empty if nothing."""
     path = folder / FILE
-    return re.sub(r"^#", "##", path.read_text(encoding="utf-8"), flags=re.MULTILINE) if path.exists() else ""
+    return re.sub(r"^#", "##", read_bytes(path).decode(errors="replace"), flags=re.MULTILINE) if path.exists() else ""
 
 
 def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
@@ -45,7 +49,9 @@ def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
     figure = stages(drawn.bricks, drawn.cuts, drawn.segments, drawn.root, found.freedoms)
     save(figure, vector)
     with house():
-        figure.savefig(raster, dpi=DPI, metadata={"Software": "southwell"})
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
     return [vector, raster]
 
 
@@ -133,23 +139,43 @@ frame by its motion seen from the first; N/m, then N m/rad.
     )
     text += f"## Modes, {units.frequency}\n\n"
     text += _table(_modes(blade, found, units))
+    text += "".join(f"\n\n{line}" for line in _remarks(blade, found, units))
     return f"{text}\n\n`{command}`\n"
 
 
 def _modes(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[dict[str, str]]:
     rows = []
     for omega, modes in found:
-        for k, (name, f) in enumerate(zip(names(blade.segments, modes), modes.frequencies, strict=True), 1):
+        known = zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True)
+        for k, (name, f, sure) in enumerate(known, 1):
             speed = f"{omega * units.speeds:.6g}"
             rows.append(
                 {
                     f"speed, {units.speed}": speed,
                     "mode": f"{k}",
                     "name": name,
-                    "frequency": f"{f * units.frequencies:.7g}",
+                    "frequency": certain(float(f * units.frequencies), float(sure)),
+                    "± relative": relative(float(sure)),
                 }
             )
     return rows
+
+
+def _remarks(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[str]:
+    """How sure the modes are, and large steady strains."""
+    rows = [
+        Named(omega, k, name, float(f), float(sure), modes.strain)
+        for omega, modes in found
+        for k, (name, f, sure) in enumerate(
+            zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True), 1
+        )
+    ]
+    few = " Fewer than four segments do not tell." if len(blade.segments) < 4 else ""
+    return [
+        "± relative: of the number of segments, told from a half and a quarter of them. What the finite element model is "
+        f"worth, its mesh and its ties, is not in it.{few}",
+        *(f"{line}." for line in remarks(rows, None, units)),
+    ]
 
 
 def _segment(k: int, blade: Condensed) -> dict[str, str]:

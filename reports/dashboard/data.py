@@ -3,11 +3,12 @@
 import hashlib
 import re
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
-from ...references.protocol.registry import UnknownCodeError
+from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
 from ..shared.units import BY_KEY, Units
@@ -71,7 +72,13 @@ def first(run: Run, name: str) -> dict[str, Any]:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few lines, those of the report, without its markup."""
-    lines = [*evidence.first(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    lines = [
+        summary.incomplete(run),
+        *evidence.first(run),
+        witnesses.headline(run),
+        *witnesses.missing(run),
+        controls.headline(run),
+    ]
     return [line.replace("**", "") for line in lines if line]
 
 
@@ -225,10 +232,10 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
 
 def _known(name: str) -> dict[str, str]:
     """What the adapter says of itself; nothing of a code that is not known here, as in another's results."""
-    if name not in registry.names():
-        return {}
-    try:
-        code = registry.code(name)
-    except UnknownCodeError:
-        return {}
-    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint}
+    code = _described().get(name)
+    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint} if code else {}
+
+
+@lru_cache
+def _described() -> dict[str, Description]:
+    return {code.asked: code for code in describe(registry.names()) if not code.failure}

@@ -8,6 +8,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from ...cases.input import atomic
 from ...cases.judge.results import Run
 from ...cases.regression.history import History
 from ..shared import summary
@@ -23,6 +24,13 @@ SCRIPTS = {
 }
 """What a page of each kind needs; the last draws it."""
 
+POLICY = (
+    "default-src 'none'; script-src 'self' file:; style-src 'self' file:; img-src data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+"""What a browser may do with a page: run the scripts and use the style beside it (as ``file:`` where the site is opened from
+a disk), no other and none that stand in the page."""
+
 ASSETS = ("dashboard.css", *dict.fromkeys(name for names in SCRIPTS.values() for name in names))
 
 
@@ -35,7 +43,7 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     for name in ASSETS:
         text = files(__package__ or "").joinpath("templates", name).read_text(encoding="utf-8")
-        (folder / name).write_text(text, encoding="utf-8")
+        atomic.write(folder / name, text)
     starts = {name: "index.html" if k == 0 else f"run-{k + 1}/index.html" for k, name in enumerate(runs)}
     for k, (name, run) in enumerate(runs.items()):
         here = folder / f"run-{k + 1}" if k else folder
@@ -44,7 +52,7 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
         _run(run, name, here, {"up": up, "runs": links, "here": name, "past": history is not None})
     if history is not None:
         shared = {"up": "", "runs": starts, "here": "", "past": True}
-        (folder / "history.html").write_text(_page("history", "History", of_history(history), shared), encoding="utf-8")
+        atomic.write(folder / "history.html", _page("history", "History", of_history(history), shared))
     return folder / "index.html"
 
 
@@ -60,7 +68,7 @@ def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
     for case in summary.cases(run):
         pages[data.page(case)] = _page("case", f"{case} · {name}", data.of_case(run, case), shared)
     for path, text in pages.items():
-        (folder / path).write_text(text, encoding="utf-8")
+        atomic.write(folder / path, text)
 
 
 def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:
@@ -76,4 +84,4 @@ def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]
     for sign in "<>&\u2028\u2029":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
     template = environment.get_template("page.html.jinja")
-    return template.render(kind=kind, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)
+    return template.render(kind=kind, policy=POLICY, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)

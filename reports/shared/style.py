@@ -16,6 +16,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ...cases.input import atomic
+
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
@@ -116,7 +118,7 @@ def save(figure: Figure, path: Path) -> None:
     Raises:
         OSError: if the file cannot be written.
     """
-    path.write_text(svg(figure), encoding="utf-8", newline="\n")
+    atomic.write(path, svg(figure))
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
@@ -144,7 +146,7 @@ def beside(axes: Axes, labels: Sequence[tuple[float, str] | tuple[float, str, st
         labels: height, text, and colour if not that of ink.
         size: of the letters, points.
     """
-    figure = axes.get_figure(root=True)
+    figure = axes.figure.figure
     assert figure is not None
     points = axes.get_position().height * figure.get_figheight() * 72
     fractions = [float((axes.transScale + axes.transLimits).transform((axes.get_xlim()[1], y))[1]) for y, *_ in labels]

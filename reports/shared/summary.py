@@ -10,6 +10,7 @@ from typing import get_args
 from ...cases.judge.results import Cell, Run, Verdict
 from ...cases.judge.verdict import unsigned
 from ...cases.judge.witnesses import short
+from .statuses import FAILED, INCOMPLETE, PASSED
 
 SYMBOL: dict[Verdict, str] = {
     "pass": "✔",
@@ -48,13 +49,20 @@ def compared(cells: Iterable[Cell]) -> bool:
     return any(c.verdict in (*BAD, "pass", "known difference") for c in foreign)
 
 
+def incomplete(run: Run) -> str:
+    """What a reader must know before all else of a run that is not complete; empty if it is."""
+    return f"Incomplete: {run.unfinished}." if run.unfinished else ""
+
+
 def status(run: Run) -> int:
-    """Exit status: 0 if something was compared, nothing fails or is inconclusive, every blade is confirmed by as many groups
-    as required, and every seeded fault is detected; else 1.
+    """Exit status of a run, see ``statuses``: passed if something was compared, nothing fails or is inconclusive, every blade
+    is confirmed by as many groups as required, and every seeded fault is detected.
     """
+    if run.unfinished:
+        return INCOMPLETE
     blind = any(control.missed for control in run.controls)
     bad = any(c.verdict in BAD for c in run.cells)
-    return int(not compared(run.cells) or blind or bad or bool(short(run)))
+    return FAILED if not compared(run.cells) or blind or bad or short(run) else PASSED
 
 
 def gravest(cells: Iterable[Cell]) -> Verdict:

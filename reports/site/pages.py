@@ -104,7 +104,7 @@ def _facts(told: Setting) -> str:
 
 def codes(run: Run) -> Pages:
     """A page for each code, and an index."""
-    known = [registry.code(name) for name in registry.names()]
+    known = code_pages.described()
     out: Pages = {"codes/index.md": code_pages.index(run, known)}
     return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in known}
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ...cases.bench import cost as measure
+from ...cases.input import atomic
 from ...cases.judge import results
 from ...cases.judge.results import Cell, Run
 from ...cases.verify.lumping import CASE, OMEGA
@@ -166,9 +167,10 @@ def main() -> None:
     """Take the rows from a results file, if one is given, and the measurement beside it; write the README and its figure."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
-        ROWS.unlink(missing_ok=True)
-        kept = condense(results.read(path))
-        results.append(ROWS, kept.cells, run=kept)
+        run = results.read(path)
+        if run.unfinished:
+            sys.exit(f"{path}: {run.unfinished}: the tables are those of a complete run")
+        results.write(ROWS, condense(run))
         if (measured := path.with_name(bench.FILE)).exists():
             shutil.copyfile(measured, COST)
     with TemporaryDirectory() as folder:
@@ -176,7 +178,7 @@ def main() -> None:
         FIGURE.parent.mkdir(exist_ok=True)
         shutil.copyfile(Path(folder) / FIGURE.name, FIGURE)
     text = put(README.read_text(encoding="utf-8"), console(output), "command")
-    README.write_text(written(text), encoding="utf-8")
+    atomic.write(README, written(text))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from tabulate import tabulate
 
 from ...cases.bench import cost as measure
 from ...cases.bench.cost import COUNT, ELEMENTS, OMEGA, SWEEP, Bench, Growth, Timing
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..shared.console import output
 
@@ -53,7 +54,7 @@ def command(*, out: Path = Path("southwell-report")) -> int:
         found = measure.bench(lambda text: bar.update(task, description=text))
     measure.write(out / FILE, found)
     text = render(found)
-    (out / "bench.md").write_text(text, encoding="utf-8")
+    atomic.write(out / "bench.md", text)
     output().print(text, markup=False, soft_wrap=True)
     return 0
 

@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from ...cases.closed_forms.closed_forms import ClosedForm, differences
+from ...core.regular_files import read_bytes
 from ..shared.style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, house, title
 from ..shared.style import beside as labels
 
@@ -32,7 +33,7 @@ def beside(folder: Path) -> str:
     path = folder / PAGE
     if not path.exists():
         return ""
-    text = re.sub(r"\$\$.*?\$\$\n\n", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    text = re.sub(r"\$\$.*?\$\$\n\n", "", read_bytes(path).decode(errors="replace"), flags=re.DOTALL)
     return re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from ...cases.closed_forms.closed_forms import FORMS, ClosedForm
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ..shared.console import output
 from ..shared.markdown import plain, table
@@ -35,7 +36,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
     try:
         for path, text in _page(found).items():
             (out / path).parent.mkdir(parents=True, exist_ok=True)
-            (out / path).write_text(text, encoding="utf-8")
+            atomic.write(out / path, text)
     except OSError as error:
         raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()

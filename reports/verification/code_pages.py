@@ -3,18 +3,17 @@
 Numbers are those of a run; what it refuses is asked of its adapter; what it gets wrong is shown by running a reproducer.
 """
 
-import inspect
-import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...cases.conformance.blades import PROPERTIES
+from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run
 from ...references.defects import DEFECTS, Defect, shown
 from ...references.protocol import registry as registry
+from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import SYMBOL
@@ -35,15 +34,20 @@ def write(run: Run, folder: Path) -> Path:
     """
     pages = folder / FOLDER
     pages.mkdir(parents=True, exist_ok=True)
-    known = [registry.code(name) for name in registry.names()]
+    known = described()
     for code in known:
-        (pages / f"{code.name}.md").write_text(page(run, code), encoding="utf-8")
+        atomic.write(pages / f"{code.name}.md", page(run, code))
     path = pages / "index.md"
-    path.write_text(index(run, known), encoding="utf-8")
+    atomic.write(path, index(run, known))
     return path
 
 
-def index(run: Run, known: Sequence[Any]) -> str:
+def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
+    """Codes by name, all by default, with what each says to a rod with each property."""
+    return describe(registry.names() if names is None else names, [p.having for p in PROPERTIES])
+
+
+def index(run: Run, known: Sequence[Description]) -> str:
     """All codes: version, what each shares with core, its cells by verdict, its worst difference and where, defects."""
     rows = []
     for code in known:
@@ -65,7 +69,7 @@ def index(run: Run, known: Sequence[Any]) -> str:
     return f"# Codes\n\n{table(rows)}\n\nSigns: {signs}. Written by `southwell codes --pages` after `{run.command}`.\n"
 
 
-def page(run: Run, code: Any) -> str:
+def page(run: Run, code: Description) -> str:
     """One code's page."""
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
@@ -74,7 +78,7 @@ def page(run: Run, code: Any) -> str:
         lstrip_blocks=True,
     )
     environment.filters["plain"] = plain
-    levels = ", ".join(map(str, getattr(code, "levels", ())))
+    levels = ", ".join(map(str, code.levels))
     return environment.get_template("code.md.jinja").render(
         name=code.name,
         title=code.title,
@@ -82,10 +86,10 @@ def page(run: Run, code: Any) -> str:
         shares=code.shares,
         lacks=", ".join(code.model.lacks()) or "nothing",
         levels=f"from {levels} elements or terms on, of order {code.order or 'spectral'}" if levels else "",
-        how=(inspect.getdoc(sys.modules[type(code).__module__]) or "").replace("``", "`"),
+        how=code.page.replace("``", "`"),
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
         differences=differences(run, own(run, code.name)),
-        properties=properties(code) if hasattr(code, "solve") else "",
+        properties=properties(code) if code.refused else "",
         defects=[_defect(defect) for defect in defects(code.name)],
     )
 
@@ -100,12 +104,14 @@ def defects(name: str) -> list[Defect]:
     return [d for d in DEFECTS if name in d.codes]
 
 
-def version(run: Run, code: Any) -> str:
+def version(run: Run, code: Description) -> str:
     """The version that the run's numbers are of; else the one installed, or how to install it."""
     ran = run.versions.get(code.name)
     if ran and ran != "not installed":
         return ran
-    return code.version() or f"not installed: `{code.hint}`"
+    if code.failure:
+        return f"cannot be loaded: {code.failure.reason}"
+    return code.version or f"not installed: `{code.hint}`"
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
@@ -130,11 +136,10 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
     return table(rows) if rows else ""
 
 
-def properties(code: Any) -> str:
+def properties(code: Description) -> str:
     """What the adapter says to a rod with each property."""
     rows = []
-    for p in PROPERTIES:
-        why = code.unsupported(p.having)
+    for p, why in zip(PROPERTIES, code.refused, strict=True):
         answer = f"refused: {plain(why)}" if why else "taken"
         if not why and p.name in code.model.lacks():
             answer = "left out, as declared"

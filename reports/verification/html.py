@@ -1,15 +1,21 @@
 """A report as one HTML file that needs nothing else, and as a PDF; both from the Markdown, so that all say the same."""
 
 import re
+from base64 import b64encode
 from collections.abc import Sequence
+from hashlib import sha256
 from html import escape
 from itertools import pairwise
 from pathlib import Path
 from urllib.parse import quote
 
 from markdown_it import MarkdownIt
+from markdown_it.rules_block import StateBlock
+from markdown_it.rules_inline import StateInline
 from markdown_it.token import Token
 
+from ...cases.input import atomic
+from ...core.regular_files import read_bytes
 from ...references.protocol import install
 from ..shared.markdown import anchor
 from ..shared.summary import SYMBOL
@@ -52,6 +58,16 @@ pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size
 by a PDF's maker open."""
 
 
+POLICY = (
+    "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
+    f"style-src 'sha256-{b64encode(sha256(STYLE.encode()).digest()).decode()}'"
+)
+"""What a browser may do with the page: show figures that lie in it, and use this style, no other."""
+
+FOLD = re.compile(r"<details(?: open)?><summary>([^<>]*)</summary>|</details>")
+"""The only block of HTML in a report; everything else that looks like HTML is text."""
+
+
 class PdfError(RuntimeError):
     """No PDF can be made: says why, and the remedy."""
 
@@ -63,7 +79,7 @@ def write(report: Path) -> Path:
         OSError: if a figure cannot be read or the file cannot be written.
     """
     path = report.with_suffix(".html")
-    path.write_text(render(report.read_text(encoding="utf-8"), report.parent), encoding="utf-8")
+    atomic.write(path, render(report.read_text(encoding="utf-8"), report.parent))
     return path
 
 
@@ -81,16 +97,21 @@ def pdf(report: Path) -> Path:
             "report.html from a browser"
         ) from error
     path = report.with_suffix(".pdf")
-    HTML(string=render(report.read_text(encoding="utf-8"), report.parent)).write_pdf(path)
+    page = HTML(string=render(report.read_text(encoding="utf-8"), report.parent))
+    atomic.through(path, page.write_pdf)
     return path
 
 
 def render(text: str, folder: Path) -> str:
     """The Markdown of a report as a whole HTML page; figures are read from ``folder``."""
-    reader = MarkdownIt("commonmark", {"html": True}).enable("table")
+    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
+    reader.inline.ruler.before("text", "line_break", _line_break)
+    reader.block.ruler.before("paragraph", "fold", _fold, {"alt": ["paragraph"]})
     tokens = reader.parse(text)
     _anchors(tokens)
     for token in tokens:
+        if token.type in ("th_open", "td_open"):
+            token.attrs.pop("style", None)  # all are left-aligned, by STYLE
         for child in token.children or ():
             if child.type == "image":
                 _inline(child, folder)
@@ -103,9 +124,31 @@ def render(text: str, folder: Path) -> str:
     title = escape(found[1] if found else "Southwell")
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
     )
+
+
+def _line_break(state: StateInline, silent: bool) -> bool:
+    """The report's own ``<br>``, in a table's cells; what comes from results has its ``<`` escaped."""
+    if not state.src.startswith("<br>", state.pos):
+        return False
+    if not silent:
+        state.push("html_inline", "", 0).content = "<br>"
+    state.pos += len("<br>")
+    return True
+
+
+def _fold(state: StateBlock, first: int, last: int, silent: bool) -> bool:
+    """The report's own parts that open and close."""
+    line = state.src[state.bMarks[first] : state.eMarks[first]].rstrip()
+    if not FOLD.fullmatch(line):
+        return False
+    if not silent:
+        state.push("html_block", "", 0).content = f"{line}\n"
+        state.line = first + 1
+    return True
 
 
 def _anchors(tokens: Sequence[Token]) -> None:
@@ -120,7 +163,11 @@ def _anchors(tokens: Sequence[Token]) -> None:
 
 def _inline(image: Token, folder: Path) -> None:
     """A figure in the place of its address."""
-    svg = (folder / str(image.attrs["src"])).read_text(encoding="utf-8")
+    path = (folder / str(image.attrs["src"])).resolve()
+    if path.suffix != ".svg" or not path.is_relative_to(folder.resolve()):
+        image.attrSet("src", "data:,")  # its words are left
+        return
+    svg = read_bytes(path).decode("utf-8")
     svg = re.sub(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", "", svg, flags=re.S)
     image.attrSet("src", f"data:image/svg+xml,{quote(' '.join(svg.split()), safe=SAFE)}")
     image.attrSet("loading", "lazy")

@@ -1,6 +1,5 @@
 """The report of a run as GitHub-flavoured Markdown: verdict first, then a heat table, then case by case."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -9,11 +8,13 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
+from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.verify.lumping import CASE as LUMPED
 from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
+from ..shared.paths import file_name
 from ..shared.style import save
 from ..shared.summary import SYMBOL, amount, broad, column, columns
 from ..shared.units import BY_KEY, Units
@@ -52,7 +53,7 @@ def write(run: Run, folder: Path) -> Path:
     for case in summary.cases(run):
         for kind, draw in FIGURES.items():
             if figure := draw(run, case, units(run, case)):
-                name = f"{re.sub(r'[^A-Za-z0-9.-]+', '-', case)}-{kind}.svg"
+                name = f"{file_name(case)}-{kind}.svg"
                 save(figure, figures / name)
                 drawn.setdefault(case, []).append(f"figures/{name}")
     if figure := lumped.lumping(run):
@@ -63,7 +64,7 @@ def write(run: Run, folder: Path) -> Path:
         "condensed": page.beside(folder),
         "known": closed_forms_figure.beside(folder),
     }
-    path.write_text(render(run, drawn, **beside), encoding="utf-8")
+    atomic.write(path, render(run, drawn, **beside))
     return path
 
 
@@ -94,7 +95,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     return environment.get_template("report.md.jinja").render(
         headline=first(run),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[told for told in (witnesses.headline(run), controls.headline(run)) if told],
+        remarks=[plain(told) for told in (witnesses.headline(run), controls.headline(run)) if told],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -107,7 +108,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",
-        command=run.command,
+        command=" ".join(run.command.split()).replace("`", "'"),
         cost=cost,
         condensed=condensed,
         known=known,
@@ -120,7 +121,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first."""
-    lines = [evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
+    lines = [*_unfinished(run), evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
@@ -131,7 +132,11 @@ def headline(run: Run) -> list[str]:
 def first(run: Run) -> list[str]:
     """The answer, and after it what ``evidence`` names first, as text."""
     answer, *rest = evidence.first(run)
-    return [answer, *map(plain, rest)]
+    return [*_unfinished(run), answer, *map(plain, rest)]
+
+
+def _unfinished(run: Run) -> list[str]:
+    return [f"**{plain(told)}**"] if (told := summary.incomplete(run)) else []
 
 
 def unasked(run: Run) -> str:
@@ -163,7 +168,7 @@ def heat(run: Run, linked: bool = False) -> str:
         shown = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
         rows.append({"case": shown} | {plain(n): _heat([c for c in mine if broad(c) == n]) for n in names})
     if any(c.shares for c in run.cells):
-        shares = {plain(n): witnesses.shared([c for c in run.cells if broad(c) == n]) for n in names}
+        shares = {plain(n): plain(witnesses.shared([c for c in run.cells if broad(c) == n])) for n in names}
         rows.append({"case": "*shares with core*"} | shares)
     return table(rows)
 
@@ -246,7 +251,7 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
         core = next(
             (c.full for c in cells if names[c] == mode and c.full is not None and c.reference == c.full), full.get(mode)
         )
-        row = {"mode": mode, f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
         for name in columns(cells):
             mine = next((c for c in cells if column(c) == name and names[c] == mode), None)
             row[plain(name)] = _entry(mine, unit) if mine else ""
@@ -280,7 +285,7 @@ def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
             {
                 "verdict": f"{SYMBOL[verdict]} {verdict}",
                 "code": plain(name),
-                "mode": mode,
+                "mode": plain(mode),
                 "speed": where,
                 "reason": plain(reason),
             }

@@ -1,6 +1,5 @@
 """A run's matrix, its negative controls and a blade's frequencies as tables for the terminal."""
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 
@@ -10,8 +9,8 @@ from rich.table import Table
 
 from ...cases.campbell.sweep import Named
 from ...cases.judge.results import Cell, Run, Verdict
-from ...core.solve import LARGE_STRAIN
 from ..shared import summary
+from ..shared.certain import certain, relative
 from ..shared.summary import SYMBOL, broad, columns
 from ..shared.units import Units
 from . import controls as faults
@@ -34,12 +33,6 @@ NARROW = 10
 BETWEEN = 2
 """Characters between two columns."""
 
-RELATIVE = "± relative"
-"""Head of the column of uncertainties."""
-
-DIGITS = 7
-"""Of a frequency, at most."""
-
 
 def matrix(run: Run, width: int) -> Iterator[Table]:
     """Case × code: sign and largest difference; the gravest verdict of all modes and speeds.
@@ -54,15 +47,15 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         out.add_column("case", no_wrap=True)
         for name in part:
-            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name)
+            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", escape(name))
             out.add_column(head, overflow="fold", min_width=NARROW)
         for case, shown in zip(summary.cases(run), cases, strict=True):
             mine = [c for c in run.cells if c.case == case]
-            out.add_row(shown, *[_field([c for c in mine if broad(c) == name]) for name in part])
+            out.add_row(escape(shown), *[_field([c for c in mine if broad(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
             shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in part]
             out.add_section()
-            out.add_row("shares with core", *[share.replace(" ", "\n") for share in shares], style="dim")
+            out.add_row("shares with core", *[escape(share).replace(" ", "\n") for share in shares], style="dim")
         yield out
 
 
@@ -107,6 +100,13 @@ def _short(size: float, target: float) -> str:
     return text.replace("e-0", "e-")
 
 
+RELATIVE = "± relative"
+"""Head of the column of uncertainties."""
+
+DIGITS = 7
+"""Of a frequency, at most."""
+
+
 def frequencies(rows: Sequence[Named], title: str, units: Units, width: int) -> Iterator[Table]:
     """Modes × speeds, rows by name, in the order of the first speed, and the largest uncertainty of each.
 
@@ -131,35 +131,5 @@ def _frequencies(rows: Sequence[Named], title: str, units: Units, speeds: Sequen
         mine = [r for r in rows if r.name == name]
         at = {r.omega: certain(r.frequency * units.frequencies, r.uncertainty) for r in mine}
         sure = max(r.uncertainty for r in mine)
-        out.add_row(name, *[at.get(omega, "") for omega in speeds], f"{sure:.0e}" if math.isfinite(sure) else "unknown")
-    return out
-
-
-def certain(value: float, uncertainty: float) -> str:
-    """A positive number with the digits that a relative uncertainty leaves, ``DIGITS`` at most; ``?`` if it leaves none."""
-    if not uncertainty < 0.5:
-        return "?"
-    if value <= 0.0:
-        return f"{value:.{DIGITS}g}"
-    first = math.floor(math.log10(value))
-    last = max(math.ceil(math.log10(value * uncertainty)) if uncertainty > 0 else first, first - DIGITS + 1)
-    rounded = round(value, -last)
-    return f"{rounded:.{max(-last, 0)}f}"
-
-
-def remarks(rows: Sequence[Named], accuracy: float | None, units: Units) -> list[str]:
-    """What a reader of the frequencies must know: large steady strains, and an ``accuracy`` that was not reached."""
-    out = []
-    strained = {r.omega: r.strain for r in rows if r.strain > LARGE_STRAIN}
-    if strained:
-        omega, strain = max(strained.items(), key=lambda item: item[1])
-        out.append(
-            f"steady strain up to {strain:.1%} at {units.at(omega)}: above {LARGE_STRAIN:.0%}, check that linear elastic "
-            "sections describe the blade"
-        )
-    worst = max(rows, key=lambda r: r.uncertainty, default=None)
-    if worst and accuracy is not None and worst.uncertainty > accuracy:
-        out.append(
-            f"accuracy {accuracy:g} not reached: {worst.name} at {units.at(worst.omega)} is known to {worst.uncertainty:.0e}"
-        )
+        out.add_row(name, *[at.get(omega, "") for omega in speeds], relative(sure))
     return out

@@ -8,6 +8,7 @@ import numpy as np
 from cyclopts import Parameter
 from matplotlib.figure import Figure
 
+from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.judge.measured import COVERAGE, statement
 from ...cases.validation import comparison, sandia34
@@ -22,9 +23,8 @@ PAGE, FIGURE = "validation.md", "validation.svg"
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
     """Compare the model of a measured rotor with its measurements.
 
-    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotor is the Sandia 34 m vertical-axis test bed.
-    Writes validation.md and a Campbell diagram with the measured points. Takes several minutes. The status is 0 whatever the
-    comparison shows: a measurement is not a code.
+    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotor is the Sandia 34 m vertical-axis test bed. Writes validation.md and a Campbell diagram with the measured points.
+    Takes several minutes. The status is 0 whatever the comparison shows: a measurement is not a code.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
     try:
         out.mkdir(parents=True, exist_ok=True)
         for name, text in pages(model, points).items():
-            (out / name).write_text(text, encoding="utf-8")
+            atomic.write(out / name, text)
     except OSError as error:
         raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()

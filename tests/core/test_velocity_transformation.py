@@ -27,6 +27,7 @@ from southwell.core.multibody.joints import Joint
 from southwell.core.multibody.linearize import linearize
 from southwell.core.multibody.mechanism import Body, Load, Mechanism, MechanismError, Motion, inertia
 from southwell.core.space import spatial as sp
+from southwell.references.protocol.process import Limits
 from southwell.reports.cli import app as cli
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 
@@ -199,7 +200,7 @@ def test_a_load_in_axes_that_vibrate_is_refused() -> None:
 @pytest.mark.parametrize("name", BLADES)
 def test_the_column_is_there_for_every_blade_and_is_no_witness(name: str) -> None:
     case, variant = BLADES[name]
-    (column,) = (c for c in columns(case, variant, {}, 1.0) if c.name == OTHER_METHOD)
+    (column,) = (c for c in columns(case, variant, [], Limits()) if c.name == OTHER_METHOD)
     if name not in (
         "tip-mass",
         "articulated/both",

@@ -14,10 +14,10 @@ from southwell.cases.judge.results import Cell, Level
 from southwell.cases.verify.columns import Column, columns
 from southwell.cases.verify.reference import Reference, References, references
 from southwell.references.protocol import registry
+from southwell.references.protocol.description import describe
+from southwell.references.protocol.process import Limits
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
-
-TIMEOUT = 300.0
 
 CASES: dict[str, tuple[Case, Variant]] = {
     variant.name: (case, variant)
@@ -31,7 +31,7 @@ CASES: dict[str, tuple[Case, Variant]] = {
 @cache
 def plan(blade: str) -> dict[str, Column]:
     case, variant = CASES[blade]
-    return {c.name: c for c in columns(case, variant, {name: registry.code(name) for name in CODES}, TIMEOUT)}
+    return {c.name: c for c in columns(case, variant, describe(tuple(CODES), [variant.blade]), Limits())}
 
 
 @cache

@@ -47,8 +47,9 @@ class Can:
 
 CODES = {
     "exudyn-ancf": Can(taper=False, unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
-    "exudyn-tree": Can(sheared=True),
+    "exudyn-tree": Can(coupled=True, hinged=True, sheared=True, curved=True),
     "scikit-fem": Can(hinged=True),
+    "scikit-fem-reissner": Can(coupled=True, hinged=True, sheared=True, curved=True),
     "pinocchio": Can(twin=True, coupled=True, sheared=True, curved=True),
     "drake": Can(twin=True, coupled=True, sheared=True, curved=True),
     "mujoco": Can(twin=True, coupled=True, sheared=True, curved=True),

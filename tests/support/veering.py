@@ -29,6 +29,6 @@ def oscillators(coupling: float, calls: list[float] | None = None) -> Callable[[
         for k in range(2):
             shapes[k, :, 2], shapes[k, :, 1] = vectors[0, k] * sine, vectors[1, k] * sine * np.exp(0.3j)
         shapes[2, :, 2] = np.sin(1.5 * np.pi * STATIONS)
-        return Modes(omega, np.sqrt([*squares, 900.0 + 3.0 * omega**2]), shapes, 10)
+        return Modes(omega, np.sqrt([*squares, 900.0 + 3.0 * omega**2]), shapes, 10, uncertainty=np.zeros(3))
 
     return solve

@@ -15,7 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from ....core.blade import Blade
+from .. import files
 from ..errors import CaseError
+from ..names import LONGEST, named
 from .source import Mount, Reading, Source, Unused
 
 __all__ = ["FORMATS", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
@@ -42,7 +44,8 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     Raises:
         CaseError: one line with file and line, value, likely cause and remedy.
     """
-    found = recognise(path)(path, mount)
+    with files.reading(path, *([mount.main] if mount and mount.main else [])):
+        found = recognise(path)(path, mount)
     if mount is not None:
         for option, given, format in (
             ("multipliers", mount.multipliers, "ElastoDyn"),
@@ -51,6 +54,15 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         ):
             if given is not None and found.source.format != format:
                 raise CaseError(f"{path}: {option}: {found.source.format} has none, {format} has: leave it out")
+    if not named(found.blade.name):
+        raise CaseError(
+            f"{path}: name: {found.blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters"
+        )
+    for what, angle, most in (("precone", found.blade.precone, 90.0), ("pitch", found.blade.pitch, 180.0)):
+        if abs(np.degrees(angle)) > most:
+            raise CaseError(
+                f"{path}: {what}: {np.degrees(angle):.6g} degrees: beyond ±{most:g}: another unit? correct it"
+            )
     if np.abs(found.blade.twist).max() > np.pi:
         k = int(np.abs(found.blade.twist).argmax())
         raise CaseError(

@@ -6,6 +6,7 @@ FAST 7's .fst holds the turbine itself and is an ElastoDyn main file here.
 Source: OpenFAST documentation, *glue code input files*.
 """
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +50,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
 def _file(text: Text, name: str) -> Path:
     named = keys(text)
     path = text.path.parent / word(text, named, name, name.rstrip("1")).replace("\\", "/")
-    if not path.is_file():
+    if not os.path.isfile(path):  # False also where the name itself is impossible
         line = named[name.lower() if name.lower() in named else name.rstrip("1").lower()][0]
         raise CaseError(f"{text.at(line)}: {name}: {path}: no such file: correct the name, or put the file there")
     return path

@@ -80,8 +80,14 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     found.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
+    stiffness, mass = _stiffness(found), _mass(found)
     if htc is not None and body is not None:
-        stations, curve, twist = hawc2_htc.half_chords(body, r)
+        stations, curve, twist, at, (bent, turned) = hawc2_htc.half_chords(body, r)
+        stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
+        notes.append(
+            f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
+            f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(turned):.1g}°"
+        )
         notes.append(
             "sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way"
         )
@@ -95,8 +101,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         blade = Blade(
             name=path.stem,
             stations=stations,
-            stiffness=_stiffness(found),
-            mass=_mass(found),
+            stiffness=stiffness,
+            mass=mass,
             twist=twist,
             hub_radius=settled.hub_radius or 0.0,
             curve=curve,
@@ -107,6 +113,13 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(f"{text.path}: {error}") from error
     left = hawc2_htc.left(body) if body is not None else ()
     return Reading(blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), left))
+
+
+def _between(r: Array, values: Array, at: Array) -> Array:
+    """Sections (n, 6, 6) at more places than the r that they are given at, linear between, as ``core`` has them."""
+    k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)
+    t = np.clip((at - r[k]) / (r[k + 1] - r[k]), 0.0, 1.0)[:, None, None]
+    return (1.0 - t) * values[k] + t * values[k + 1]
 
 
 def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:

@@ -5,6 +5,7 @@ folder, which is the htc's or the one above. c2_def is x, y, z and twist in degr
 the half-chord line may lie beside the blade's axis; between them Akima splines in z.
 """
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
+from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 from ..errors import CaseError
 from .source import Unused, unused
@@ -26,7 +27,16 @@ FINE = 2001
 LENGTHS = 5e-3
 """How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
 
+SAME = 1e-6
+"""Of the length: a section of c2_def so near to a station is that station."""
+
 _DEEP = 10
+
+MOST_FILES = 100
+"""That ``continue_in_file`` leads to, each as often as it is named."""
+
+MOST_LINES = 200_000
+"""Of all of them together."""
 
 _BODIES = re.compile(r"\s*begin\s+(new_htc_structure|main_body)\b", re.IGNORECASE)
 
@@ -48,11 +58,17 @@ Body = list[Command]
 
 
 class HalfChords(NamedTuple):
-    """The half-chord line at stations: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes."""
+    """The half-chord line at the stations of both files: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes.
+
+    ``at`` (n,) are the same stations in the structural file's r. ``strays`` says how far (m, rad) the line strays from c2_def
+    between the stations, where the one is a spline of its own and the other Akima's.
+    """
 
     s: Array
     curve: Array
     twist: Array
+    at: Array
+    strays: tuple[float, float]
 
 
 def is_one(text: Text) -> bool:
@@ -68,7 +84,7 @@ def blade_body(htc: Text) -> Body:
     """
     body: Body = []
     inside = False
-    for command in _commands(htc, htc.path, 0):
+    for command in _commands(htc, htc.path, 0, []):
         low = [w.lower() for w in command.words]
         if low[:2] == ["begin", "main_body"]:
             body, inside = [], True
@@ -123,7 +139,7 @@ def left(body: Body) -> tuple[Unused, ...]:
 
 
 def half_chords(body: Body, r: Array) -> HalfChords:
-    """The half-chord line at stations ``r`` (n,) m of a structural file.
+    """The half-chord line at the stations ``r`` m of a structural file and at the sections of c2_def.
 
     Raises:
         CaseError: naming the line of the section at fault.
@@ -154,8 +170,15 @@ def half_chords(body: Body, r: Array) -> HalfChords:
             f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: are they of the same blade?"
         )
     s = r * (arc[-1] / r[-1])
+    own = np.interp(c2[:, 2], z, arc)
+    apart = np.abs(own[:, None] - s).min(axis=1)
+    s = np.union1d(s, own[apart > SAME * arc[-1]])
     at = spline(np.interp(s, arc, z))
-    return HalfChords(s, at[:, [2, 0, 1]], np.radians(at[:, 3]))
+    curve, twist = at[:, [2, 0, 1]], np.radians(at[:, 3])
+    fine = spline(z)
+    bent = np.linalg.norm(CubicSpline(s, curve)(arc) - fine[:, [2, 0, 1]], axis=1).max()
+    turned = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
+    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(turned)))
 
 
 def _section(command: Command) -> list[float]:
@@ -165,7 +188,9 @@ def _section(command: Command) -> list[float]:
     return [float(v) for v in values if v is not None]
 
 
-def _commands(text: Text, main: Path, depth: int) -> Iterator[Command]:
+def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterator[Command]:
+    """The commands of a file and of those it goes on in; ``lengths`` gains the number of lines of each."""
+    lengths.append(len(text.lines))
     for k, line in enumerate(text.lines):
         words = line.partition(";")[0].split()
         if not words:
@@ -177,8 +202,13 @@ def _commands(text: Text, main: Path, depth: int) -> Iterator[Command]:
             yield command
         elif depth == _DEEP:
             raise CaseError(f"{command.at}: continue_in_file: the {depth}th within each other: does one name itself?")
+        elif len(lengths) > MOST_FILES or sum(lengths) > MOST_LINES:
+            raise CaseError(
+                f"{command.at}: continue_in_file: {len(lengths)} files, {sum(lengths)} lines: at most {MOST_FILES} files and "
+                f"{MOST_LINES} lines are read: do they name each other?"
+            )
         else:
-            yield from _commands(load(_near(main, command)), main, depth + 1)
+            yield from _commands(load(_near(main, command)), main, depth + 1, lengths)
 
 
 def _near(main: Path, command: Command) -> Path:
@@ -188,6 +218,6 @@ def _near(main: Path, command: Command) -> Path:
         raise CaseError(f"{command.at}: {what}: no name: add it")
     given = Path(names[0].replace("\\", "/"))
     for folder, name in ((main.parent, given), (main.parent.parent, given), (main.parent, Path(given.name))):
-        if (folder / name).is_file():
+        if os.path.isfile(folder / name):
             return folder / name
     raise CaseError(f"{command.at}: {what}: {names[0]}: not found from the htc's folder or the one above: put it there")

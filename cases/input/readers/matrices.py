@@ -73,12 +73,17 @@ def fault(matrix: Array) -> str | None:
     if (d <= 0).any():
         i = int(np.argmax(d <= 0))
         return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
-    scaled = matrix / np.sqrt(np.outer(d, d))
+    scale = np.sqrt(d)
+    scaled = matrix / scale[:, None] / scale  # np.outer(d, d) may underflow
     i, j = np.unravel_index(np.abs(scaled - scaled.T).argmax(), (6, 6))
     if abs(scaled[i, j] - scaled[j, i]) > 1e-3:
         return (
             f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
             "it must be symmetric; a digit lost? correct one"
+        )
+    if not np.isfinite(scaled).all():
+        return (
+            "not positive definite: a diagonal entry is far too small for its row: a slip in the exponent? correct it"
         )
     least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
     if least <= 0:

@@ -4,6 +4,7 @@ Axes are ours throughout (``core.blade``): twist and pitch turn y towards z, the
 """
 
 import os
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -14,6 +15,7 @@ from msgspec.structs import replace as changed
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError
+from .. import files
 from ..errors import CaseError, FilesMissingError
 from .source import LONGEST, Unused
 
@@ -61,9 +63,11 @@ class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
 class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How a blade sits on its hub and what is at its tip; what is not given is as its file says, else 0 and clamped."""
 
-    precone_deg: Annotated[float | None, Meta(description="towards +z (downwind), degrees")] = None
+    precone_deg: Annotated[
+        Annotated[float, Meta(ge=-90, le=90)] | None, Meta(description="towards +z (downwind), degrees")
+    ] = None
     pitch_deg: Annotated[
-        float | None,
+        Annotated[float, Meta(ge=-180, le=180)] | None,
         Meta(description="y towards z (leading edge downwind): OpenFAST's BlPitch has the other sign; degrees"),
     ] = None
     root: Annotated[
@@ -200,7 +204,9 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
             multipliers=self.multipliers,
             offsets=self.offsets,
         )
-        found = reading(self._path(name, folder), mount)
+        named = os.environ.get(self.files) if self.files else None
+        with files.reading_also(Path(named)) if named else nullcontext():
+            found = reading(self._path(name, folder), mount)
         return self.mounted(replace(found.blade, name=name)), found.source.unused
 
     def blade(self, name: str, folder: Path) -> Blade:
@@ -211,7 +217,7 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         if self.files is None:
             return folder / self.file
         named = os.environ.get(self.files)
-        if named and (path := Path(named) / self.file).is_file():
+        if named and os.path.isfile(path := Path(named) / self.file):
             return path
         found = f"not in {self.files}={named}" if named else f"{self.files} is not set"
         raise FilesMissingError(

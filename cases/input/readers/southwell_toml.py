@@ -11,8 +11,10 @@ import msgspec
 from msgspec import Meta, Struct
 
 from ....core.blade import Blade
+from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
+from ..names import Name
 from ..toml import convert, document, finite
 from .sections import describe
 from .source import Mount, Reading, Source
@@ -24,7 +26,7 @@ AXES = "ours: x along the blade, z the rotor's axis, y the direction of motion; 
 class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A blade file."""
 
-    name: Annotated[str, Meta(min_length=1, description="what to call it")]
+    name: Name
     blade: BladeData
     title: Annotated[str, Meta(description="one line")] = ""
     source: Annotated[str, Meta(description="where the data come from")] = ""
@@ -81,7 +83,7 @@ def write(blade: Blade, path: Path) -> None:
     lines += [f"{key} = {_toml(value)}" for key, value in data.items() if value is not None and key not in tables]
     for name, table in tables.items():
         lines += ["", f"[blade.{name}]", *(f"{k} = {_toml(v)}" for k, v in table.items() if v is not None)]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    atomic.write(path, "\n".join(lines) + "\n")
 
 
 def _toml(value: object) -> str:

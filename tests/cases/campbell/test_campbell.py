@@ -36,7 +36,7 @@ def southwell(omega: float) -> Modes:
     shapes[0, :, 2] = shapes[1, :, 1] = STATIONS**2
     squares = np.array([4.0 + 1.5 * omega**2, 9.0 + 0.5 * omega**2])
     order = np.argsort(squares)
-    return Modes(omega, np.sqrt(squares[order]), shapes[order], 10)
+    return Modes(omega, np.sqrt(squares[order]), shapes[order], 10, uncertainty=np.zeros(2))
 
 
 def diagram(**changes: object) -> Campbell:
@@ -269,7 +269,7 @@ def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
     modes_ = page["Modes"].rows
     assert modes_[2][0] == "flap 2"
     assert float(modes_[2][2]) == pytest.approx(30.0 / (2 * np.pi), abs=5e-5)
-    assert modes_[2][5:] == ("3", "< 0.0001 %")
+    assert modes_[2][6:] == ("3.000", "< 0.0001 %")
     (met,) = page["Modes that meet"].rows
     assert met[0] == "veering"
     assert float(met[1]) == pytest.approx(np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi, abs=1e-3)
@@ -284,7 +284,7 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
         shapes = np.zeros((2, 21, 4), complex)
         shapes[0, :, 2] = STATIONS
         shapes[1, :, 1 if omega < 1.2 else 0] = STATIONS
-        return Modes(omega, np.array([5.0, 9.0]), shapes, 10)
+        return Modes(omega, np.array([5.0, 9.0]), shapes, 10, uncertainty=np.zeros(2))
 
     found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
     told = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)

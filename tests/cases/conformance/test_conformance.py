@@ -99,6 +99,16 @@ def straightened(blade: Blade) -> Blade:
     return replace(blade, curve=np.outer(blade.stations, [1.0, 0.0, 0.0]))
 
 
+def rounded(blade: Blade) -> Blade:
+    """The right angle between two pieces as a quarter of a circle as long."""
+    if not blade.kinks:
+        return blade
+    s, radius = np.linspace(0.0, blade.length, 13), blade.length / (np.pi / 2)
+    curve = radius * np.stack([np.sin(s / radius), 1.0 - np.cos(s / radius), 0.0 * s], axis=1)
+    same = {name: np.repeat(getattr(blade, name)[:1], 13, axis=0) for name in ("stiffness", "mass", "twist")}
+    return replace(blade, stations=s, curve=curve, kinks=(), **same)
+
+
 def rigid_in_shear(blade: Blade) -> Blade:
     stiffness = blade.stiffness.copy()
     stiffness[:, [1, 2], [1, 2]] = np.inf
@@ -154,6 +164,7 @@ MISTAKES: dict[str, tuple[Core, set[str]]] = {
     ),
     "mass on the axis": (Core(given=masses(diagonal)), {"keeps mass off the axis"}),
     "curve dropped": (Core(given=straightened), {"keeps sweep", "keeps prebend"}),
+    "a corner rounded off": (Core(given=rounded), {"kink"}),
     "shear dropped": (Core(given=rigid_in_shear), {"shear", "keeps shear flexibility"}),
     "rotary inertia dropped": (
         Core(given=masses(lambda m: m * np.diag([1, 1, 1, 0, 0, 0]))),

@@ -15,6 +15,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import results, verdict
 from southwell.cases.judge.results import Control, Run
 from southwell.cases.verify import cells
+from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
 from southwell.reports.verification import controls as told
 
@@ -72,7 +73,7 @@ def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPat
 
 
 def test_what_needs_a_code_that_is_absent_is_not_run_and_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(seeding, "version_of", lambda code: ("", ""))
+    monkeypatch.setattr(seeding, "known", lambda trial: tuple(Description(name, name) for name in trial.codes))
     (control,) = table.run(["no hub radius"])
     assert (control.needs, control.missed) == ("exact-beam", False)
 
@@ -125,5 +126,5 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
     one = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), change=None)))
-    results.append(tmp_path / "results.jsonl", one.cells, (), one)
+    results.write(tmp_path / "results.jsonl", one)
     assert results.read(tmp_path / "results.jsonl") == one

@@ -1,5 +1,6 @@
 """Files as editors, spreadsheets and downloads leave them: the same content, or one line that says why not."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -116,9 +117,9 @@ def test_a_file_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.Monkey
     path = tmp_path / "blade.toml"
     path.write_text("x = 1\n")
 
-    def refuse(_: Path) -> bytes:
+    def refuse(*_: object) -> int:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)
+    monkeypatch.setattr(os, "open", refuse)
     with pytest.raises(CaseError, match=r"blade.toml: cannot be read \(Permission denied\)"):
         toml.document(path)

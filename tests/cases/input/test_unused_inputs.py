@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from southwell.cases.input import readers
+from southwell.cases.input import library, readers
 from southwell.cases.input.readers import Mount
 from southwell.cases.judge import results
 from southwell.cases.verify.settings import NOT_USED
@@ -47,6 +47,24 @@ def test_they_are_found_each_once(file: str) -> None:
     left = readers.reading(DATA / file).source.unused
     assert {u.name: (u.largest, u.unit) for u in left} == EXPECTED[file]
     assert len(left) == len(EXPECTED[file])
+
+
+@pytest.mark.parametrize(
+    ("case", "variant", "name", "switch"),
+    [
+        ("windpact-1.5", "centred", "cg_edge", "centred = true"),
+        ("park-blade", "surrogate-untwisted", "twist", "twisted = false"),
+    ],
+)
+def test_what_a_switch_leaves_out_of_a_table_is_said(case: str, variant: str, name: str, switch: str) -> None:
+    for found in library.load(case).variants:
+        left = {u.name: u for u in found.unused}
+        if found.name == f"{case}/{variant}":
+            assert set(left) == {name}
+            assert switch in left[name].why
+            assert left[name].largest
+        else:
+            assert name not in left
 
 
 def test_a_teeter_hinge_is_said_to_be_clamped() -> None:

@@ -12,6 +12,7 @@ from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.regression import gate, history
 from southwell.cases.regression.gate import compare
+from southwell.cases.verify import journal
 from southwell.reports.ci import gate_text, junit
 
 from ...reports.cli.test_cli import southwell
@@ -207,12 +208,12 @@ def test_a_summary_s_tables_are_cut_and_say_so() -> None:
 def folders(tmp_path: Path) -> Callable[[str], str]:
     for name, run in {"before": BEFORE, "after": BAD}.items():
         (tmp_path / name).mkdir()
-        results.append(tmp_path / name / "results.jsonl", run.cells, run=run)
+        results.write(tmp_path / name / "results.jsonl", run)
     moved = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
-    results.append(tmp_path / "moved.jsonl", moved.cells, run=moved)
+    results.write(tmp_path / "moved.jsonl", moved)
     more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
-    results.append(tmp_path / "two.jsonl", more.cells, run=more)
-    results.append(tmp_path / "one.jsonl", BEAM, run=BEFORE)
+    results.write(tmp_path / "two.jsonl", more)
+    results.write(tmp_path / "one.jsonl", replace(BEFORE, cells=BEAM))
     for commit in ("good1", "bad2"):
         run = BEFORE if commit == "good1" else BAD
         history.append(tmp_path / "history.jsonl", history.entry(run, commit))
@@ -283,3 +284,40 @@ def test_verify_writes_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     root = ElementTree.parse(file)
     assert status == 0
     assert len(root.findall(".//testcase")) == len(run.cells) > 0
+
+
+@pytest.mark.parametrize("strict", ["", "--strict"])
+def test_an_incomplete_run_does_not_pass(
+    folders, tmp_path: Path, capsys: pytest.CaptureFixture[str], strict: str
+) -> None:
+    """Every cell that is there is as it was; the last line is missing."""
+    (tmp_path / "cut.jsonl").write_bytes(
+        (tmp_path / "before" / "results.jsonl").read_bytes().rpartition(b'{"kind":"end"')[0]
+    )
+    status, out, _ = southwell(
+        folders(f"gate {{0}}/cut.jsonl --against {{0}}/before --junit {{0}}/j.xml {strict}"), capsys
+    )
+    assert status == 3
+    assert out.startswith("Incomplete: the file does not end with the completion record of its run.\n")
+    suite = ElementTree.parse(tmp_path / "j.xml").getroot()[0]
+    assert (suite.get("errors"), suite.get("failures")) == ("1", "0")
+    assert "Incomplete: " in (suite[0][0].get("message") or "")
+    status, out, _ = southwell(folders(f"dashboard {{0}}/cut.jsonl --out {tmp_path / 'site'}"), capsys)
+    assert (status, out.splitlines()[0].startswith("cut.jsonl: Incomplete: ")) == (3, True)
+    assert "Incomplete: " in (tmp_path / "site" / "index.html").read_text()
+
+
+def test_a_folder_with_a_journal_has_no_finished_run(
+    folders, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An earlier complete run lies in the folder, and a later one was killed in it."""
+    with journal.Journal(tmp_path / "before") as one:
+        one.begin(BEFORE)
+        one.put("x", (list(BEFORE.cells), []))
+    status, out, _ = southwell(folders("gate {0}/before"), capsys)
+    assert (status, out.splitlines()[0]) == (3, "Incomplete: the run was stopped before its results were written.")
+    earlier = (tmp_path / "before" / "results.jsonl").read_bytes()
+    assert southwell(folders("report {0}/before"), capsys)[0] == 3
+    assert (tmp_path / "before" / "results.jsonl").read_bytes() == earlier
+    assert not (tmp_path / "before" / "report.md").exists()
+    assert southwell(folders("gate {0}/before/results.jsonl"), capsys)[0] == 0

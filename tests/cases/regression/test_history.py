@@ -68,7 +68,7 @@ for k in range(int(times)):
 
 def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     # some 150 KB: more than a pipe or a block of a disk takes at once
-    cells = tuple(replace(CELL, mode=k, frequency=1 / (k + 3)) for k in range(1500))
+    cells = tuple(replace(CELL, mode=k, frequency=1 / (k + 3)) for k in range(1, 1501))
     source = tmp_path / "source.jsonl"
     history.append(source, history.entry(replace(RUN, cells=cells), "source", "a machine", MADE))
     assert source.stat().st_size > 100_000
@@ -127,7 +127,7 @@ def test_another_file_is_refused(tmp_path: Path, text: str, told: str) -> None:
 
 
 def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.append(tmp_path / "results.jsonl", RUN.cells, run=RUN)
+    results.write(tmp_path / "results.jsonl", RUN)
     file = tmp_path / "history.jsonl"
     for where in (tmp_path, tmp_path / "results.jsonl"):  # the folder, or the file in it
         line = f"history add {where} --history {file} --commit abc --machine quiet"
@@ -144,7 +144,7 @@ def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch) -> None:
-    results.append(tmp_path / "results.jsonl", RUN.cells, run=RUN)
+    results.write(tmp_path / "results.jsonl", RUN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     status, _, err = southwell("history add . --history history.jsonl", capsys)
@@ -156,7 +156,6 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
     ("line", "told"),
     [
         ("history add {0} --history {0}/h.jsonl", "results.jsonl: cannot be read (No such file"),
-        ("history add {0}/empty --history {0}/h.jsonl", "no results in it"),
         ("history add {0}/good --history {0}/none/h.jsonl --commit a", "--history .*cannot be written"),
         ("history list {0}/none", "cannot be read"),
         ("history list {0}/good", "not a run"),
@@ -164,11 +163,27 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
 )
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
     (tmp_path / "empty").write_bytes(b"")
-    results.append(tmp_path / "good", RUN.cells, run=RUN)
+    results.write(tmp_path / "good", RUN)
     status, _, err = southwell(line.format(tmp_path), capsys)
     assert status == 2
     assert err.count("\n") == 1
     assert re.search(told.replace("(", r"\("), err)
+
+
+ADD, GATE = "history add {0}/cut --history {0}/h.jsonl --commit a", "gate {0}/good --against {0}/cut"
+
+
+@pytest.mark.parametrize(("line", "lines"), [(ADD, 0), (ADD, 2), (ADD, -1), (GATE, 2), (GATE, -1)])
+def test_an_incomplete_run_is_not_what_others_are_compared_with(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, lines: int
+) -> None:
+    results.write(tmp_path / "good", RUN)
+    whole = (tmp_path / "good").read_bytes().splitlines(keepends=True)
+    (tmp_path / "cut").write_bytes(b"".join(whole[:lines]))
+    status, out, err = southwell(line.format(tmp_path), capsys)
+    assert (status, out, err.count("\n")) == (3, "", 1)
+    assert err.startswith(f"southwell: {tmp_path / 'cut'}: incomplete: ")
+    assert not (tmp_path / "h.jsonl").exists()
 
 
 def test_a_writer_waits_for_its_turn(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from southwell.core.element.discretize import Mass
 from southwell.core.element.measures import Measure
 from southwell.core.modes import Modes
 from southwell.references import published
-from southwell.references.protocol.worker import Failure
+from southwell.references.protocol.process import Failure
 from southwell.reports.shared import summary
 from southwell.reports.verification import evidence, terminal
 from southwell.reports.verification import report as matrix_report

@@ -1,5 +1,6 @@
 """Mechanisms in the matrix: every code and closed form at every speed, pairing by shape, damping judged, faults told."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,9 +15,10 @@ from southwell.cases.verify.cells import Head
 from southwell.cases.verify.columns import columns as blade_columns
 from southwell.cases.verify.mechanism_columns import cells
 from southwell.core.effects import FULL
-from southwell.references.protocol import mechanism_worker, registry
+from southwell.references.protocol import boundary, mechanism_worker, registry, wire
+from southwell.references.protocol.description import describe
 from southwell.references.protocol.mechanism_interface import MechanismModes
-from southwell.references.protocol.worker import Failure
+from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
 
@@ -26,10 +28,10 @@ TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
 
 def rows(name: str, column: str) -> list:
     case = mechanism_case.case(library.mechanism(name))
-    known = {n: registry.code(n) for n in registry.FOR_MECHANISMS}
+    known = describe(tuple(registry.FOR_MECHANISMS))
     (turning,) = case.variants
     core = mechanism_columns.references(turning)[FULL]
-    (one,) = (c for c in mechanism_columns.columns(case, known, 60.0) if c.name == column)
+    (one,) = (c for c in mechanism_columns.columns(case, known, Limits(60.0)) if c.name == column)
     return one(turning.speeds.tolist(), core)[0]
 
 
@@ -107,37 +109,35 @@ def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
 
 def test_codes_for_blades_have_no_column_unless_there_is_no_other() -> None:
     case = mechanism_case.case(library.mechanism("hinged-blade"))
-    both = {n: registry.code(n) for n in ("southwell-equation", "exudyn-loops")}
-    assert [c.name for c in mechanism_columns.columns(case, both, 1.0)] == ["exudyn-loops", "closed form"]
-    alone = mechanism_columns.columns(case, {"southwell-equation": both["southwell-equation"]}, 1.0)
+    both = describe(("southwell-equation", "exudyn-loops"))
+    assert [c.name for c in mechanism_columns.columns(case, both, Limits(1.0))] == ["exudyn-loops", "closed form"]
+    alone = mechanism_columns.columns(case, both[:1], Limits(1.0))
     (cell,) = alone[0]([10.0], [reference()])[0]
     assert (cell.verdict, cell.reason) == ("not applicable", "it takes blades, not mechanisms")
 
 
 def test_codes_for_mechanisms_have_no_column_of_a_blade_unless_there_is_no_other() -> None:
     case = library.load("wright-flapwise")
-    both = {n: registry.code(n) for n in ("southwell-equation", "exudyn-loops")}
-    assert "exudyn-loops" not in [c.name for c in blade_columns(case, case.variants[0], both, 1.0)]
-    alone = blade_columns(case, case.variants[0], {"exudyn-loops": both["exudyn-loops"]}, 1.0)
+    both = describe(("southwell-equation", "exudyn-loops"))
+    assert "exudyn-loops" not in [c.name for c in blade_columns(case, case.variants[0], both, Limits(1.0))]
+    alone = blade_columns(case, case.variants[0], both[1:], Limits(1.0))
     (cell,) = next(c for c in alone if c.name == "exudyn-loops").work([(1.0, None)])[0]
     assert (cell.verdict, cell.reason) == ("not applicable", "it takes mechanisms, not blades")
 
 
 def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
     m = library.mechanism("pitch-link").mechanism
-    request = mechanism_worker.Request("code", {"flap.rz": 0.1}, [m])
-    back = mechanism_worker.decode(mechanism_worker.encode(request).decode(), mechanism_worker.Request)
+    request = mechanism_worker.Request("code", None, {"flap.rz": 0.1}, [m])
+    back = mechanism_worker.decode(json.loads(mechanism_worker.encode(request)))
     for ours, theirs in zip(m.bodies, back.mechanisms[0].bodies, strict=True):
         np.testing.assert_array_equal(ours.inertia, theirs.inertia)
     for ours, theirs in zip(m.joints, back.mechanisms[0].joints, strict=True):
         np.testing.assert_array_equal(ours.at_parent, theirs.at_parent)
         assert (ours.name, ours.kind, ours.cut) == (theirs.name, theirs.kind, theirs.cut)
     modes = reference().modes
-    again = mechanism_worker.decode(
-        mechanism_worker.encode(mechanism_worker.Reply(modes)).decode(), mechanism_worker.Reply
-    )
-    np.testing.assert_array_equal(again.modes.shapes, modes.shapes)
-    np.testing.assert_array_equal(again.modes.values, modes.values)
+    again = boundary.mechanism_modes(json.loads(json.dumps(wire.encode(modes))))
+    np.testing.assert_array_equal(again.shapes, modes.shapes)
+    np.testing.assert_array_equal(again.values, modes.values)
 
 
 class Wild:
@@ -175,7 +175,9 @@ def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
 
 def test_a_code_that_raises_is_one_cells_outcome() -> None:
     m = library.mechanism("pitch-link").mechanism
-    (answer,) = mechanism_worker.answers("southwell.tests.cases.verify.test_mechanism_matrix:CODE", [m], {}, 60.0)
+    (answer,) = mechanism_worker.answers(
+        "southwell.tests.cases.verify.test_mechanism_matrix:CODE", [m], {}, Limits(60.0)
+    )
     assert answer == Failure("nonsense", "RuntimeError: out of cheese")
 
 

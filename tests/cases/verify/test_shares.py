@@ -140,7 +140,7 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
 
 def test_shares_survive_the_disk_and_are_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
-    results.append(path, run().cells, run().levels, run())
+    results.write(path, run())
     assert results.read(path) == run()
     rows = told.rows(run(), CASE)
     assert [row["cause"] for row in rows] == sorted(

@@ -14,8 +14,8 @@ from southwell.core.chain import accuracy, mesh
 from southwell.core.element.discretize import discretize
 from southwell.core.solve import AccuracyWarning
 from southwell.reports.cli.app import main
+from southwell.reports.shared.certain import certain, remarks
 from southwell.reports.shared.units import RAD_S
-from southwell.reports.verification import terminal
 
 
 def cable(EI: float) -> Blade:
@@ -148,21 +148,24 @@ def test_the_mesh_has_nodes_at_stations_and_is_fine_at_the_root() -> None:
         (1234.56, 0.1, "1000"),
         (9.9996, 1e-4, "10.000"),
         (0.00123456789, 1e-3, "0.00123"),
+        (-0.00123456789, 1e-3, "−0.00123"),
+        (12.3456789, 0.0, "12.34568"),
+        (0.0, 1e-3, "0"),
         (5.0, 0.9, "?"),
         (5.0, float("inf"), "?"),
         (5.0, float("nan"), "?"),
     ],
 )
 def test_digits_end_where_the_uncertainty_begins(value: float, uncertainty: float, text: str) -> None:
-    assert terminal.certain(value, uncertainty) == text
+    assert certain(value, uncertainty) == text
 
 
 def test_remarks() -> None:
     row = Named(3.0, 1, "flapwise 1", 5.0, 1e-3, 0.05)
-    strain, accuracy_ = terminal.remarks([row], 1e-6, RAD_S)
+    strain, accuracy_ = remarks([row], 1e-6, RAD_S)
     assert strain.startswith("steady strain up to 5.0% at")
     assert accuracy_.startswith("accuracy 1e-06 not reached: flapwise 1 at")
-    assert terminal.remarks([replace(row, strain=0.01)], None, RAD_S) == []
+    assert remarks([replace(row, strain=0.01)], None, RAD_S) == []
 
 
 def test_the_command_states_uncertainty_and_strain(capsys: pytest.CaptureFixture[str]) -> None:

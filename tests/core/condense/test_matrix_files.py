@@ -213,7 +213,7 @@ HEADER = f"DMIG    {'KAAX':8}{0:8d}"
         ("1 1 2.0\n3 3 3.0", "not all from 1 to the last"),
         ("1, 0, 1, 0, 2.0", "freedom 0 of node 1: only 1 to 6"),
         ("%%MatrixMarket matrix coordinate real general\n2 3 1\n1 1 1.0\n", "2 × 3: a stiffness is square"),
-        ("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1.0\n", "not a Matrix Market file"),
+        ("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1.0\n", "1 entries, expected 2: broken off"),
         (user_element(("STIFFNESS",))[:-40], "values, expected 171 for the triangle of 18 freedoms: broken off"),
         (user_element(()), "no .MATRIX, TYPE in it"),
         (user_element(("MASS", "DAMPING")), "TYPE STIFFNESS is not in it; there are MASS, DAMPING"),

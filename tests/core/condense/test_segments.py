@@ -9,12 +9,13 @@ import scipy.sparse as ss
 from matplotlib.collections import PolyCollection
 
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_from_segments, chain_modes
-from southwell.core.condense.segments import between, segment_from_matrix
+from southwell.core.condense.compressed import chain_from_segments, chain_modes, segment_modes
+from southwell.core.condense.joined import joined
+from southwell.core.condense.segments import Segment, between, segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.element import sections
 from southwell.core.multibody.mechanism import inertia
-from southwell.core.solve import modes
+from southwell.core.solve import LargeStrainError, modes
 from southwell.core.space import spatial as sp
 from southwell.references.solid.mesh import blade
 from southwell.reports.condense.figure import stages
@@ -62,14 +63,45 @@ def test_the_body_of_a_uniform_beam_rides_as_its_cubic_does() -> None:
     np.testing.assert_allclose(ride[np.ix_([0, 3], [0, 3])], 0.5 * np.eye(2), atol=1e-8)
 
 
-def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
+def uniform_segments(n: int) -> list[Segment]:
     length = PARK.length / n
     k12, _, rest = beam_segment(length)
     mass = 1.2 * length
     polar, cross = 1.2 * length * 1e-3, mass * (5e-4 + length**2 / 12)
     body = inertia(mass, [polar, cross, cross], [length / 2, 0, 0])
-    chain = chain_from_segments([segment_from_matrix(k12, rest, body)] * n, at(PARK.hub_radius))
-    return chain_modes(chain, omega, count).frequencies
+    return [segment_from_matrix(k12, rest, body)] * n
+
+
+def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
+    return chain_modes(chain_from_segments(uniform_segments(n), at(PARK.hub_radius)), omega, count).frequencies
+
+
+def test_two_joined_segments_are_one_of_twice_the_length() -> None:
+    """The ride differs by the section's own inertia, which ``segment_from_matrix`` leaves out of it."""
+    for found, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
+        for field, within in (("rest", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("ride", 5e-3)):
+            wanted = getattr(expected, field)
+            np.testing.assert_allclose(getattr(found, field), wanted, atol=within * np.abs(wanted).max())
+    assert len(joined(uniform_segments(7))) == 4
+
+
+@pytest.mark.parametrize("n", [6, 8, 20, 21])
+def test_the_uncertainty_covers_what_the_number_of_segments_costs(n: int) -> None:
+    """Against core's beam, refined; and it is no empty word."""
+    exact = modes(PARK, 10.0, count=4, accuracy=1e-9).frequencies
+    found = segment_modes(uniform_segments(n), at(PARK.hub_radius), 10.0, 4)
+    error = np.abs(found.frequencies / exact - 1.0)
+    assert (error <= found.uncertainty).all()
+    assert (found.uncertainty < 100.0 * error).all()
+    assert 0 < found.strain < 0.01
+
+
+def test_few_segments_do_not_tell_and_large_strains_are_refused() -> None:
+    assert np.isinf(segment_modes(uniform_segments(3), at(PARK.hub_radius), 0.0, 4).uncertainty).all()
+    rubber = [replace(s, stiffness=s.stiffness * np.diag([3e-4, 1, 1, 1, 1, 1])) for s in uniform_segments(8)]
+    with pytest.raises(LargeStrainError, match="allow large strains"):
+        segment_modes(rubber, at(PARK.hub_radius), 10.0, 1)
+    assert segment_modes(rubber, at(PARK.hub_radius), 10.0, 1, allow_large_strain=True).strain > 0.2
 
 
 def test_bending_converges_with_fourth_order() -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from southwell.core.blade import uniform_blade
 from southwell.core.element import beams as bm
@@ -116,4 +117,4 @@ def test_mass_points_weigh_what_the_blade_weighs() -> None:
     along = np.tile(np.eye(6)[:, 2:3], (2, 1))
     total = sum(float((along.T @ m @ along)[0, 0]) for m in M)
     s = blade.stations
-    assert total == pytest.approx(np.trapezoid(blade.mass[:, 0, 0], s), rel=1e-12)
+    assert total == pytest.approx(trapezoid(blade.mass[:, 0, 0], s), rel=1e-12)

@@ -159,7 +159,10 @@ def test_bodies_of_the_joint_chain_keep_their_place() -> None:
         np.testing.assert_allclose(here, chain.nodes[k] @ chain.corner[k - 1], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [n for n in registry.OURS if n not in ("pinocchio", "mujoco", "drake")])
+TAKE_KINKS = ("pinocchio", "mujoco", "drake", "scikit-fem-reissner")
+
+
+@pytest.mark.parametrize("name", [n for n in registry.OURS if n not in TAKE_KINKS])
 def test_other_codes_say_that_they_have_no_kinks(name: str) -> None:
     assert registry.code(name).unsupported(kinked())
 

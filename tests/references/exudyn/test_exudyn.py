@@ -10,9 +10,9 @@ import pytest
 
 from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.core.modes import STATIONS
-from southwell.core.multibody.mechanism import inertia
 from southwell.references.protocol.interface import CodeError
 
+from ...support.beams import curved
 from ...support.exudyn_beams import (
     ANCF,
     FULL,
@@ -182,8 +182,7 @@ REFUSED = {
     "tip mass": (ANCF, replace(unit(), tip_mass=np.eye(6)), "tip mass"),
     "shear": (ANCF, unit(GA_y=10.0), "shear"),
     "no stretch": (ANCF, unit(EA=np.inf), "finite EI and EA"),
-    "coupled": (TREE, replace(unit(), mass=np.repeat(inertia(1.0, 1.0, (0, 0.1, 0))[None], 2, axis=0)), "couple"),
-    "prebend": (TREE, replace(unit(), curve=np.array([[0.0, 0, 0], [np.cos(0.1), 0, np.sin(0.1)]])), "prebend"),
+    "kink": (TREE, replace(curved(), kinks=(20.0,)), "a kink at 20 m"),
     "no bending": (TREE, unit(EI_y=np.inf), "rigid in bending"),
 }
 

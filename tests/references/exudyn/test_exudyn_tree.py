@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from southwell.core import solve
 from southwell.core.blade import section_mass
 from southwell.core.modes import STATIONS
 from southwell.references.exudyn import hinged_segments
 from southwell.references.exudyn import tree as exudyn_tree
 from southwell.references.exudyn.tree import CODE as TREE
 
+from ...support.beams import curved, tapered
 from ...support.exudyn_beams import extrapolated, families, needs_exudyn, unit
 
 pytestmark = needs_exudyn
@@ -86,8 +88,10 @@ def test_mass_matrix_is_what_the_motion_says():
     tree = hinged_segments.plant(blade, 5)
     M, _, _, q = exudyn_tree.linearize(tree, 20.0)
     assert abs(q).max() > 0.01
-    J = exudyn_tree.jacobian(tree, q, tree.centre[:, 0])
-    angle = 0.3 + 0.7 * 0.1 * np.arange(1, 10, 2) + np.cumsum(q[tree.strain == 3])  # untwisted by the propeller moment
+    J = exudyn_tree.jacobian(tree, q, tree.centre)
+    angle = (
+        0.3 + 0.7 * 0.1 * np.arange(1, 10, 2) + np.cumsum(q[tree.strain == 3])[1::2]
+    )  # untwisted by the propeller moment
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[np.eye(3)[0], [0, ci, -si], [0, si, ci]] for ci, si in zip(c, s, strict=True)])
     inertia = turn @ tree.inertia @ turn.transpose(0, 2, 1)
@@ -114,3 +118,47 @@ def test_segments_have_the_mass_and_inertia_of_the_blade():
     I_x, I_y = np.polynomial.Polynomial([0.7, -0.3]), np.polynomial.Polynomial([0.2, -0.1])
     assert tree.inertia[:, 0, 0].sum() == pytest.approx(span(I_x) + 0.3, rel=1e-12)
     assert tree.inertia[:, 1, 1].sum() + tree.mass @ at**2 == pytest.approx(span(m * s**2 + I_y) + 2.1, rel=1e-12)
+
+
+def limit(blade, omega):
+    """Five frequencies, extrapolated, and core's."""
+    coarse, fine = (TREE.solve(blade, omega, n, 5).frequencies for n in (48, 96))
+    return fine + (fine - coarse) / 3, solve.modes(blade, omega, 60, 5).frequencies
+
+
+def test_a_blade_with_everything():
+    """Coupled, curved, sheared, twisted, tapered, offset, coned, pitched."""
+    found, core = limit(replace(curved(), precone=0.3), 3.0)
+    np.testing.assert_allclose(found, core, rtol=2e-4)
+
+
+@pytest.mark.parametrize("omega", [2.0, 8.0])
+def test_a_twisted_blade_with_precone_has_a_steady_state(omega):
+    """To be reached in steps: from rest to full speed at once Newton's method wanders."""
+    blade = replace(unit(0.1, EI_z=9.0, EA=1e5, I_y=1e-4, I_z=9e-4), twist=np.array([0.9, 0.0]), precone=0.3)
+    found, core = limit(blade, omega)
+    np.testing.assert_allclose(found, core, rtol=2e-4)
+
+
+def test_a_deck_without_axial_and_torsional_stiffness_has_no_such_joints():
+    stiffness = tapered().stiffness.copy()
+    stiffness[:, [0, 3], [0, 3]] = np.inf
+    found, core = limit(replace(tapered(), stiffness=stiffness, precone=0.05), 3.0)
+    np.testing.assert_allclose(found, core, rtol=2e-4)
+
+
+@pytest.mark.parametrize("precone", [0.0, 0.2])
+def test_a_flap_hinge(precone):
+    """The steady state turns it until the blade lies almost flat."""
+    blade = replace(unit(0.2, EA=1e6), root=np.array([np.inf] * 4 + [0.0, np.inf]), precone=precone)
+    found, core = limit(blade, 6.0)
+    np.testing.assert_allclose(found, core, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "root", [[80.0, 60.0, 40.0, *3 * [np.inf]], [*3 * [np.inf], 2.0, 5.0, 7.0]], ids=["slides", "turns"]
+)
+def test_springs_at_the_root(root):
+    blade = replace(unit(0.2, EA=1e4, I_y=1e-3, I_z=2e-3), root=np.array(root), pitch=0.3)
+    found, core = limit(blade, 2.0)
+    np.testing.assert_allclose(found, core, rtol=1e-4)

@@ -1,6 +1,7 @@
 """Environments of their own: made with pinned versions, spoken to in JSON, and said to be missing when they are."""
 
 import ast
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,6 +12,7 @@ import pytest
 
 from southwell.references import isolated
 from southwell.references.isolated import ENVIRONMENTS, READY, SHARPY, Environment
+from southwell.references.isolated.hashes import HASHES, requirements
 from southwell.references.protocol.interface import CodeError
 from southwell.reports.cli import app as cli
 
@@ -52,7 +54,9 @@ def test_other_pins_are_another_environment() -> None:
 
 def test_every_requirement_is_pinned() -> None:
     for environment in ENVIRONMENTS.values():
-        assert all("==" in pin for pin in (*environment.requires, *environment.bare))
+        lines = requirements((*environment.requires, *environment.bare)).splitlines()
+        assert all(re.fullmatch(r"[\w-]+==[\d.]+( --hash=sha256:[0-9a-f]{64})+", line) for line in lines)
+        assert len(lines) == len(environment.requires) + len(environment.bare)
 
 
 def test_it_is_there_only_when_it_is_complete() -> None:
@@ -91,10 +95,13 @@ def test_missing_it_says_how_to_get_it() -> None:
 
 
 def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
-    """Record what pip is asked; ``fails``: the package it cannot find."""
+    """Record what pip is asked, a requirements file by its content; ``fails``: the package it cannot find."""
     asked: list[list[str]] = []
+    for pin in (*ECHO.requires, *ECHO.bare):
+        monkeypatch.setitem(HASHES, pin, ("ab" * 32,))
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
+        command = [*command[:-1], *Path(command[-1]).read_text().splitlines()]
         asked.append(command)
         bad = bool(fails) and any(word.startswith(fails) for word in command)
         return subprocess.CompletedProcess(
@@ -110,15 +117,19 @@ def test_installing_pins_and_leaves_the_code_without_dependencies(monkeypatch: p
     asked = pip(monkeypatch)
     (ECHO.folder / "left over").mkdir(parents=True)
     assert isolated.install(ECHO) == ECHO.folder
-    assert [command[0] for command in asked] == [str(ECHO.python)] * 2
-    assert [command[6:] for command in asked] == [["one==1.0"], ["--no-deps", "echo==2.5"]]
+    ((python, *words),) = asked
+    assert python == str(ECHO.python)
+    assert {"--require-hashes", "--no-deps", "--only-binary=:all:"} <= set(words)
+    assert words[-2:] == [f"{pin} --hash=sha256:{'ab' * 32}" for pin in ("one==1.0", "echo==2.5")]
     assert ECHO.version() == "2.5"
     assert not (ECHO.folder / "left over").exists()
 
 
 def test_an_installation_that_fails_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     pip(monkeypatch, fails="echo")
-    with pytest.raises(isolated.EnvironmentMissingError, match=r"echo==2\.5: ERROR: No matching distribution"):
+    with pytest.raises(
+        isolated.EnvironmentMissingError, match=r"echo==2\.5: ERROR: No matching .*CPython 3\.11 and 3\.12 on Linux"
+    ):
         isolated.install(ECHO)
     assert ECHO.version() is None
 

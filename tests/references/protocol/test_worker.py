@@ -9,8 +9,9 @@ import pytest
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import Modes
 from southwell.references.protocol import registry
+from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.wire import decode_blade, decode_modes, encode
-from southwell.references.protocol.worker import Failure, answers
+from southwell.references.protocol.worker import answers
 
 BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
@@ -24,7 +25,7 @@ def importable(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def ask(attribute: str, timeout: float = 60.0) -> list[Modes | Failure]:
-    return answers(f"misbehaving:{attribute}", BLADE, RUNS, timeout)
+    return answers(f"misbehaving:{attribute}", BLADE, RUNS, Limits(timeout))
 
 
 def failure(answer: Modes | Failure) -> Failure:
@@ -81,7 +82,7 @@ def test_one_bad_run_leaves_its_neighbours_alone(attribute: str, kind: str, told
 
 
 def test_a_code_that_is_not_installed_says_how_to_get_it() -> None:
-    assert ask("ABSENT") == [Failure("not installed", "pip install manners")] * 3
+    assert ask("ABSENT") == [Failure("not installed", "not installed: pip install manners")] * 3
 
 
 def test_a_blade_crosses_the_border_unchanged_rigid_strains_included() -> None:
@@ -99,7 +100,7 @@ def test_no_modes_cross_the_border_too() -> None:
 
 def test_an_unknown_code_is_named_and_the_nearest_suggested() -> None:
     with pytest.raises(registry.UnknownCodeError, match="'pinochio' is not known: did you mean pinocchio"):
-        answers("pinochio", BLADE, RUNS, 1.0)
+        answers("pinochio", BLADE, RUNS, Limits(1.0))
 
 
 @pytest.mark.parametrize(

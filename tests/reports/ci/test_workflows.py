@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,13 +17,14 @@ import yaml
 from southwell.cases.judge import results
 from southwell.cases.regression import history
 from southwell.reports.cli import app as cli
+from southwell.reports.shared import statuses
 
 ROOT = Path(__file__).parents[3]
 ACTION = ROOT / "action.yml"
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 GITLAB = ROOT / "docs" / "gitlab-ci.yml"
 BASH = shutil.which("bash")
-SCRIPTS = [ROOT / ".ci" / "nightly", ROOT / ".ci" / "run"]
+SCRIPTS = [ROOT / ".ci" / name for name in ("fuzz", "nightly", "run", "versions")]
 
 
 def load(path: Path) -> dict[Any, Any]:
@@ -80,6 +82,23 @@ def test_southwell_understands_it(line: str) -> None:
 def test_no_script_has_anything_pasted_into_it() -> None:
     """What others wrote reaches a script by its environment alone: pasted in by ``${{ }}`` it would be run."""
     assert not [name for name, script in scripts().items() if "${{" in script]
+
+
+def test_every_action_is_pinned_by_commit() -> None:
+    used = [s["uses"] for path in (ACTION, *WORKFLOWS) for s in steps(path) if "uses" in s]
+    foreign = [name for name in used if name != "./"]
+    assert len(foreign) > 10
+    assert all(re.fullmatch(r"[\w-]+/[\w-]+@[0-9a-f]{40}", name) for name in foreign)
+
+
+def test_the_lowest_versions_are_those_declared() -> None:
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    lines = (ROOT / ".ci" / "lowest.txt").read_text().splitlines()
+    lowest = dict(line.split("==") for line in lines if not line.startswith("#"))
+    for requirement in declared:
+        name, least = requirement.split(">=")
+        assert re.sub(r"(\.0)+$", "", lowest.pop(name)) == re.sub(r"(\.0)+$", "", least)
+    assert not lowest
 
 
 def test_the_workflow_uses_the_action_with_inputs_that_it_has() -> None:
@@ -170,3 +189,20 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     kept.write_text(git(origin, "show", "history:history.jsonl"), encoding="utf-8")
     assert [e.commit for e in history.read(kept).entries] == ["aaa", "bbb"]
     assert git(origin, "ls-tree", "--name-only", "main").split() == ["file"]
+
+
+@pytest.mark.skipif(BASH is None, reason="no bash")
+@pytest.mark.parametrize(("status", "expected"), [(0, 0), (1, 0), (2, 2), (3, 3), (70, 70), (130, 130), (137, 137)])
+@pytest.mark.parametrize("name", ["action.yml: Solve, compare, judge", "nightly", "gitlab-ci.yml"])
+def test_only_misses_are_left_to_the_gate(name: str, status: int, expected: int, tmp_path: Path) -> None:
+    """The line that runs ``verify`` goes on after statuses 0 and 1, and ends the script with any other."""
+    (line,) = re.findall(r"^ *(southwell verify .*)$", scripts()[name], re.MULTILINE)
+    script = f"southwell() {{ return {status}; }}\nCASES= out=. cases=() options=()\n{line}\necho went on"
+    done = subprocess.run(["bash", "-eo", "pipefail", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (expected, "" if expected else "went on\n")
+
+
+def test_the_exit_statuses_are_documented_and_told_by_help() -> None:
+    text = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+    assert all(f"| {status} | {meaning} |" in text for status, meaning in statuses.MEANING.items())
+    assert statuses.listed() in str(cli.app.help)

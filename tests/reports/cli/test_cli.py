@@ -17,7 +17,7 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.judge import results
-from southwell.cases.verify import matrix
+from southwell.cases.verify import journal, matrix
 from southwell.core.solve import modes
 from southwell.references.protocol.registry import names
 from southwell.reports.cli import app as cli
@@ -158,20 +158,20 @@ def test_a_folder_that_cannot_be_written_is_told(
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "expected", "told"),
     [
-        ('{"kind": "cell", "nonsense": 1}\n', "line 1: not a result"),
-        ("not json\n", "line 1: not a result"),
-        ("", "no results in it"),
-        ('{"kind": "ce', "no results in it"),
+        ('{"kind": "cell", "nonsense": 1}\n', 2, "line 1: not a result"),
+        ("not json\n", 2, "line 1: not a result"),
+        ("", 3, "incomplete: there are no cells in it"),
+        ('{"kind": "ce', 3, "incomplete: there are no cells in it"),
     ],
 )
 def test_results_that_cannot_be_read_are_told(
-    content: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    content: str, expected: int, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "results.jsonl").write_text(content)
     status, _, err = southwell(f"report {tmp_path}", capsys)
-    assert status == 2
+    assert status == expected
     assert told in err
     assert err.count("\n") == 1
 
@@ -249,7 +249,7 @@ def test_a_code_that_is_absent_is_not_an_error(beam: Path, tmp_path: Path, capsy
 
 
 def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
-    """A verification that has finished some cells and now waits for codes that hang; and its results file."""
+    """A verification that has finished some cells and now waits for codes that hang; and its journal."""
     out = mark / "out"
     beam.write_text(BEAM + "[variants.a]\n[variants.b]\n[variants.c]\n[variants.d]\n")  # more to do than hands
     command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
@@ -264,9 +264,9 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
         start_new_session=True,
         preexec_fn=heeding,
     )
-    results_file = out / "results.jsonl"
+    results_file = out / journal.NAME
     waited = time.monotonic() + 120
-    while not (results_file.exists() and '"code":"exact-beam"' in results_file.read_text()):
+    while not (results_file.exists() and b'"exact-beam"' in results_file.read_bytes().partition(b'"answer"')[2]):
         assert child.poll() is None
         assert time.monotonic() < waited
         time.sleep(0.1)
@@ -308,8 +308,9 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert time.monotonic() - began < 30  # the hanging code's own limit is 300 s
     assert child.returncode == 130
     assert "Traceback" not in err
-    kept = results.read(results_file)
-    assert f"southwell: interrupted: the report has the {len(kept.cells)} cells that were finished" in err
+    kept = journal.read(results_file)
+    assert f"southwell: interrupted: {len(kept.cells)} cells are kept" in err
+    assert not (results_file.parent / "results.jsonl").exists()
     assert len(kept.cells) >= 4
     assert {(c.code, c.verdict) for c in kept.cells if c.shares != "everything"} == {("exact-beam", "pass")}
     assert kept.versions
@@ -332,9 +333,10 @@ def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
     child.communicate(timeout=30)  # the pool holds its pipes open: it must be gone, too
     assert child.returncode == -how
     assert gone(tmp_path)
-    status, shown, _ = southwell(f"report {results_file.parent}", capsys)
-    assert status == 0
-    assert "✔ pass" in shown.splitlines()[0]
+    for command in ("report", "gate"):
+        status, shown, _ = southwell(f"{command} {results_file.parent}", capsys)
+        assert status == 3
+        assert shown.startswith("Incomplete: cells of stub/")
 
 
 def test_interrupted_before_anything_is_finished_there_is_no_report(
@@ -345,7 +347,8 @@ def test_interrupted_before_anything_is_finished_there_is_no_report(
 
     monkeypatch.setattr(matrix, "run", interrupt)
     status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
-    assert (status, out, err) == (130, "", "southwell: interrupted: nothing was finished yet\n")
+    assert (status, out, err.count("\n")) == (130, "", 1)
+    assert err.startswith("southwell: interrupted: nothing was finished yet; run the same `southwell verify` again")
     assert not (tmp_path / "out" / "report.md").exists()
 
 

@@ -16,6 +16,7 @@ from southwell.references.solid import calculix, hexahedra
 from southwell.references.solid.mesh import Bricks, blade, clamped
 from southwell.reports.cli import app as cli
 from southwell.reports.condense import page as condense_page
+from southwell.reports.shared.certain import certain, relative
 from southwell.reports.verification import report as matrix_report
 
 pytestmark = pytest.mark.skipif(hexahedra.version() is None, reason=f"not installed: {hexahedra.HINT}")
@@ -245,14 +246,15 @@ def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert status == 0
     page = (tmp_path / "condensation.md").read_text()
     assert page.strip() in out
-    whole = condensed.modes(condensing.condense(path).blade, 100.0, 3).frequencies
+    found = condensed.modes(condensing.condense(path).blade, 100.0, 3)
+    whole = list(zip(found.frequencies, found.uncertainty, strict=True))
     rows = [[c.strip() for c in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("|")]
-    assert [float(row[3]) for row in rows if row[0] == "100"] == pytest.approx(whole, rel=1e-6)
+    assert [row[3:5] for row in rows if row[0] == "100"] == [[certain(f, u), relative(u)] for f, u in whole]
     assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)
     status, out, _ = run(capsys, str(tmp_path / "segments.json"), "--rpm", "954.9296585", "-o", str(tmp_path / "again"))
     assert status == 0
-    again = [float(line.split("|")[4]) for line in out.splitlines() if line.startswith("| 954.93")]
-    assert again[:3] == pytest.approx(whole / (2 * np.pi), rel=1e-6)
+    again = [line.split("|")[4].strip() for line in out.splitlines() if line.startswith("| 954.93")]
+    assert again[:2] == [certain(f / (2 * np.pi), u) for f, u in whole[:2]]
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,7 @@ def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
         subprocess.run(["git", *git], cwd=tmp_path, check=True)
     run = samples.run()
     (tmp_path / "reports" / "out").mkdir(parents=True)
-    results.append(tmp_path / "reports" / "out" / RESULTS, run.cells, run.levels, run)
+    results.write(tmp_path / "reports" / "out" / RESULTS, run)
     shutil.copyfile(ROOT / "examples" / "nrel-5mw-blade.dat", tmp_path / "blade.dat")
     for text in blocks(page, "toml"):
         (tmp_path / f"{tomllib.loads(text)['name']}.toml").write_text(text, encoding="utf-8")

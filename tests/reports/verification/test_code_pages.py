@@ -9,9 +9,15 @@ from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run, Verdict
 from southwell.references.defects import DEFECTS
 from southwell.references.protocol import registry
+from southwell.references.protocol.description import Description
 from southwell.reports.cli import app as cli
 from southwell.reports.cli import arguments
 from southwell.reports.verification import code_pages
+
+
+def described(name: str) -> Description:
+    (one,) = code_pages.described([name])
+    return one
 
 
 def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode: int = 1, reason: str = "") -> Cell:
@@ -76,7 +82,7 @@ def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
 
 
 def test_a_page_says_version_refusals_and_defects() -> None:
-    text = code_pages.page(RUN, registry.code("scikit-fem"))
+    text = code_pages.page(RUN, described("scikit-fem"))
     assert text.startswith("# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with core: **nothing**.")
     taken = {row[0]: row[1] for row in rows(text.partition("## What it takes")[2])}
     assert taken["twist"] == "taken"
@@ -86,12 +92,12 @@ def test_a_page_says_version_refusals_and_defects() -> None:
 
 
 def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
-    taken = {row[0]: row[1] for row in rows(code_pages.properties(registry.code("exudyn-ancf")))}
+    taken = {row[0]: row[1] for row in rows(code_pages.properties(described("exudyn-ancf")))}
     assert taken["rotary inertia"] == "left out, as declared"
 
 
 def test_a_code_without_cells_or_defects_says_so() -> None:
-    text = code_pages.page(RUN, registry.code("exact-beam"))
+    text = code_pages.page(RUN, described("exact-beam"))
     assert "This run has no cells of it." in text
     assert "None known." in text
 
@@ -102,13 +108,13 @@ def test_a_reproducer_that_cannot_run_is_said_to() -> None:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(code_pages, "shown", fails)
-        text = code_pages.page(RUN, registry.code("scikit-fem"))
+        text = code_pages.page(RUN, described("scikit-fem"))
     assert "which could not run here:" in text
     assert "no such module" in text
 
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.append(tmp_path / arguments.RESULTS, RUN.cells, run=RUN)
+    results.write(tmp_path / arguments.RESULTS, RUN)
     with pytest.raises(SystemExit) as ended:
         cli.main(["codes", "--pages", str(tmp_path)])
     assert ended.value.code == 0

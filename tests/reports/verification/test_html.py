@@ -12,7 +12,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from southwell.cases.judge.results import Setting, append
+from southwell.cases.judge.results import Setting, write
 from southwell.reports.cli import arguments
 from southwell.reports.shared import summary
 from southwell.reports.verification import html
@@ -50,7 +50,7 @@ class Page(HTMLParser):
 def folder(tmp_path: Path) -> Path:
     """A report's folder with results."""
     run = samples.run()
-    append(tmp_path / arguments.RESULTS, run.cells, run.levels, run)
+    write(tmp_path / arguments.RESULTS, run)
     return tmp_path
 
 

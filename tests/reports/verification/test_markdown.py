@@ -9,7 +9,7 @@ import pytest
 from markdown_it import MarkdownIt
 
 from southwell.cases.input.library import load
-from southwell.cases.judge.results import Run, Setting, append, read
+from southwell.cases.judge.results import Run, Setting, read, write
 from southwell.cases.verify.lumping import lumping
 from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
@@ -171,7 +171,7 @@ def test_figures_named_in_the_report_are_there(report: str, tmp_path: Path) -> N
 def test_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     run = samples.run()
-    append(path, run.cells, run.levels, run)
+    write(path, run)
     for folder, source in (("a", run), ("b", read(path))):
         (tmp_path / folder).mkdir()
         matrix_report.write(source, tmp_path / folder)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from southwell import modes
-from southwell.cases.input import readers, schema
+from southwell.cases.input import files, readers, schema
 from southwell.cases.input.properties import about_root, sections
 from southwell.cases.input.readers import Mount
 from southwell.core.blade import Blade, section_mass, section_stiffness
@@ -140,7 +140,10 @@ rpm = "0, 10, 20.5"
 modes = 2
 """
     (tmp_path / "old.toml").write_text(text)
-    (variant,) = schema.read(tmp_path / "old.toml").variants
+    with pytest.raises(readers.CaseError, match=r"outside .* --allow-outside"):
+        schema.read(tmp_path / "old.toml")
+    with files.outside_allowed():
+        (variant,) = schema.read(tmp_path / "old.toml").variants
     np.testing.assert_allclose(variant.speeds * 30 / np.pi, [0, 10, 20.5])
     same(variant.blade, readers.read(MAIN, Mount(offsets=False)))
     assert "PrecrvRef" in {u.name for u in variant.unused}

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
@@ -72,7 +73,16 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
     np.testing.assert_allclose(blade.curve[-1], [19.988, -0.10, -0.50], atol=1e-12)  # z, x, y of HAWC2's
     np.testing.assert_allclose(np.degrees(blade.twist[[0, -1]]), [-12.0, 1.0])
     assert blade.length == pytest.approx(20.0, abs=0.01)
-    np.testing.assert_allclose(blade.stations[1] / blade.length, 0.6, rtol=1e-12)
+    assert np.abs(blade.stations / blade.length - 0.6).min() < 1e-12
+    for x, y, z, turn in ((0.0, 0.0, 5.0, -10.0), (-0.02, -0.05, 10.0, -6.0), (-0.06, -0.20, 15.0, -2.0)):
+        k = int(np.abs(blade.curve[:, 0] - z).argmin())  # every section of c2_def is a station
+        np.testing.assert_allclose(blade.curve[k], [z, x, y], atol=1e-9)
+        assert np.degrees(blade.twist[k]) == pytest.approx(turn, abs=1e-7)
+    np.testing.assert_allclose(blade.mass, np.repeat(blade.mass[:1], 6, axis=0), rtol=1e-12, atol=1e-12)
+    (note,) = (n for n in found.source.notes if n.startswith("stations: "))
+    assert note.startswith(
+        "stations: 3 of the structural file and 3 more of c2_def; between them curve and twist stray"
+    )
     same(blade, readers.read(ST, Mount(main=HTC, hub_radius=2.0)))
 
 
@@ -124,7 +134,7 @@ def test_nrel_5mw_in_hawc2_weighs_what_it_does_in_elastodyn() -> None:
         readers.read(st)
     ours = readers.read(st, Mount(subset=(5, 1)))
     theirs = elastodyn.read(ed, Mount(length=61.5)).blade
-    weights = [np.trapezoid(b.mass[:, 0, 0], b.stations) for b in (ours, theirs)]
+    weights = [trapezoid(b.mass[:, 0, 0], b.stations) for b in (ours, theirs)]
     assert weights[0] == pytest.approx(weights[1], rel=0.01)
 
 
@@ -307,8 +317,8 @@ def test_bad_sections(tmp_path: Path) -> None:
     southwell_toml.write(readers.read(HTC), tmp_path / "b.toml")
     text = (tmp_path / "b.toml").read_text()
     for old, new, message in (
-        ("twist_deg = [", "twist_deg = [1.0, ", r"b.toml: blade.twist_deg: 4 entries for 3 stations"),
-        ("s = [0.0, ", "s = [0.0, 0.0, ", r"b.toml: blade.stiffness: 3 entries for 4 stations"),
+        ("twist_deg = [", "twist_deg = [1.0, ", r"b.toml: blade.twist_deg: 7 entries for 6 stations"),
+        ("s = [0.0, ", "s = [0.0, 0.0, ", r"b.toml: blade.stiffness: 6 entries for 7 stations"),
         ("rigid = []", 'rigid = ["axial"]', r"b.toml: blade.rigid: axial: its stiffnesses are not zero"),
     ):
         assert old in text

@@ -1,0 +1,24 @@
+"""What may be a name: one line of printable text, short enough for a table, a figure's title and a file's name."""
+
+from typing import Annotated
+
+from msgspec import Meta
+
+LONGEST = 100
+"""Characters of a name."""
+
+RULE = f"one line of printable characters, {LONGEST} at most (names that are typed: a-z, 0-9, point, hyphen)"
+
+Name = Annotated[
+    str,
+    Meta(min_length=1, max_length=LONGEST, pattern=r"\A[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+\Z"),
+]
+"""Any name, as of a blade, a variant or a body."""
+
+Typed = Annotated[str, Meta(max_length=LONGEST, pattern=r"\A[a-z0-9][a-z0-9.-]*\Z", description="as typed and printed")]
+"""A name that is typed on the command line."""
+
+
+def named(text: str) -> bool:
+    """Whether a text may be a ``Name``."""
+    return 0 < len(text) <= LONGEST and text.isprintable()

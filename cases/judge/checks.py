@@ -1,0 +1,69 @@
+"""What a row of results may hold, for files that come from elsewhere: a gate, a report and a dashboard show and count it."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+LONGEST = 300
+"""Characters of a name, a version or a title: what stands in a table's head or begins a line."""
+
+MOST_MODES = 10_000
+
+UNANSWERED = ("not run", "not applicable", "inconclusive", "fail")
+"""Verdicts that a cell without an answer may have."""
+
+CAUSES = ("discretisation", "model form", "rounding")
+
+LINES = frozenset({"case", "code", "family", "version", "role", "shares", "control", "area", "mode", "cause", "part"})
+"""Fields that hold one line."""
+
+
+class RowError(ValueError):
+    """A row that no run writes; names the field."""
+
+
+def check(row: Any) -> None:
+    """Refuse a row of results (a dataclass or a Struct) that no run writes.
+
+    Raises:
+        RowError: naming the field.
+    """
+    for name in type(row).__annotations__:
+        value = getattr(row, name)
+        if isinstance(value, float) and not math.isfinite(value):
+            raise RowError(f"{name}: {value}: not a finite number")
+        if name in LINES and isinstance(value, str) and not _line(value):
+            raise RowError(f"{name}: {value[:40]!r}: not one line of at most {LONGEST} printable characters")
+    for fault in _faults(row):
+        raise RowError(fault)
+
+
+def _line(text: str) -> bool:
+    return len(text) <= LONGEST and text.isprintable()
+
+
+def _faults(row: Any) -> Iterator[str]:
+    mode, omega = getattr(row, "mode", None), getattr(row, "omega", 0.0)
+    if not 0 <= omega <= 1e9:
+        yield f"omega: {omega:g}: no rotor speed"
+    if isinstance(mode, int) and not 0 <= mode <= MOST_MODES:
+        yield f"mode: {mode}: counted from 1"
+    if hasattr(row, "verdict"):
+        yield from _cell(row)
+    if getattr(row, "cause", CAUSES[0]) not in CAUSES:
+        yield f"cause: {row.cause!r}: known are {', '.join(CAUSES)}"
+
+
+def _cell(row: Any) -> Iterator[str]:
+    if not row.case or not row.code:
+        yield "case, code: one is empty"
+    if row.mode == 0 and (row.frequency is not None or row.verdict not in UNANSWERED):
+        yield f"mode: 0 of a cell with an answer ({row.verdict}): counted from 1"
+    if row.verdict in ("pass", "known difference") and row.difference is None:
+        yield f"difference: none, with the verdict {row.verdict}"
+    if row.frequency is not None and row.frequency < 0:
+        yield f"frequency: {row.frequency:g}: negative"
+    if row.uncertainty is not None and row.uncertainty < 0:
+        yield f"uncertainty: {row.uncertainty:g}: negative"
+    if row.target is not None and not 0 < row.target <= 1:
+        yield f"target: {row.target:g}: relative, above 0 and at most 1"

@@ -1,0 +1,45 @@
+"""Names that tell the rows of a run apart: no two of its blades, and no two of its columns, may have the same."""
+
+from collections.abc import Iterable, Sequence
+
+from ...references.protocol.description import Description
+from ...references.published import load
+from ..input.errors import CaseError
+from ..input.schema import Case
+from .columns import OTHER_METHOD
+from .mechanism_case import MechanismCase
+from .user_results import Added
+
+OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed tables")
+"""Columns of this package that are no codes, as in results and as in tables."""
+
+
+def unique(cases: Sequence[Case | MechanismCase], codes: Sequence[Description], added: Sequence[Added]) -> None:
+    """Every name is that of one thing only.
+
+    Args:
+        codes: as described.
+
+    Raises:
+        CaseError: one line that names both of two with the same name.
+    """
+    _once("case", ((v.name, _path(case)) for case in cases for v in case.variants), "leave one out, or rename it")
+    tables = [name for case in cases if isinstance(case, Case) for name in case.text.compare.tables]
+    columns = [(name, "this package") for name in OURS]
+    for table in dict.fromkeys(tables):
+        columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
+    columns += [(code.name, f"--codes {code.asked}") for code in codes]
+    columns += [(one.name, f"--add {one.path}") for one in added]
+    _once("code", columns, "leave one out, or give it another name")
+
+
+def _path(case: Case | MechanismCase) -> str:
+    return case.path if isinstance(case, Case) else case.described.path
+
+
+def _once(what: str, named: Iterable[tuple[str, str]], remedy: str) -> None:
+    seen: dict[str, str] = {}
+    for name, source in named:
+        if name in seen:
+            raise CaseError(f"{what}: {name!r} is given twice, by {seen[name]} and by {source}: {remedy}")
+        seen[name] = source

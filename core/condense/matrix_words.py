@@ -1,0 +1,44 @@
+"""Numbers in exported matrices, as Fortran and Nastran write them."""
+
+import math
+import re
+
+from .exported import MatrixFileError
+
+LARGEST_LABEL = 2**31
+"""Of a node, row or column."""
+
+_FORM = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+|[+-]\d+)?")
+
+
+def whole(name: str, number: int, word: str) -> int:
+    """A label or an index, positive or negative.
+
+    Args:
+        name: of the file.
+        number: of the line.
+        word: as it stands there.
+
+    Raises:
+        MatrixFileError: naming the line.
+    """
+    if not re.fullmatch(r"[+-]?\d{1,20}", word):
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a whole number: columns shifted?")
+    if abs(value := int(word)) >= LARGEST_LABEL:
+        raise MatrixFileError(f"{name}, line {number}: {value}: no node or row has so large a number: columns shifted?")
+    return value
+
+
+def real(name: str, number: int, word: str) -> float:
+    """A finite number; also as 1.5D+03 and 1.5+3.
+
+    Raises:
+        MatrixFileError: naming the line.
+    """
+    if not (found := _FORM.fullmatch(word)):
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a number: columns shifted?")
+    mantissa, exponent = found[1], (found[2] or "").lstrip("EeDd")
+    value = float(f"{'-' if word.startswith('-') else ''}{mantissa}E{exponent or 0}")
+    if not math.isfinite(value):
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]}: too large for a number: a slip in the exponent?")
+    return value

@@ -1,0 +1,237 @@
+"""What a foreign code says, validated where it enters: types, lengths, finite, ascending, plausible.
+
+Nothing in the other process is trusted to have done so. A violation is a ``NonsenseError`` that quotes it.
+"""
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, TypeVar
+
+import msgspec
+import numpy as np
+from msgspec import Meta, Struct
+
+from ...core.modes import STATIONS, Modes
+from .interface import Motion, Shares
+from .mechanism_interface import MechanismModes
+from .process import Failure, one_line
+from .wire import decode_modes
+
+T = TypeVar("T")
+Pair = tuple[float, float]
+"""Real and imaginary part."""
+
+PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
+
+Line = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
+Name = Annotated[str, Meta(max_length=60, pattern=r"^[^\W_][\w.+-]*$")]
+Seconds = Annotated[float, Meta(ge=0, le=1e9)]
+Elements = Annotated[int, Meta(ge=1, le=10**7)]
+
+LARGEST = 1e100
+"""Of any number in an answer: squares of it are finite."""
+
+SAME_SPEED = 1e-9
+"""Relative difference between the speed that was asked for and the one in the answer."""
+
+
+class NonsenseError(ValueError):
+    """An answer that cannot be one; names the field and quotes it."""
+
+
+class Failed(Struct, frozen=True, forbid_unknown_fields=True):
+    """A reply without modes."""
+
+    kind: Literal["nonsense", "refused", "not installed", "unsupported", "unknown"]
+    reason: str
+
+
+class Effects(Struct, frozen=True, forbid_unknown_fields=True):
+    """As ``core.effects.Model``."""
+
+    prestretch: bool
+    coriolis: bool
+    rotary_inertia: bool
+    geometric: bool
+
+
+class Origin(Struct, frozen=True, forbid_unknown_fields=True):
+    """As ``interface.Independence``."""
+
+    engine: Line
+    theory: Line
+    rotation: Line
+    sections: Line
+    eigensolver: Line
+
+
+class Declared(Struct, frozen=True, forbid_unknown_fields=True):
+    """What a code says of itself; see ``interface.Code``."""
+
+    name: Name
+    title: Line
+    shares: Shares
+    model: Effects
+    hint: Line
+    blades: bool
+    mechanisms: bool
+    levels: Annotated[tuple[Elements, ...], Meta(max_length=20)]
+    order: Annotated[int, Meta(ge=0, le=100)]
+    motions: Annotated[tuple[Motion, ...], Meta(min_length=1, max_length=4)]
+    digits: Annotated[int, Meta(ge=1, le=17)]
+    bracket: bool
+    independence: Origin | None
+    version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
+    page: str
+
+
+class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
+    omega: float
+    frequencies: list[float]
+    shapes: list[list[list[Pair]]]
+    elements: Elements
+    damping: list[float]
+    uncertainty: list[float]
+    rounding: list[float]
+    strain: float
+    seconds: Seconds
+
+
+class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
+    coordinates: list[Line]
+    steady: list[float]
+    values: list[Pair]
+    shapes: list[list[Pair]]
+    seconds: Seconds
+
+
+def reply(line: bytes, number: int) -> dict[str, Any]:
+    """The reply with this number, undone from its line.
+
+    Raises:
+        NonsenseError: if the line is not one; whatever comes after it is none either.
+    """
+    try:
+        data = json.loads(line)
+    except (ValueError, RecursionError):
+        data = None
+    if not isinstance(data, dict) or data.pop("run", None) != number:
+        raise NonsenseError(f"not an answer: {_quoted(line)}: does it write to the pipe of the answers?")
+    return data
+
+
+def failure(data: dict[str, Any]) -> Failure | None:
+    """The failure that a reply holds, if it holds one.
+
+    Raises:
+        NonsenseError: if it is none.
+    """
+    if "kind" not in data:
+        return None
+    failed = convert(data, Failed)
+    return Failure(failed.kind, one_line(failed.reason))
+
+
+def modes(data: Any, omega: float, count: int) -> Modes:
+    """A blade's modes at speed ``omega``, at most ``count``, from plain data.
+
+    Raises:
+        NonsenseError: if they cannot be that.
+    """
+    found = convert(data, _Modes)
+    m = len(found.frequencies)
+    _keep(1 <= m <= count, f"frequencies: {m} of them, {count} were asked for")
+    _keep(len(found.shapes) == m, f"shapes: {len(found.shapes)} of them for {m} frequencies")
+    sizes = {(len(shape), *{len(station) for station in shape}) for shape in found.shapes}
+    _keep(sizes == {(len(STATIONS), 4)}, f"shapes: each must be {len(STATIONS)} stations by 4 columns")
+    for name in ("damping", "uncertainty", "rounding"):
+        values = getattr(found, name)
+        _keep(len(values) in (0, m), f"{name}: {len(values)} values for {m} frequencies")
+        _finite(name, values)
+    _finite("frequencies", found.frequencies)
+    _finite("shapes", data["shapes"])
+    _keep(min(found.frequencies) >= 0.0, f"frequencies: {_quoted(found.frequencies)}: negative")
+    _ascending("frequencies", found.frequencies)
+    for name in ("uncertainty", "rounding"):
+        _keep(min(getattr(found, name), default=0.0) >= 0.0, f"{name}: {_quoted(getattr(found, name))}: negative")
+    _keep(max(np.abs(found.damping), default=0.0) <= 1.0, f"damping: {_quoted(found.damping)}: ratios above 1")
+    near = abs(found.omega - omega) <= SAME_SPEED * abs(omega)
+    _keep(near, f"omega: {found.omega!r}: the speed that was asked for is {omega!r} rad/s")
+    _keep(np.isnan(found.strain) or 0.0 <= found.strain <= LARGEST, f"strain: {found.strain!r}: not a strain")
+    return decode_modes(data)
+
+
+def mechanism_modes(data: Any) -> MechanismModes:
+    """A mechanism's modes from plain data.
+
+    Raises:
+        NonsenseError: if they cannot be that.
+    """
+    found = convert(data, _MechanismModes)
+    m, k = len(found.values), len(found.coordinates)
+    _keep(m >= 1, "values: none")
+    _keep(k >= 1 and len(set(found.coordinates)) == k, f"coordinates: {_quoted(found.coordinates)}: none, or one twice")
+    _keep(len(found.steady) == k, f"steady: {len(found.steady)} values for {k} coordinates")
+    fits = len(found.shapes) == m and all(len(shape) == k for shape in found.shapes)
+    _keep(fits, f"shapes: not {m} of {k} coordinates each")
+    for name in ("steady", "values", "shapes"):
+        _finite(name, getattr(found, name))
+    values, shapes = (_complex(pairs) for pairs in (found.values, found.shapes))
+    _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
+    return MechanismModes(tuple(found.coordinates), np.array(found.steady), values, shapes, found.seconds)
+
+
+def declared(data: Any) -> Declared:
+    """What a code says of itself, from plain data.
+
+    Raises:
+        NonsenseError: if it cannot be that.
+    """
+    found = convert(data, Declared)
+    _keep(found.blades or found.mechanisms, "it solves neither blades nor mechanisms")
+    if found.blades:
+        _keep(len(found.levels) > 0, "levels: (): name one refinement at least")
+        _keep(np.all(np.diff(found.levels) > 0), f"levels: {found.levels}: not ascending")
+    return found
+
+
+def convert(data: Any, kind: type[T]) -> T:
+    """Plain data as a structure.
+
+    Raises:
+        NonsenseError: with msgspec's message, and the value of the field that it is about.
+    """
+    try:
+        return msgspec.convert(data, kind)
+    except (msgspec.ValidationError, RecursionError, OverflowError) as error:
+        field = re.search(r"\$\.(\w+)", str(error))
+        about = f"{field[1]}: {_quoted(data.get(field[1]))}: " if field and isinstance(data, dict) else ""
+        raise NonsenseError(f"{about}{one_line(error)}") from None
+
+
+def _complex(pairs: Any) -> Any:
+    both = np.array(pairs, dtype=float)
+    return both[..., 0] + 1j * both[..., 1]
+
+
+def _finite(name: str, values: Any) -> None:
+    flat = np.array(values, dtype=float).ravel()
+    bad = flat[~(np.abs(flat) <= LARGEST)]
+    _keep(not bad.size, f"{name}: {bad[:1].tolist()}: not finite, or above {LARGEST:g}")
+
+
+def _ascending(name: str, values: Any) -> None:
+    _keep(np.all(np.diff(values) >= 0.0), f"{name}: {_quoted(list(values))}: not ascending")
+
+
+def _keep(true: Any, message: str) -> None:
+    if not true:
+        raise NonsenseError(message)
+
+
+def _quoted(value: Any) -> str:
+    if isinstance(value, Sequence):  # repr of a whole answer is long
+        value = value[:100]
+    text = one_line(repr(value))
+    return text if len(text) <= 80 else f"{text[:79]}…"

@@ -1,0 +1,217 @@
+"""What a code says of itself, as plain data: all that the rest of the program knows of it.
+
+It is imported and asked in a process of its own, and what it says is validated; a code that misbehaves has a ``failure``
+instead. The codes that come with the package are asked together, in one process, as long as none of them ends it.
+"""
+
+import inspect
+import json
+import re
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.effects import FULL, Model
+from . import boundary, registry
+from .boundary import NonsenseError
+from .child import Reply, blunder, failed, serve
+from .interface import DIGITS, MOTIONS, Independence, Motion, Shares, brackets, digits, independence, motions
+from .mechanism_interface import takes_mechanisms
+from .process import Failure, Limits, converse, one_line, raised
+from .registry import UnknownCodeError
+from .wire import decode_blade, encode
+
+TOGETHER = 2
+"""Processes at a time that codes are asked in."""
+
+ASKING = Limits(seconds=120.0)
+"""Of each code, by default: its import, most of all."""
+
+
+@dataclass(frozen=True)
+class Description:
+    """A code, as ``interface.Code`` and ``mechanism_interface.MechanismCode`` declare it.
+
+    Attributes:
+        asked: the name or import path it was asked for, by which ``worker.answers`` finds it.
+        name, title, shares, model, hint, levels, order, motions, digits, bracket, independence: as declared.
+        blades, mechanisms: whether it solves them.
+        version: None if it is not installed.
+        refused: for each blade that was shown to it, why it does not take it; None if it does, or gave no reason that is one
+            (a worker that is to solve the blade says so again).
+        page: its module's docstring.
+        failure: what it did instead of answering; None if it is as it should be. Of the rest only ``asked`` and ``name`` are
+            sure then.
+    """
+
+    asked: str
+    name: str
+    title: str = ""
+    shares: Shares | str = ""
+    model: Model = FULL
+    hint: str = ""
+    levels: tuple[int, ...] = ()
+    order: int = 0
+    motions: tuple[Motion, ...] = MOTIONS
+    digits: int = DIGITS
+    bracket: bool = False
+    independence: Independence | None = None
+    blades: bool = True
+    mechanisms: bool = True
+    version: str | None = None
+    refused: tuple[str | None, ...] = ()
+    page: str = ""
+    failure: Failure | None = None
+
+
+def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits = ASKING) -> tuple[Description, ...]:
+    """Descriptions of codes by name or import path, in their order.
+
+    Args:
+        names: as for ``registry.locate``.
+        blades: shown to each code that takes blades, for ``refused``.
+        limits: of each code.
+
+    Raises:
+        UnknownCodeError: if a name is not known, or an import path given as name leads to no code.
+    """
+    where = {name: registry.address(name) for name in names}
+    packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}
+    shown = [encode(blade) for blade in blades]
+    ours = {name: at for name, at in where.items() if at["code"] in packaged}
+    found = {one.asked: one for one in _asked(ours, shown, limits)}
+    alone = [name for name in where if name not in found or found[name].failure]
+    with ThreadPoolExecutor(TOGETHER) as threads:
+        again = threads.map(lambda name: _asked({name: where[name]}, shown, limits)[0], alone)
+        found |= zip(alone, again, strict=True)
+    for one in found.values():
+        if one.failure and one.failure.kind == "unknown" and ":" in one.asked:
+            raise UnknownCodeError(one.failure.reason)
+    return tuple(found[name] for name in names)
+
+
+def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits: Limits) -> list[Description]:
+    """What codes say, by name and address, all in one process; one that ends it ends it for those after it."""
+    if not where:
+        return []
+    names, request = list(where), {"codes": list(where.values()), "blades": blades}
+    lines, ended = converse(__name__, json.dumps(request).encode(), len(names), limits)
+    out = []
+    for number, (name, line) in enumerate(zip(names, lines, strict=False)):
+        try:
+            out.append(_described(name, boundary.reply(line, number), len(blades)))
+        except NonsenseError as error:
+            ended = Failure("nonsense", str(error))
+            break
+    return out + [_failed(name, ended) for name in names[len(out) :]]
+
+
+def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
+    """A code of which no more is known, under its own name if that can be one."""
+    proper = isinstance(name, str) and re.fullmatch(r"[^\W_][\w.+-]{0,59}", name)
+    return Description(asked, name if proper else one_line(asked), failure=failure)
+
+
+def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
+    name = data.get("name")
+    refused, trouble = data.pop("refused", []), data.pop("raised", "")
+    try:
+        if failure := boundary.failure(data):
+            return _failed(asked, failure)
+        said = boundary.declared(data)
+        refused = boundary.convert(refused, list[str | None])
+        if len(refused) not in (0, blades):
+            raise NonsenseError(f"unsupported(): {len(refused)} answers of {blades}")
+    except NonsenseError as error:
+        return _failed(asked, Failure("nonsense", one_line(error)), name)
+    facts = {field: getattr(said, field) for field in said.__struct_fields__}
+    origin = (
+        Independence(**{f: getattr(said.independence, f) for f in said.independence.__struct_fields__})
+        if (said.independence)
+        else None
+    )
+    effects = Model(**{f: getattr(said.model, f) for f in said.model.__struct_fields__})
+    known = Description(
+        asked,
+        **{
+            **facts,
+            "independence": origin,
+            "model": effects,
+            "refused": tuple(why and one_line(why) for why in refused),
+        },
+    )
+    return replace(known, failure=Failure("nonsense", one_line(trouble))) if trouble else known
+
+
+def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
+    """What a code declares, as plain data; what raises is the code's own fault."""
+    solves, origin = hasattr(code, "solve"), independence(code)
+    facts = {
+        "name": code.name,
+        "title": getattr(code, "title", ""),
+        "shares": getattr(code, "shares", "nothing"),
+        "model": {f: getattr(code.model, f) for f in Model.__dataclass_fields__}
+        if type(code.model) is Model
+        else code.model,
+        "hint": getattr(code, "hint", ""),
+        "blades": solves,
+        "mechanisms": takes_mechanisms(code),
+        "levels": code.levels if solves else (),
+        "order": code.order if solves else 0,
+        "motions": motions(code),
+        "digits": digits(code),
+        "bracket": brackets(code),
+        "independence": vars(origin) if isinstance(origin, Independence) else origin,
+        "version": None,
+        "page": (inspect.getdoc(sys.modules.get(type(code).__module__)) or "").encode("utf-8", "replace").decode(),
+    }
+    try:
+        facts["version"] = code.version()
+    except BaseException as error:  # an exit, too
+        facts["raised"] = f"version(): {raised(error)}"
+    facts["refused"] = [_refusal(code, blade) for blade in blades] if solves else []
+    return {name: _plain(value) for name, value in facts.items()}
+
+
+def _refusal(code: Any, blade: Blade) -> str | None:
+    try:
+        why = code.unsupported(blade)
+    except BaseException:  # an exit, too
+        return None
+    return why if isinstance(why, str) else None
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it; what JSON has not is an object that no schema takes."""
+    if value is None or isinstance(value, str | int | float):
+        return value
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    return {type(value).__name__: one_line(repr(value))}
+
+
+def _answer(request: Any) -> Iterator[Reply]:
+    blades = [decode_blade(blade) for blade in request["blades"]]
+    for where in request["codes"]:
+        code = registry.loaded(where)
+        if isinstance(code, Failure):
+            yield failed(code.kind, code.reason)
+            continue
+        try:
+            yield _facts(code, blades)
+        except BaseException as error:
+            yield blunder(error, "its declarations")
+
+
+def main() -> None:
+    """Answer the one request on standard input."""
+    serve(_answer)

@@ -1,0 +1,142 @@
+"""scikit-fem: a geometrically exact beam with everything a section, a root and a tip can have.
+
+Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced integration),
+and section forces, linear and discontinuous, are fields of their own (E. Hellinger 1914, E. Reissner 1950): no strain locks,
+and a rigid strain is an exact constraint, with no penalty. The weak forms are in ``reissner_forms``, their derivation in
+docs/geometrically-exact-beam.md. First comes the steady state, by Newton's method down to rounding; then the matrices about
+it, in the strains that are not rigid as coordinates. Frequencies converge with the fourth power of the element size.
+scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
+"""
+
+import time
+from importlib import metadata
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse import linalg as spla
+
+from ...core.blade import Blade
+from ...core.effects import FULL
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.quadratic import gyroscopic_modes
+from ..theories.reference_line import element_ends, moments
+from . import reissner_forms as forms
+from .reissner_beam import Beam, State, beam_of, skfem, spatial, stiffening, strain, strain_rate
+from .reissner_steady import steady
+
+Array = NDArray[np.float64]
+
+COARSEST = 8
+"""Elements of the coarsest level, and how many intervals between stations it can follow without more."""
+
+MOST = 300
+"""Elements: the matrices are dense, with up to 12 rows an element."""
+
+RIGID_BODY = 1e-6
+"""Departure from a rigid body's mass matrix that is taken for rounding, of its masses and moments of inertia."""
+
+
+class ScikitFemReissner:
+    """See the module; all blades but those whose mass matrix is not a rigid body's."""
+
+    name = "scikit-fem-reissner"
+    title = "scikit-fem, geometrically exact beam"
+    shares: Shares = "nothing"
+    independence = Independence(
+        "scikit-fem", "references.scikit_fem.reissner_forms", "references.scikit_fem.reissner_forms"
+    )
+    model = FULL
+    levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
+    order = 4
+    hint = "pip install 'southwell[codes]'"
+
+    def version(self) -> str | None:
+        """Version of scikit-fem, without importing it."""
+        try:
+            return metadata.version("scikit-fem")
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if a section's mass matrix is not a rigid body's, or nothing can strain."""
+        for name, mass in (("mass", blade.mass), ("tip_mass", blade.tip_mass)):
+            body = moments(mass)
+            again = np.einsum("ail,bij,...jl->...ab", forms.MOVE, forms.MOVE, body)
+            scale = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
+            if (np.abs(again - mass) > RIGID_BODY * scale[..., None] * scale[..., None, :]).any():
+                return f"{name}: not a rigid body's matrix to {RIGID_BODY:g}: the weak form integrates over particles"
+        if np.isinf(blade.stiffness).any(axis=(0, 2)).all():
+            return "stiffness: all strains are rigid: strains are the coordinates here"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Every interval between stations where a property or the line has a kink is divided into the same number of elements:
+        at least ``elements`` in all; ``Modes.elements`` says how many.
+
+        Raises:
+            CodeError: an unsupported blade, too many elements, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        begun = time.perf_counter()
+        ends = element_ends(blade, elements, COARSEST)
+        if len(ends) - 1 > MOST:
+            raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MOST}")
+        beam = beam_of(blade, ends)
+        state = steady(beam, omega)
+        coordinates = _coordinates(beam, state)
+        M, C, K = _matrices(beam, state, omega, coordinates)
+        frequencies, vectors = gyroscopic_modes(M, C, K, count)
+        shapes = _shapes(beam, coordinates @ vectors)
+        largest = float(np.linalg.norm(strain(beam, state)[..., :3], axis=-1).max())
+        return Modes(omega, frequencies, shapes, beam.elements, strain=largest, seconds=time.perf_counter() - begun)
+
+
+def _coordinates(beam: Beam, state: State) -> Array:
+    """(all, n) what motion each coordinate is: the root's free ones with no strain, then each strain that is not rigid.
+
+    With the root given, the strains at the Gauss points determine the motion: B is square.
+    """
+    B = (strain_rate(beam, state) @ beam.to_free).tocsc()
+    roots = len(beam.springs) - B.shape[0]
+    soft = np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
+    wanted = np.hstack([-B[:, :roots].toarray(), beam.gram.tocsc()[:, soft].toarray()])
+    inner = spla.splu(B[:, roots:].tocsc()).solve(wanted)
+    first = np.hstack([np.eye(roots), np.zeros((roots, len(soft)))])
+    return beam.to_free @ np.vstack([first, inner])
+
+
+def _matrices(beam: Beam, state: State, omega: float, Z: Array) -> tuple[Array, Array, Array]:
+    """M, C, K of the coordinates, whose motions are the columns of ``Z``."""
+    fem = skfem()
+    M = C = sp.csr_array((beam.basis.N, beam.basis.N))
+    for part, axes in zip(beam.parts, state.turned, strict=True):
+        about, form = spatial(part, axes), fem.BilinearForm(forms.quadratic)
+        M = M + form.assemble(part.basis, on=forms.for_fem(forms.inertia(about), 2))
+        C = C + omega * form.assemble(part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))
+    soft = np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
+    roots = Z.shape[1] - len(soft)
+    K = Z.T @ (stiffening(beam, state, omega) @ Z)
+    gram, compliance = (matrix.tocsc()[soft][:, soft] for matrix in (beam.gram, beam.compliance))
+    K[roots:, roots:] += gram @ spla.splu(compliance).solve(gram.toarray())
+    K[range(roots), range(roots)] += beam.springs[:roots]
+    return Z.T @ (M @ Z), Z.T @ (C @ Z), K
+
+
+def _shapes(beam: Beam, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) from all coordinates (N, m)."""
+    one = beam.basis.with_element(skfem().ElementLineP2())
+    read = one.probes(STATIONS[None] * beam.blade.length)
+    out = np.empty((q.shape[1], len(STATIONS), 4), complex)
+    for k in range(4):
+        of = np.empty(one.N, dtype=np.intp)
+        of[one.nodal_dofs[0]], of[one.interior_dofs[0]] = beam.basis.nodal_dofs[k], beam.basis.interior_dofs[k]
+        out[:, :, k] = (read @ q[of]).T
+    return out
+
+
+CODE = ScikitFemReissner()

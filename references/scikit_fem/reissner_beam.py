@@ -1,0 +1,236 @@
+"""A blade on scikit-fem's line elements: its mesh, its fields, a configuration, and the matrices and forces there.
+
+Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced integration),
+and section forces, linear and discontinuous, are fields of their own. Weak forms: ``reissner_forms``.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from ...core.blade import Blade, mass_at, stiffness_at
+from ..theories.reference_line import line, moments, root_axes
+from . import reissner_forms as forms
+
+Array = NDArray[np.float64]
+
+STRAIN, INERTIA = 3, 7
+"""Degrees integrated exactly: by two points, where the strains do not lock; products of quadratics with linear properties."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What has inertia: the line, with properties per length, or the tip, with lumped ones; arrays (elements, points, …).
+
+    Attributes:
+        basis: of the displacements and rotations, at these points.
+        place: (…, 3) m, at rest.
+        axes: (…, 3, 3) the section's axes, at rest.
+        moments: (…, 4, 4) ∫ Y Yᵀ dm in the section's axes; see ``theories.reference_line.moments``.
+    """
+
+    basis: Any
+    place: Array
+    axes: Array
+    moments: Array
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A blade on a mesh.
+
+    Attributes:
+        blade: the blade.
+        basis: of (w, φ), quadratic, at the strains' points.
+        forces: of the section forces, linear and discontinuous, at the same points.
+        parts: what has inertia.
+        slope, axes: (e, q, 3), (e, q, 3, 3) of the line at rest, at the strains' points.
+        compliance: of the sections; rigid strains have zero rows.
+        gram: of the fields of section forces.
+        rigid: (6,) whether the strain is.
+        to_free: from the free coordinates (the root's in its own axes, and not those that are held) to all.
+        springs: (free,) stiffness of the root's springs, in the root's own places.
+    """
+
+    blade: Blade
+    basis: Any
+    forces: Any
+    parts: tuple[Part, ...]
+    slope: Array
+    axes: Array
+    compliance: Any
+    gram: Any
+    rigid: NDArray[np.bool_]
+    to_free: Any
+    springs: Array
+
+    @property
+    def elements(self) -> int:
+        """How many."""
+        return int(self.basis.mesh.nelements)
+
+
+@dataclass(frozen=True)
+class State:
+    """A configuration, at the points of each basis.
+
+    Attributes:
+        slope, axes, curvature: (e, q, …) at the strains' points; curvature is what the rotation has added.
+        place, turned: per part (e, q, 3) and (e, q, 3, 3).
+        force: coefficients of the section forces.
+        root: (free,) the root's displacements and rotations, in its axes, zero elsewhere.
+    """
+
+    slope: Array
+    axes: Array
+    curvature: Array
+    place: tuple[Array, ...]
+    turned: tuple[Array, ...]
+    force: Array
+    root: Array
+
+
+def skfem() -> Any:
+    """scikit-fem, imported when it is needed."""
+    import skfem
+
+    return skfem
+
+
+def beam_of(blade: Blade, ends: Array) -> Beam:
+    """The blade on elements that end at arc lengths ``ends`` (n+1,)."""
+    fem = skfem()
+    sides = {"root": lambda x: x[0] == ends[0], "tip": lambda x: x[0] == ends[-1]}
+    mesh = fem.MeshLine(ends).with_boundaries(sides)
+    basis = fem.Basis(mesh, fem.ElementVector(fem.ElementLineP2(), 6), intorder=STRAIN)
+    forces = basis.with_element(fem.ElementVector(fem.ElementLineP1DG(), 6))
+    s = np.array(basis.global_coordinates())[0]
+    at_rest = line(blade, s)
+    rigid = np.array(np.isinf(blade.stiffness).any(axis=(0, 2)))
+    on_forces = fem.BilinearForm(forms.quadratic)
+    within = fem.Basis(mesh, forces.elem, intorder=INERTIA)
+    compliance = on_forces.assemble(within, on=forms.for_fem(_compliance(blade, within, ~rigid), 2))
+    parts = [_part(blade, fem.Basis(mesh, basis.elem, intorder=INERTIA), None)]
+    if blade.tip_mass.any():
+        parts.append(_part(blade, basis.boundary("tip"), blade.tip_mass))
+    root = np.array(basis.get_dofs("root").flatten())
+    free_root = np.flatnonzero(np.isfinite(blade.root))
+    inner = np.setdiff1d(np.arange(basis.N), root)
+    turn = np.kron(np.eye(2), root_axes(blade))[:, free_root]
+    count = len(free_root) + len(inner)
+    to_free = sp.lil_array((basis.N, count))
+    to_free[root, : len(free_root)] = turn
+    to_free[inner, np.arange(len(free_root), count)] = 1.0
+    springs = np.zeros(count)
+    springs[: len(free_root)] = blade.root[free_root]
+    return Beam(
+        blade=blade,
+        basis=basis,
+        forces=forces,
+        parts=tuple(parts),
+        slope=at_rest.slope,
+        axes=at_rest.axes,
+        compliance=compliance,
+        gram=on_forces.assemble(forces, on=forms.for_fem(np.broadcast_to(np.eye(6), (*s.shape, 6, 6)), 2)),
+        rigid=rigid,
+        to_free=to_free.tocsc(),
+        springs=springs,
+    )
+
+
+def _compliance(blade: Blade, basis: Any, soft: NDArray[np.bool_]) -> Array:
+    """(e, q, 6, 6) of the sections at a basis's points, zero in what is rigid."""
+    s = np.array(basis.global_coordinates())[0]
+    stiffness = stiffness_at(blade, s.ravel()).reshape(*s.shape, 6, 6)
+    out = np.zeros_like(stiffness)
+    both = (..., np.flatnonzero(soft)[:, None], np.flatnonzero(soft))
+    out[both] = np.linalg.inv(stiffness[both])
+    return out
+
+
+def _part(blade: Blade, basis: Any, lump: Array | None) -> Part:
+    s = np.array(basis.global_coordinates())[0]
+    at_rest = line(blade, s)
+    mass = mass_at(blade, s.ravel()).reshape(*s.shape, 6, 6) if lump is None else lump[None, None]
+    return Part(basis, at_rest.place, at_rest.axes, moments(mass))
+
+
+def at_rest(beam: Beam) -> State:
+    """The undeformed configuration, without section forces."""
+    shape = beam.slope.shape
+    return State(
+        slope=beam.slope,
+        axes=beam.axes,
+        curvature=np.zeros(shape),
+        place=tuple(part.place for part in beam.parts),
+        turned=tuple(part.axes for part in beam.parts),
+        force=np.zeros(beam.forces.N),
+        root=np.zeros(len(beam.springs)),
+    )
+
+
+def moved(beam: Beam, state: State, step: Array, force: Array) -> State:
+    """The state after a motion of the free coordinates, ``step``, and with section forces ``force``."""
+    q = beam.to_free @ step
+    u = beam.basis.interpolate(q)
+    w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], np.asarray(u)[3:], u.grad[3:, 0]))
+    back = np.swapaxes(state.axes, -1, -2)
+    place, turned = [], []
+    for part, at, axes in zip(beam.parts, state.place, state.turned, strict=True):
+        value = np.moveaxis(np.asarray(part.basis.interpolate(q)), 0, -1)
+        place.append(at + value[..., :3])
+        turned.append(forms.exponential(value[..., 3:]) @ axes)
+    return State(
+        slope=state.slope + w_s,
+        axes=forms.exponential(phi) @ state.axes,
+        curvature=state.curvature + (back @ forms.bending_rate(phi, phi_s)[..., None])[..., 0],
+        place=tuple(place),
+        turned=tuple(turned),
+        force=force,
+        root=state.root + np.where(np.arange(len(step)) < np.isfinite(beam.blade.root).sum(), step, 0.0),
+    )
+
+
+def spatial(part: Part, axes: Array) -> Array:
+    """(e, q, 4, 4) the moments of the mass in the hub's axes."""
+    turn = np.zeros((*axes.shape[:-2], 4, 4))
+    turn[..., :3, :3], turn[..., 3, 3] = axes, 1.0
+    return turn @ part.moments @ np.swapaxes(turn, -1, -2)
+
+
+def strain_rate(beam: Beam, state: State) -> Any:
+    """B: section forces times the strain's rate by all coordinates."""
+    on = forms.for_fem(forms.strain_rate(state.slope, state.axes), 2)
+    return skfem().BilinearForm(forms.mixed).assemble(beam.basis, beam.forces, on=on)
+
+
+def stiffening(beam: Beam, state: State, omega: float) -> Any:
+    """Stiffness of all coordinates by the steady section forces and by the centrifugal force's change."""
+    fem = skfem()
+    force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
+    on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
+    K = fem.BilinearForm(forms.quadratic_local).assemble(beam.basis, on=on)
+    for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):
+        on = forms.for_fem(forms.centrifugal(place, spatial(part, axes)), 2)
+        K = K + omega**2 * fem.BilinearForm(forms.quadratic).assemble(part.basis, on=on)
+    return K
+
+
+def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
+    """On all coordinates."""
+    fem = skfem()
+    force = np.zeros(beam.basis.N)
+    for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):
+        on = forms.for_fem(forms.centrifugal_force(place, spatial(part, axes)), 1)
+        force = force + omega**2 * fem.LinearForm(forms.linear).assemble(part.basis, on=on)
+    return force
+
+
+def strain(beam: Beam, state: State) -> Array:
+    """(e, q, 6) Γ and κ."""
+    gamma = np.swapaxes(state.axes, -1, -2) @ state.slope[..., None]
+    rest = np.swapaxes(beam.axes, -1, -2) @ beam.slope[..., None]
+    return np.concatenate([(gamma - rest)[..., 0], state.curvature], axis=-1)

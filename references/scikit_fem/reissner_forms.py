@@ -1,0 +1,153 @@
+"""Weak forms of a geometrically exact beam that turns with its hub, about any state; see docs/geometrically-exact-beam.md.
+
+Reissner's beam (E. Reissner, Studies in Applied Mathematics 52 (1973) 87–95; J. C. Simo, Comput. Methods Appl. Mech. Eng.
+49 (1985) 55–70): a section at arc length s has the place r(s) and the axes Λ(s), and the strains, per unit of arc length and
+in its own axes,
+
+    Γ = Λᵀ r′ − Λ₀ᵀ r₀′,    κ = ax(Λᵀ Λ′ − Λ₀ᵀ Λ₀′).
+
+A small motion is ``r → r + w``, ``Λ → exp(φ×) Λ``, with w and φ in axes that turn with the hub. To second order
+
+    Λ δΓ = (w′ + r′ × φ) − φ × w′ + ½ φ × (φ × r′),    Λ δκ = φ′ − ½ φ × φ′,    δx = w + φ × y + ½ φ × (φ × y)
+
+with y = Λ ξ the place of a particle relative to r. The forms follow from virtual work, ``∫ σ·δε ds = −∫ δx·a dm`` with
+d'Alembert's acceleration ``a = ẍ + 2 Ω × ẋ + Ω × (Ω × x)`` of the particles at ``x = r + y``.
+
+Here are the forms' coefficients at the quadrature points, (…, e, q) for scikit-fem. Local quantities are q = (w, φ), or
+z = (w, φ, w′, φ′); section forces σ = (n, m) are in the section's axes.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+PERMUTATION = np.zeros((3, 3, 3))
+PERMUTATION[[0, 1, 2], [1, 2, 0], [2, 0, 1]] = 1.0
+PERMUTATION[[0, 2, 1], [2, 1, 0], [1, 0, 2]] = -1.0
+
+CROSS = -PERMUTATION.transpose(2, 0, 1)
+"""(3, 3, 3): ``CROSS[k] @ v`` is e_k × v."""
+
+SPIN = CROSS[2]
+"""Ω × per unit of speed: the rotor's axis is z."""
+
+OUT_OF_AXIS = np.diag([1.0, 1.0, 0.0])
+"""−Ω × (Ω × ·) per unit of speed squared."""
+
+MOVE = np.zeros((6, 3, 4))
+MOVE[:3, :, 3] = np.eye(3)
+MOVE[3:, :, :3] = CROSS
+"""``MOVE[a] @ (y, 1)`` is what coordinate a of q moves a particle by, to first order."""
+
+MOVE_TWICE = np.zeros((6, 6, 3, 4))
+MOVE_TWICE[3:, 3:, :, :3] = 0.5 * (np.einsum("aij,bjk->abik", CROSS, CROSS) + np.einsum("bij,ajk->abik", CROSS, CROSS))
+"""To second order: ½ φ × (φ × y) is half of ``φ_a φ_b MOVE_TWICE[a, b] @ (y, 1)``."""
+
+
+def skew(v: Array) -> Array:
+    """(…, 3, 3) with ``skew(v) @ u = v × u``."""
+    return np.einsum("...k,kij->...ij", v, CROSS)
+
+
+def for_fem(coefficients: Array, trailing: int) -> Array:
+    """Coefficients (e, q, …) with ``trailing`` own dimensions, as scikit-fem wants them: (…, e, q)."""
+    return np.moveaxis(coefficients, range(-trailing, 0), range(trailing))
+
+
+def strain_rate(slope: Array, axes: Array) -> Array:
+    """(e, q, 6, 12) the strain's first variation by z: ``Λᵀ (w′ + r′ × φ)`` and ``Λᵀ φ′``."""
+    out = np.zeros((*slope.shape[:-1], 6, 12))
+    back = np.swapaxes(axes, -1, -2)
+    out[..., :3, 3:6] = back @ skew(slope)
+    out[..., :3, 6:9] = out[..., 3:, 9:] = back
+    return out
+
+
+def geometric(slope: Array, axes: Array, force: Array) -> Array:
+    """(e, q, 12, 12) the second variation of the strain by z, times the section forces ``force`` (e, q, 6)."""
+    n, m = ((axes @ part[..., None])[..., 0] for part in (force[..., :3], force[..., 3:]))
+    out = np.zeros((*slope.shape[:-1], 12, 12))
+    product = n[..., :, None] * slope[..., None, :]
+    tension = np.trace(product, axis1=-2, axis2=-1)[..., None, None]
+    out[..., 3:6, 3:6] = 0.5 * (product + np.swapaxes(product, -1, -2)) - tension * np.eye(3)  # n · ½ φ × (φ × r′)
+    out[..., 3:6, 6:9] = skew(n)  # −n · φ × w′
+    out[..., 3:6, 9:12] = 0.5 * skew(m)  # −m · ½ φ × φ′
+    out[..., 6:12, 3:6] = np.swapaxes(out[..., 3:6, 6:12], -1, -2)
+    return out
+
+
+def inertia(moments: Array) -> Array:
+    """(e, q, 6, 6) ``∫ δx · ẍ dm`` from ``moments`` (e, q, 4, 4), ∫ Y Yᵀ dm in the hub's axes."""
+    return np.einsum("ail,bij,...jl->...ab", MOVE, MOVE, moments, optimize=True)
+
+
+def gyroscopic(moments: Array) -> Array:
+    """(e, q, 6, 6) ``∫ δx · 2 Ω × ẋ dm`` per unit of speed: skew."""
+    return 2.0 * np.einsum("ail,ik,bkj,...jl->...ab", MOVE, SPIN, MOVE, moments, optimize=True)
+
+
+def centrifugal_force(place: Array, moments: Array) -> Array:
+    """(e, q, 6) ``−∫ δx · Ω × (Ω × x) dm`` per unit of speed squared."""
+    return np.einsum("...il,ik,akj,...jl->...a", _position(place), OUT_OF_AXIS, MOVE, moments, optimize=True)
+
+
+def centrifugal(place: Array, moments: Array) -> Array:
+    """(e, q, 6, 6) minus the change of that with the motion, first and second order of δx: symmetric."""
+    first = np.einsum("ail,ik,bkj,...jl->...ab", MOVE, OUT_OF_AXIS, MOVE, moments, optimize=True)
+    second = np.einsum("...il,ik,abkj,...jl->...ab", _position(place), OUT_OF_AXIS, MOVE_TWICE, moments, optimize=True)
+    return -first - second
+
+
+def _position(place: Array) -> Array:
+    """(…, 3, 4) F with ``x = F (y, 1)``."""
+    return np.concatenate([np.broadcast_to(np.eye(3), (*place.shape, 3)), place[..., None]], axis=-1)
+
+
+def exponential(phi: Array) -> Array:
+    """(…, 3, 3) rotation by the vector φ (O. Rodrigues, 1840)."""
+    angle = np.linalg.norm(phi, axis=-1)[..., None, None]
+    cross = skew(phi)
+    return np.eye(3) + np.sinc(angle / np.pi) * cross + 0.5 * np.sinc(angle / (2 * np.pi)) ** 2 * cross @ cross
+
+
+def bending_rate(phi: Array, rate: Array) -> Array:
+    """(…, 3) ax(exp(−φ×) exp(φ×)′) of ``rate`` = φ′: what rotating by φ adds to the curvature, seen from before."""
+    angle = np.linalg.norm(phi, axis=-1)[..., None]
+    small = angle < 1e-2
+    safe = np.where(small, 1.0, angle)
+    third = np.where(small, 1 / 6 - angle**2 / 120 + angle**4 / 5040, (safe - np.sin(safe)) / safe**3)
+    once = np.cross(phi, rate)
+    return rate - 0.5 * np.sinc(angle / (2 * np.pi)) ** 2 * once + third * np.cross(phi, once)
+
+
+def local(u: Any) -> Any:
+    """z (12, e, q) of a field q."""
+    return np.concatenate([u, u.grad[:, 0]])
+
+
+def quadratic(u: Any, v: Any, w: Any) -> Any:
+    """Bilinear form with coefficients on q."""
+    return np.einsum("ij...,i...,j...", w.on, v, u)
+
+
+def quadratic_local(u: Any, v: Any, w: Any) -> Any:
+    """Bilinear form with coefficients on z."""
+    return np.einsum("ij...,i...,j...", w.on, local(v), local(u))
+
+
+def mixed(u: Any, v: Any, w: Any) -> Any:
+    """Bilinear form of a field of section forces v with z of a field u."""
+    return np.einsum("ij...,i...,j...", w.on, v, local(u))
+
+
+def linear(v: Any, w: Any) -> Any:
+    """Linear form with coefficients on q, or on section forces."""
+    return np.einsum("i...,i...", w.on, v)
+
+
+def linear_local(v: Any, w: Any) -> Any:
+    """Linear form with coefficients on z."""
+    return np.einsum("i...,i...", w.on, local(v))

@@ -1,0 +1,107 @@
+"""The steady state of a geometrically exact beam at a rotor speed: Newton's method on virtual work, down to rounding."""
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse import linalg as spla
+
+from ..protocol.interface import CodeError
+from . import reissner_forms as forms
+from .reissner_beam import Beam, State, at_rest, centrifugal_force, moved, skfem, stiffening, strain, strain_rate
+
+Array = NDArray[np.float64]
+
+NEWTON, CONVERGED, ROUNDING = 40, 1e-6, 1e-13
+"""Steps allowed; a step (of the length, or rad) from which on it must only fall; one that is rounding."""
+
+RAMPS = (1, 4, 16)
+"""Numbers of steps in which the speed is raised, tried in turn."""
+
+COMMUTE = 1e-8
+"""rad²: product of steady rotations about two axes of the root's joint up to which their order does not matter."""
+
+
+def steady(beam: Beam, omega: float) -> State:
+    """The steady state at ``omega``, raised from rest in as few steps as suffice.
+
+    Raises:
+        CodeError: none was found, or the root's joint turned about two axes, of which the order is not told.
+    """
+    state = at_rest(beam)
+    if not omega:
+        return state
+    for ramp in RAMPS:
+        found = _raised(beam, omega, ramp)
+        if found is not None:
+            break
+    else:
+        raise CodeError(
+            f"omega: {omega:g} rad/s: no steady state found in {RAMPS[-1]} steps from rest; lower the speed"
+        )
+    joint = np.flatnonzero(np.isfinite(beam.blade.root))
+    turns = np.sort(np.abs(found.root[: len(joint)][joint >= 3]))
+    if len(turns) > 1 and turns[-1] * turns[-2] > COMMUTE:
+        raise CodeError(
+            f"{beam.blade.name}: the root turns steadily about two axes, by {turns[-1]:.2g} and {turns[-2]:.2g} rad: "
+            "the weak form does not say about which first"
+        )
+    return found
+
+
+def _raised(beam: Beam, omega: float, steps: int) -> State | None:
+    """The steady state at ``omega`` by way of ``steps`` equal increments of the speed's square; None if one fails."""
+    state = at_rest(beam)
+    for k in range(1, steps + 1):
+        speed = omega * np.sqrt(k / steps)
+        if k == 1:
+            state = moved(beam, state, 0 * state.root, _statics(beam, state, speed))
+        found = _equilibrium(beam, state, speed)
+        if found is None:
+            return None
+        state = found
+    return state
+
+
+def _statics(beam: Beam, state: State, omega: float) -> Array:
+    """Section forces that balance the centrifugal force on the undeformed blade as if clamped: a start that is stiff."""
+    inner = np.setdiff1d(np.arange(beam.basis.N), beam.basis.get_dofs("root").flatten())
+    B = strain_rate(beam, state).tocsc()[:, inner]
+    return spla.splu(B.T.tocsc()).solve(centrifugal_force(beam, state, omega)[inner])
+
+
+def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:
+    """Newton's method on virtual work, ``δq · (Bᵀσ − f) + δσ · (ε − cσ)``, until rounding; None if it does not converge."""
+    fem, n, last = skfem(), len(beam.springs), np.inf
+    for _ in range(NEWTON):
+        B = strain_rate(beam, state) @ beam.to_free
+        K = beam.to_free.T @ stiffening(beam, state, omega) @ beam.to_free + sp.diags_array(beam.springs)
+        geometry = forms.for_fem(strain(beam, state), 1)
+        out_of_balance = np.concatenate(
+            [
+                beam.to_free.T @ centrifugal_force(beam, state, omega) - B.T @ state.force - beam.springs * state.root,
+                beam.compliance @ state.force - fem.LinearForm(forms.linear).assemble(beam.forces, on=geometry),
+            ]
+        )
+        matrix = sp.block_array([[K, B.T], [B, -beam.compliance]], format="csc")
+        with np.errstate(all="ignore"):
+            try:
+                change = spla.splu(matrix).solve(out_of_balance)
+            except RuntimeError:  # singular
+                return None
+        size = _size(beam, change[:n])
+        if not np.isfinite(size) or size > 1e3:
+            return None
+        largest = max(1.0, size / 0.5)  # no more than half a radian, or half the length, at once
+        state = moved(beam, state, change[:n] / largest, state.force + change[n:] / largest)
+        if size < ROUNDING or (size < CONVERGED and size > 0.5 * last):
+            return state
+        last = size
+    return None
+
+
+def _size(beam: Beam, step: Array) -> float:
+    """Of a step: displacements as a share of the length, or rotations, whichever is larger."""
+    q = np.abs(beam.to_free @ step)
+    first = beam.basis.nodal_dofs[:3].ravel(), beam.basis.interior_dofs[:3].ravel()
+    moved = np.concatenate([q[i] for i in first]).max() / beam.blade.length
+    return float(max(moved, q[beam.basis.nodal_dofs[3:]].max(), q[beam.basis.interior_dofs[3:]].max()))

@@ -1,0 +1,96 @@
+"""A blade's reference line as the finite elements see it: places, tangents and section axes, and the sections' mass as moments.
+
+It evaluates the data in ``core.blade.Blade`` on its own. It shares with core the description (a cubic spline of the arc
+length through the stations of each piece between kinks; sections turned about the tangent by the twist) and the linear
+interpolation of the tables (``stiffness_at``, ``mass_at``, ``twist_at``), but no frames, quadrature or inertia.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+from scipy.spatial.transform import Rotation
+
+from ...core.blade import Blade, straight, twist_at
+from .spectral import intervals
+
+Array = NDArray[np.float64]
+
+JUMP = 1e-4
+"""Of the length: stations closer than this are the two sides of a jump, and a single element lies between."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """Points on the reference line, in axes that turn with the hub; leading dimensions (elements, points).
+
+    Attributes:
+        place: (…, 3) m, from the hub's centre.
+        slope: (…, 3) derivative of ``place`` by the arc length.
+        axes: (…, 3, 3) the section's axes, in columns.
+    """
+
+    place: Array
+    slope: Array
+    axes: Array
+
+
+def root_axes(blade: Blade) -> Array:
+    """(3, 3) the blade's axes at the root, in columns: coned and pitched, not twisted."""
+    cone, pitch = Rotation.from_euler("y", -blade.precone), Rotation.from_euler("x", blade.pitch)
+    return (cone * pitch).as_matrix()
+
+
+def line(blade: Blade, s: Array) -> Line:
+    """The line at arc lengths ``s`` (e, q), m; each row lies within one piece between kinks.
+
+    The section's x axis is the tangent t. Its axes are the blade's, rotated by the smallest rotation that brings x onto t,
+    whose axis and sine are x × t, and then about t by the twist.
+    """
+    root = root_axes(blade)
+    place, slope = np.empty((*s.shape, 3)), np.empty((*s.shape, 3))
+    ends = np.array([0.0, *blade.kinks, blade.length])
+    piece = np.searchsorted(ends[1:-1], s.mean(1))
+    for k in np.unique(piece):
+        inside = (blade.stations >= ends[k]) & (blade.stations <= ends[k + 1])
+        known = blade.stations[inside], blade.curve[inside]
+        spline = make_interp_spline(*known, k=min(3, inside.sum() - 1))
+        place[piece == k], slope[piece == k] = spline(s[piece == k]), spline.derivative()(s[piece == k])
+    tangent = slope.reshape(-1, 3) / np.linalg.norm(slope.reshape(-1, 3), axis=1, keepdims=True)
+    across = np.cross([1.0, 0.0, 0.0], tangent)
+    sine = np.linalg.norm(across, axis=1, keepdims=True)
+    angle = np.arctan2(sine, tangent[:, :1])
+    swing = Rotation.from_rotvec(across * np.where(sine > 0, angle / np.where(sine > 0, sine, 1.0), 1.0))
+    turn = Rotation.from_rotvec(np.outer(twist_at(blade, s.ravel()), [1.0, 0.0, 0.0]))
+    axes = (swing * turn).as_matrix().reshape(*s.shape, 3, 3)
+    hub = root @ [blade.hub_radius, 0.0, 0.0]
+    return Line(hub + place @ root.T, slope @ root.T, root @ axes)
+
+
+def moments(mass: Array) -> Array:
+    """(…, 4, 4) ``∫ Y Yᵀ dm`` with Y = (y, 1), y from the reference point, of bodies with inertia ``mass`` (…, 6, 6).
+
+    Momentum is ``m (v − c × ω)`` and the inertia matrix ``J = ∫ (|y|² − y yᵀ) dm``, hence ``∫ y yᵀ dm = ½ tr(J) − J``.
+    """
+    J, moment = mass[..., 3:, 3:], mass[..., :3, 3:]
+    out = np.zeros((*mass.shape[:-2], 4, 4))
+    out[..., :3, :3] = 0.5 * np.trace(J, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - J
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[..., i, 3] = out[..., 3, i] = 0.5 * (moment[..., j, k] - moment[..., k, j])
+    out[..., 3, 3] = np.trace(mass[..., :3, :3], axis1=-2, axis2=-1) / 3.0
+    return out
+
+
+def element_ends(blade: Blade, elements: int, most: int) -> Array:
+    """Arc lengths (n+1,) of the ends of ``elements`` elements at least; see ``grading`` for uncoupled blades.
+
+    Every interval between two kinks of a property or of the line is divided into the same number of elements, so that each
+    element is smooth and the order of convergence survives. Of a blade with more than ``most`` intervals there are more
+    elements in proportion, so that refinements stay distinct.
+    """
+    ends = intervals(blade) if straight(blade) else blade.stations
+    wide = np.diff(ends) > JUMP * blade.length
+    pieces = np.where(wide, -(-elements // min(int(wide.sum()), most)), 1)
+    parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
+    return np.append(np.concatenate(parts), ends[-1])

@@ -1,0 +1,170 @@
+"""The report of a pytest session: results.jsonl and report.md of all tests with the mark, whether all of them were run or not.
+
+Everything else that it needs is imported when there is something to report.
+"""
+
+import shlex
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from .pytest_plugin import FIXTURE, PROPERTY, Chosen
+
+if TYPE_CHECKING:
+    from ...cases.judge.results import Planned, Run
+    from ...cases.verify.journal import Journal
+
+
+def _planned(session: pytest.Session) -> list[list[Any]]:
+    """Case, solver, speed and mode of every test that is to be run.
+
+    Raises:
+        UsageError: if two tests have solvers of one name, whose rows a report could not tell apart.
+    """
+    planned, owners = [], {}
+    for item in session.items:
+        chosen = getattr(item, "callspec", None) and item.callspec.params.get(FIXTURE)  # type: ignore[attr-defined]
+        if isinstance(chosen, Chosen):
+            owner = item.nodeid.partition("[")[0]
+            first = owners.setdefault((chosen.variant.name, chosen.yours.name), owner)
+            if first != owner:
+                raise pytest.UsageError(
+                    f"{first} and {owner}: both solvers are named {chosen.yours.name!r}: give name=…"
+                )
+            planned.append([chosen.variant.name, chosen.yours.name, chosen.omega, chosen.mode])
+    return planned
+
+
+class Told:
+    """In a process of pytest-xdist: tells the one that reports what is to be run."""
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Hand it over when this process ends."""
+        session.config.workeroutput[PROPERTY] = _planned(session)  # type: ignore[attr-defined]
+
+
+class Report:
+    """Gathers what tests found, and writes the report when all are done.
+
+    Until then the folder has a journal, as that of ``southwell verify``: it has no finished run.
+    """
+
+    def __init__(self, folder: Path, config: pytest.Config) -> None:
+        self.folder, self.config = folder, config
+        self.parts: list[str] = []
+        self.planned: list[list[Any]] = []
+        self.unfinished = ""
+        self.open = ExitStack()
+        self.journal: Journal | None = None
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Note what is to be run, where this process runs it."""
+        self.planned += _planned(session)
+        if self.planned:
+            self._begin()
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node: Any) -> None:
+        """Note what was to be run, where other processes did; each of them has the whole list."""
+        self.planned = self.planned or getattr(node, "workeroutput", {}).get(PROPERTY, [])
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Keep what one test found."""
+        found = [str(value) for name, value in report.user_properties if name == PROPERTY]
+        if report.when == "call" and found:
+            self._begin()
+            self.parts += found
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self) -> None:
+        """Write results.jsonl and report.md; of a run that was stopped, only the journal."""
+        if self.journal is None:
+            return
+        from ...cases.judge import results
+        from ..verification import report as matrix_report
+
+        run = self._run()
+        self.unfinished = run.unfinished
+        path = self.folder / "results.jsonl"
+        with self.open:
+            try:
+                if not run.unfinished:
+                    results.write(path, run)
+                if not run.unfinished or not path.exists():
+                    matrix_report.write(run, self.folder)
+                if not run.unfinished:
+                    self.journal.remove()
+                else:
+                    self.journal.begin(run)
+                    self.journal.put("pytest", (list(run.cells), list(run.levels)))
+            except OSError as error:
+                raise self._unwritable(error) from error
+
+    def pytest_terminal_summary(self, terminalreporter: Any) -> None:
+        """Say where the report is, and whether it is complete."""
+        if self.unfinished:
+            terminalreporter.write_line(f"southwell: {self.folder}: Incomplete: {self.unfinished}.")
+        elif self.parts:
+            terminalreporter.write_line(f"southwell: {self.folder / 'report.md'}")
+
+    def _begin(self) -> None:
+        """Lock the folder and say in it that there is no finished run."""
+        if self.journal is not None:
+            return
+        from ...cases.input.errors import CaseError
+        from ...cases.judge.results import Run
+        from ...cases.verify import journal
+
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self.open.enter_context(journal.locked(self.folder))
+            self.journal = self.open.enter_context(journal.Journal(self.folder))
+            self.journal.begin(Run((), command=self._command()))
+        except CaseError as error:
+            raise pytest.UsageError(f"--southwell-report: {error}") from error
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> pytest.UsageError:
+        return pytest.UsageError(f"--southwell-report {self.folder}: cannot be written ({error.strerror})")
+
+    def _command(self) -> str:
+        return shlex.join(["pytest", *self.config.invocation_params.args])
+
+    def _run(self) -> "Run":
+        import msgspec
+
+        from ...cases.judge.results import Cell, Level, Run, Setting
+        from ...cases.verify import matrix
+
+        decoded = [msgspec.json.decode(part) for part in self.parts]
+
+        def rows(kind: str, row: Any) -> tuple[Any, ...]:
+            """Each once: tests of one blade repeat its setting, and the cell of a speed without an answer."""
+            distinct = {msgspec.json.encode(one): one for part in decoded for one in part[kind]}
+            return tuple(msgspec.convert(one, row) for one in distinct.values())
+
+        cells = rows("cells", Cell)
+        answered = {(c.case, c.code, c.omega, c.mode) for c in cells}
+        missing = [t for t in self.planned if not {(*t[:3], t[3]), (*t[:3], 0)} & answered]
+        what = f"{len(missing)} of {len(self.planned)} tests gave no cell" if missing else ""
+        return Run(
+            cells=cells,
+            levels=rows("levels", Level),
+            versions=matrix.versions({}),
+            command=self._command(),
+            settings=rows("settings", Setting),
+            plan=self._plan(),
+            unfinished=what if self.planned else "it is not known what was to be run",
+        )
+
+    def _plan(self) -> "tuple[Planned, ...]":
+        from ...cases.judge.results import Planned
+
+        modes: dict[tuple[str, str], dict[float, int]] = {}
+        for case, code, omega, _ in self.planned:
+            of = modes.setdefault((case, code), {})
+            of[omega] = of.get(omega, 0) + 1
+        return tuple(Planned(case, code, len(of), min(of.values())) for (case, code), of in modes.items())

@@ -1,0 +1,47 @@
+"""Numbers with the digits that their uncertainty leaves, and what a reader of frequencies must know about them."""
+
+import math
+from collections.abc import Sequence
+
+from ...cases.campbell.sweep import Named
+from ...core.solve import LARGE_STRAIN
+from .units import Units
+
+DIGITS = 7
+"""Of a frequency, at most."""
+
+
+def certain(value: float, uncertainty: float, digits: int = DIGITS) -> str:
+    """A number with the digits that a relative uncertainty leaves, ``digits`` at most; ``?`` if it leaves none."""
+    if not uncertainty < 0.5:
+        return "?"
+    if value == 0.0:
+        return "0"
+    size = abs(value)
+    last = math.floor(math.log10(size)) - digits + 1
+    if uncertainty > 0:
+        last = max(last, math.ceil(math.log10(size * uncertainty)))
+    return f"{round(value, -last):.{max(-last, 0)}f}".replace("-", "−")
+
+
+def relative(uncertainty: float) -> str:
+    """A relative uncertainty, ``3e-07``."""
+    return f"{uncertainty:.0e}" if math.isfinite(uncertainty) else "unknown"
+
+
+def remarks(rows: Sequence[Named], accuracy: float | None, units: Units) -> list[str]:
+    """What a reader of the frequencies must know: large steady strains, and an ``accuracy`` that was not reached."""
+    out = []
+    strained = {r.omega: r.strain for r in rows if r.strain > LARGE_STRAIN}
+    if strained:
+        omega, strain = max(strained.items(), key=lambda item: item[1])
+        out.append(
+            f"steady strain up to {strain:.1%} at {units.at(omega)}: above {LARGE_STRAIN:.0%}, check that linear elastic "
+            "sections describe the blade"
+        )
+    worst = max(rows, key=lambda r: r.uncertainty, default=None)
+    if worst and accuracy is not None and worst.uncertainty > accuracy:
+        out.append(
+            f"accuracy {accuracy:g} not reached: {worst.name} at {units.at(worst.omega)} is known to {worst.uncertainty:.0e}"
+        )
+    return out

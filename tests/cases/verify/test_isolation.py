@@ -1,0 +1,158 @@
+"""A whole run with codes that misbehave: their cells fail, their neighbours' do not, and nothing looks complete that is not."""
+
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+import pytest
+
+from southwell.cases.input.schema import Case, read
+from southwell.cases.judge.results import Cell, Run
+from southwell.cases.verify import columns, matrix
+from southwell.references.protocol import registry
+from southwell.references.protocol.description import describe
+from southwell.references.protocol.process import Limits
+from southwell.reports.cli import app as cli
+from southwell.reports.shared import summary
+from southwell.reports.shared.statuses import INCOMPLETE
+
+from ...support.misdeeds import TABLE
+
+CASE = """
+name = "rest"
+title = "At rest, and turning"
+description = "A slender uniform beam."
+source = "Rayleigh (1877)"
+[blade]
+kind = "dimensionless"
+slenderness = 1000
+[speeds]
+gamma = [0, 2]
+[compare]
+motions = ["chordwise", "flapwise"]
+modes = 2
+time_limit = 20
+"""
+
+BAD = {
+    "import-exit_0": ("fail", "fail"),
+    "import-sys_exit": ("fail", "fail"),
+    "version-raises": ("fail", "fail"),
+    "unsupported-exit_0": ("fail", "fail"),
+    "unsupported-two_lines": ("not applicable", "not applicable"),
+    "solve-patches_json": ("fail", "fail"),
+}
+"""Verdicts at the two speeds."""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    support = str(Path(__file__).parents[2] / "support")
+    monkeypatch.setenv("PYTHONPATH", support)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Case:
+    path = tmp_path / "rest.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return read(path)
+
+
+def written(key: str, folder: Path) -> str:
+    (one,) = (m for m in TABLE if f"{m.when}-{m.name}" == key)
+    return one.write(folder)
+
+
+def run(case: Case, *codes: str) -> Run:
+    with ThreadPoolExecutor(2) as executor:
+        return matrix.run([case], codes, executor, parts=False)
+
+
+def of(run: Run, code: str) -> list[Cell]:
+    return [c for c in run.cells if c.code == code]
+
+
+def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) -> None:
+    """They declare the name ``misdeed``, if they come so far; else they go by what they were asked for."""
+    for key, verdicts in BAD.items():
+        path = written(key, folder)
+        found = run(case, path, "southwell-equation")
+        bad = [c for c in found.cells if c.code in ("misdeed", path)]
+        assert tuple(c.verdict for c in sorted(bad, key=lambda c: c.omega)) == verdicts, (key, bad)
+        assert all(c.reason and c.mode == 0 for c in bad)
+        good = of(found, "southwell-equation")
+        assert len(good) == 4
+        assert {c.verdict for c in good} <= {"pass", "known difference"}
+        assert summary.status(found) == (1 if "fail" in verdicts else 0)
+
+
+def test_an_exit_at_import_is_no_success(case: Case, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = written("import-exit_0", folder)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["verify", case.path, "--codes", f"yoo-shin,{code}", "--faults", "none", "--workers", "1"])
+    assert ended.value.code == 1
+    assert "exit status 0" in capsys.readouterr().out
+
+
+def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written("import-exit_0", folder)
+    info = folder / "theirs-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(
+        "[southwell.codes]\ntheirs = misdeed_import_exit_0:CODE\ngone = no_such_module:CODE\n"
+    )
+    monkeypatch.syspath_prepend(str(folder))
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    assert {"theirs", "gone"} <= set(registry.names())
+    ours, theirs, gone = describe(["yoo-shin", "theirs", "gone"], limits=Limits(30.0))
+    assert ours.failure is None
+    assert theirs.failure
+    assert "exit status 0" in theirs.failure.reason
+    assert gone.failure
+    assert "No module named 'no_such_module'" in gone.failure.reason
+
+
+def test_an_error_of_ours_in_a_column_costs_that_column(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(*_: object) -> None:
+        raise IndexError("list index out of range")
+
+    monkeypatch.setattr(columns, "_other_method", wrong)
+    found = run(case, "yoo-shin")
+    lost = of(found, columns.OTHER_METHOD)
+    assert [c.verdict for c in lost] == ["fail", "fail"]
+    assert lost[0].reason == "internal error of southwell, not of the code: IndexError: list index out of range"
+    assert {c.verdict for c in of(found, "yoo-shin")} <= {"pass", "known difference"}
+    assert summary.status(found) == 1
+
+
+def test_a_lost_pool_worker_is_no_interruption(
+    case: Case, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def lost(*_: object, **__: object) -> None:
+        raise BrokenProcessPool
+
+    monkeypatch.setattr(matrix, "run", lost)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["verify", case.path, "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
+    said = capsys.readouterr().err
+    assert ended.value.code == INCOMPLETE
+    assert "a worker process was killed" in said
+    assert "interrupted" not in said
+
+
+def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, folder: Path) -> None:
+    """As installed: neither the command, nor its pool's processes, nor the codes' workers."""
+    (folder / "southwell").mkdir()
+    for name in ("random.py", "json.py", "numpy.py", "ctypes.py", "southwell/__init__.py"):
+        (folder / name).write_text("import os\nos._exit(9)\n", encoding="utf-8")
+    command = [str(Path(sys.executable).with_name("southwell")), "verify", case.path, "--codes", "yoo-shin"]
+    ended = subprocess.run(
+        [*command, "--faults", "none", "--workers", "1"], capture_output=True, text=True, timeout=200
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "pass" in ended.stdout

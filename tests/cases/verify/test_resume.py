@@ -1,0 +1,171 @@
+"""A run that is killed continues: nothing is asked twice, nothing is lost, nothing is left behind."""
+
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from random import Random
+from time import monotonic
+
+import pytest
+
+from southwell.cases.judge import results
+from southwell.cases.verify import journal
+
+from ...support import killing
+
+JOURNAL, RESULTS = journal.NAME, "results.jsonl"
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run that nobody disturbed."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    status, _, err = killing.ended(killing.start(folder))
+    assert status == 0, err
+    return folder
+
+
+def same(folder: Path, undisturbed: Path) -> None:
+    """Results are those of the undisturbed run but for times; the same files are there, and no process is."""
+    assert killing.untimed(folder / "out" / RESULTS) == killing.untimed(undisturbed / "out" / RESULTS)
+    assert set(killing.files(folder)) == set(killing.files(undisturbed))
+    assert killing.running(folder) == []
+
+
+def answers(path: Path) -> int:
+    return path.read_bytes().count(b'"kind":"answer"') if path.exists() else 0
+
+
+def told(folder: Path, command: str) -> tuple[int, str]:
+    """Status and first line of a command on the folder of results, in a process of its own."""
+    line = [sys.executable, "-m", "southwell", *command.split(), "out"]
+    done = subprocess.run(line, cwd=folder, env=killing.environment(folder), capture_output=True, text=True)
+    assert "Traceback" not in done.stderr
+    return done.returncode, (done.stdout + done.stderr).splitlines()[0]
+
+
+@pytest.mark.parametrize("count", [1, 4, 8])
+def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
+    path = tmp_path / "out" / JOURNAL
+    assert killing.kill(killing.start(tmp_path), lambda: answers(path) >= count)
+    kept, before = killing.stored(path), killing.asked(tmp_path)
+    assert not (tmp_path / "out" / RESULTS).exists()
+    if count == 8:
+        for command in ("report", "gate", "dashboard"):
+            status, line = told(tmp_path, command)
+            assert status == 3
+            assert "ncomplete: " in line
+    status, _, err = killing.ended(killing.start(tmp_path))
+    assert status == 0, err
+    assert not set(killing.asked(tmp_path)[len(before) :]) & set(kept)
+    shutil.rmtree(tmp_path / "southwell-dashboard", ignore_errors=True)
+    same(tmp_path, undisturbed)
+
+
+def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Path, undisturbed: Path) -> None:
+    out = tmp_path / "out"
+    assert killing.kill(killing.start(tmp_path), (out / RESULTS).exists)
+    before = killing.asked(tmp_path)
+    assert told(tmp_path, "gate")[0] == 3
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    assert killing.asked(tmp_path) == before
+    same(tmp_path, undisturbed)
+
+
+def test_a_changed_case_or_version_takes_no_earlier_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "out" / JOURNAL
+    assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)
+    kept = killing.stored(path)
+    monkeypatch.setattr(killing, "CASE", killing.CASE.replace("2.5", "2.6").replace("E = 7e10", "E = 7.1e10"))
+    before = killing.asked(tmp_path)
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    assert set(killing.asked(tmp_path)[len(before) :]) >= set(kept)
+    assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)
+    kept, before = killing.stored(path), killing.asked(tmp_path)
+    monkeypatch.setenv("COUNTED_VERSION", "2.0")
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    assert set(killing.asked(tmp_path)[len(before) :]) >= set(kept)
+
+
+def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    earlier = b'{"kind":"plan","columns":[]}\n'
+    (out / RESULTS).write_bytes(earlier)
+    first = killing.start(tmp_path)
+    until = monotonic() + 120
+    while not (out / JOURNAL).exists():
+        assert monotonic() < until
+    status, shown, err = killing.ended(killing.start(tmp_path))
+    assert (status, shown, err.count("\n")) == (2, "", 1)
+    assert "--out out: another run is writing in this folder" in err
+    os.kill(first.pid, signal.SIGKILL)
+    first.communicate()
+    assert (out / RESULTS).read_bytes() == earlier
+
+
+def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: Path) -> None:
+    """A limit on the size of files stands for the disk: the journal cannot grow, and no half line is left in it."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (12_000, resource.RLIM_INFINITY))
+
+    killing.write(tmp_path)
+    child = subprocess.Popen(
+        killing.command(), cwd=tmp_path, env=killing.environment(tmp_path), preexec_fn=limited,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    status, _, err = killing.ended(child)
+    assert status == 3
+    assert "Traceback" not in err
+    assert f"{JOURNAL}: File too large: " in err.splitlines()[-1]
+    assert (tmp_path / "out" / JOURNAL).read_bytes().endswith(b"}\n")
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    same(tmp_path, undisturbed)
+
+
+@pytest.mark.parametrize("damage", [b'{"kind":"answer","key":"x', b"\0\0\0\n", b'{"kind":"answer"}\n', b"[]\n"])
+def test_a_journal_s_damaged_lines_are_asked_again(damage: bytes, tmp_path: Path) -> None:
+    with journal.Journal(tmp_path) as one:
+        one.begin(results.Run((), command="a"))
+        one.put("first", ([], []))
+    whole = (tmp_path / JOURNAL).read_bytes()
+    (tmp_path / JOURNAL).write_bytes(whole + damage)
+    with journal.Journal(tmp_path) as one:
+        one.begin(results.Run((), command="a"))
+        assert one.get("first") == ([], [])
+        with pytest.raises(KeyError):
+            one.get("x")
+        one.put("second", ([], []))
+    assert [json.loads(line)["kind"] for line in (tmp_path / JOURNAL).read_bytes().splitlines()[-1:]] == ["answer"]
+    assert journal.read(tmp_path / JOURNAL).unfinished
+
+
+@pytest.mark.nightly
+def test_killed_at_a_hundred_random_moments(tmp_path: Path, undisturbed: Path) -> None:
+    """Every run is killed at a moment of its own, or comes to its end; the next one continues."""
+    seed = int(os.environ.get("SOUTHWELL_SEED", "0")) or Random().randrange(10**9)
+    random, kills, runs = Random(seed), 0, 0
+    began = monotonic()
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    longest = monotonic() - began
+    path = tmp_path / "out" / JOURNAL
+    while kills < int(os.environ.get("SOUTHWELL_KILLS", "100")):
+        until = monotonic() + random.uniform(0.2, 1.0) * longest
+        kept, before = killing.stored(path), len(killing.asked(tmp_path))
+        alive = killing.kill(killing.start(tmp_path), lambda until=until: monotonic() > until)
+        kills, runs = kills + alive, runs + (not alive)
+        assert not set(killing.asked(tmp_path)[before:]) & set(kept), f"seed {seed}"
+        assert killing.running(tmp_path) == [], f"seed {seed}"
+        if alive and path.exists():
+            assert told(tmp_path, "gate")[0] == 3, f"seed {seed}"
+        elif not alive:
+            same(tmp_path, undisturbed)
+    assert killing.ended(killing.start(tmp_path))[0] == 0
+    same(tmp_path, undisturbed)
+    print(f"seed {seed}: {kills} kills, {runs} runs that came to their end before")

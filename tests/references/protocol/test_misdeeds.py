@@ -1,0 +1,126 @@
+"""Over a hundred ways of a foreign code to go wrong: each costs its own cells, says why, and leaves nothing running."""
+
+import os
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from southwell.core.blade import uniform_blade
+from southwell.core.modes import Modes
+from southwell.references.protocol import description, registry
+from southwell.references.protocol.description import Description, describe
+from southwell.references.protocol.process import Failure, Limits
+from southwell.references.protocol.worker import answers
+
+from ...support.misdeeds import ANSWERS, DECLARATIONS, TABLE, Misdeed, answering, declaring, module
+
+BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
+RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
+LIMITS = Limits(seconds=4.0, memory=3 * 2**28)
+TOKEN = f"southwell-misdeeds-{os.getpid()}"
+
+LEFT = {"none": "MMM", "one": "MFM", "rest": "MFF", "all": "FFF"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The current folder: the codes lie in it, and so do files with names of the standard library."""
+    made = tmp_path_factory.mktemp("misdeeds")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(made)
+        patch.setenv("SOUTHWELL_TEST", TOKEN)
+        yield made
+
+
+def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Failure]]:
+    """What the code says of itself, and what it answers; a code that cannot be described is asked nothing."""
+    path = misdeed.write(folder)
+    if misdeed.when in ("unsupported", "solve"):
+        return Description(path, path), answers(path, BLADE, RUNS, LIMITS)
+    (said,) = describe([path], limits=LIMITS)
+    return said, [said.failure] * len(RUNS) if said.failure else answers(path, BLADE, RUNS, LIMITS)
+
+
+@pytest.fixture(scope="module")
+def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]]]:
+    with ThreadPoolExecutor(2) as threads:
+        return dict(zip(TABLE, threads.map(partial(does, folder=folder), TABLE), strict=True))
+
+
+@pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
+def test_a_misdeed_costs_its_own_cells_only_and_is_told(misdeed: Misdeed, done: dict) -> None:
+    said, got = done[misdeed]
+    assert "".join("F" if isinstance(answer, Failure) else "M" for answer in got) == LEFT[misdeed.lost], got
+    assert not said.failure or said.name.startswith("mis")
+    for failure in (answer for answer in got if isinstance(answer, Failure)):
+        assert misdeed.reason in failure.reason
+        assert failure.reason.isprintable()
+        assert len(failure.reason) <= 400
+
+
+def test_nothing_is_left_running(done: dict) -> None:
+    left = []
+    for environ in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if TOKEN.encode() in environ.read_bytes() and int(environ.parent.name) != os.getpid():
+                left.append((environ.parent / "cmdline").read_bytes())
+        except OSError:  # it is gone, or another user's
+            continue
+    assert len(done) == len(TABLE) >= 60
+    assert not left
+
+
+def test_declarations_that_cannot_be_are_quoted(folder: Path) -> None:
+    """In one process, as none of them ends it; each is a code of its own."""
+    paths = declaring(folder)
+    said = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
+    for (line, told), one in zip(DECLARATIONS.items(), said, strict=True):
+        assert one.failure, line
+        assert one.failure.kind == "nonsense", line
+        assert told in one.failure.reason, (line, one.failure.reason)
+        assert one.name in ("misdeed", paths[line])
+
+
+def test_answers_that_cannot_be_are_quoted_and_cost_no_other(folder: Path) -> None:
+    path = answering(folder)
+    runs = [run for number in range(len(ANSWERS)) for run in ((10.0 + number, 10, 3), (1.0, 10, 3))]
+    got = answers(path, BLADE, runs, Limits(30.0))
+    for (line, told), bad, good in zip(ANSWERS.items(), got[::2], got[1::2], strict=True):
+        assert isinstance(good, Modes), (line, good)
+        assert isinstance(bad, Failure), line
+        assert bad.kind == ("refused" if "CodeError" in line else "nonsense"), (line, bad)
+        assert told in bad.reason, (line, bad.reason)
+
+
+def test_what_is_no_code_is_the_askers_mistake(folder: Path) -> None:
+    module(folder, "nothing_here", "CODE = 42\n")
+    for path, told in (
+        ("nothing_here:CODE", "lacks name, model"),
+        ("nothing_here:NO", "no attribute 'NO'"),
+        ("nowhere:CODE", "No module"),
+    ):
+        with pytest.raises(registry.UnknownCodeError, match=told):
+            describe([path], limits=LIMITS)
+
+
+def test_no_file_of_the_current_folder_takes_the_place_of_a_module(folder: Path) -> None:
+    """A code in the current folder is found, and its neighbour in it; ``random.py`` beside it is not executed."""
+    for name in ("random", "json", "numpy", "ctypes", "signal", "select"):
+        (folder / f"{name}.py").write_text("import os\nos._exit(9)\n", encoding="utf-8")
+    (folder / "southwell").mkdir()
+    (folder / "southwell" / "__init__.py").write_text("import os\nos._exit(9)\n", encoding="utf-8")
+    module(folder, "neighbour", "NAME = 'by-my-neighbour'\n")
+    lines = "import random\nfrom neighbour import NAME\nclass Code(Base):\n    name = NAME\n    version = lambda self: '1'\n"
+    module(
+        folder,
+        "lawful",
+        lines
+        + "    unsupported = lambda self, blade: None\n    solve = lambda self, *a: good(*a[1:])\nCODE = Code()\n",
+    )
+    (ours, mine) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
+    assert (ours.failure, mine.failure, mine.name) == (None, None, "by-my-neighbour")
+    (answer,) = answers("lawful:CODE", BLADE, RUNS[:1], Limits(30.0))
+    assert isinstance(answer, Modes)

@@ -1,0 +1,47 @@
+"""Output that cannot be written, or not as it is, and a defect of the program: one clear line, and the right status."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from southwell.reports.cli import app as cli
+from southwell.reports.cli import report
+
+
+def shell(line: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """A command line through the shell, ``southwell`` being this one."""
+    line = line.replace("southwell", f"'{sys.executable}' -m southwell")
+    return subprocess.run(["bash", "-c", line], env={**os.environ, **variables}, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    ("line", "variables", "status", "errors"),
+    [
+        ("southwell codes", {"PYTHONIOENCODING": "ascii"}, 0, 0),
+        ("southwell codes >&-", {}, 0, 0),
+        ("southwell codes >&- 2>&-", {}, 0, 0),
+        ("southwell codes | true; exit ${PIPESTATUS[0]}", {}, 0, 0),
+        ("southwell report /nowhere | true; exit ${PIPESTATUS[0]}", {}, 2, 1),
+        ("southwell codes > /dev/full", {}, 2, 1),
+    ],
+)
+def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], status: int, errors: int) -> None:
+    done = shell(line, **variables)
+    assert (done.returncode, done.stderr.count("\n")) == (status, errors), done.stderr
+
+
+def test_a_defect_of_the_program_has_a_status_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fails(_: object) -> None:
+        raise ZeroDivisionError("division by zero")
+
+    monkeypatch.setattr(report, "found", fails)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["report", str(tmp_path)])
+    assert ended.value.code == 70
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith("southwell: internal error: ZeroDivisionError: division by zero: please report it")

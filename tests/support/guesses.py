@@ -1,0 +1,66 @@
+"""Steady states that do not depend on luck: every one that a test finds is found again from guesses beside its own."""
+
+import os
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from southwell.core.multibody import equilibrium, linearize
+from southwell.core.multibody.equilibrium import State
+from southwell.core.multibody.linear import about
+from southwell.core.multibody.tree import Tree
+
+GUESSES = 200
+"""Of every night (SOUTHWELL_GUESSES=200); by default none but those of ``test_steady_mechanisms``."""
+
+CHOSEN = np.unique(
+    np.linspace(0, GUESSES - 1, int(os.environ.get("SOUTHWELL_GUESSES", "0"))).round().astype(int)
+).tolist()
+"""Numbers of the guesses tried."""
+
+STEADY = equilibrium.steady
+
+
+def perturbed(coordinates: list[str], guess: Mapping[str, float], k: int) -> dict[str, float]:
+    """The k-th guess, each coordinate moved by 1e-12 to 1e-2 rad or m."""
+    rng = np.random.default_rng(k)
+    size = 10.0 ** (-12.0 + 10.0 * k / (GUESSES - 1))
+    return {name: guess.get(name, 0.0) + size * float(rng.uniform(-1.0, 1.0)) for name in coordinates}
+
+
+def same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen: list[int]) -> None:
+    """Find the state again from these guesses.
+
+    Compared by the stiffness about it, which knows nothing of a top's azimuth; of one that drifts, by its shape.
+    """
+    held = {m.coordinate for m in tree.mechanism.motions if m.held}
+    names = [c for c in tree.coordinates if c not in held]
+    linear = about(tree, expected)
+    drifts = equilibrium.unresisted(tree, expected, linear.names)[0].shape[1] > 0
+    for k in chosen:
+        found = STEADY(tree, perturbed(names, guess or {}, k))
+        again = about(tree, found, linear.names)
+        stiff = np.abs(again.K - linear.K).max(initial=0.0) <= 1e-8 * np.abs(linear.K).max(initial=0.0)
+        alike = drifts and np.allclose(_shape(found), _shape(expected), rtol=1e-8, atol=0.0)
+        assert stiff or alike, f"guess {k}: another state"
+
+
+def _shape(state: State) -> np.ndarray:
+    """Distances of the bodies from each other, but for the first, which turns."""
+    at = state.kinematics.poses[:, :3, 3]
+    return np.linalg.norm(at[:, None] - at, axis=-1)[1:, 1:]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def every_steady_state_again():
+    """Wherever a test linearises a mechanism."""
+
+    def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
+        found = STEADY(tree, guess)
+        same(tree, guess, found, CHOSEN)
+        return found
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linearize, "steady", steady)
+        yield

@@ -1,0 +1,143 @@
+"""A verification that is killed and run again: how, and what it must leave."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import monotonic, sleep
+
+SUPPORT = Path(__file__).parent
+
+CASE = """
+name = "stub"
+title = "A short beam"
+description = "For runs that are killed."
+source = "nowhere"
+[blade]
+kind = "beam"
+length = 2.0
+hub_radius = 0.1
+E = 7e10
+G = 2.7e10
+density = 2700.0
+A = 4e-4
+I_y = 2e-8
+I_z = 5e-8
+J = 7e-8
+[speeds]
+rad_s = [0.0, 10.0]
+[compare]
+modes = 2
+[variants.a]
+[variants.b]
+length = 2.5
+"""
+
+CODES = "counted:FIRST,counted:SECOND,exact-beam"
+
+
+def command() -> list[str]:
+    """``verify`` of ``case.toml`` with codes that write down every question they are asked."""
+    options = ["--codes", CODES, "--out", "out", "--faults", "none", "--workers", "1"]
+    return [sys.executable, "-m", "southwell", "verify", "case.toml", *options]
+
+
+def write(folder: Path) -> None:
+    """Put the case into a folder."""
+    (folder / "case.toml").write_text(CASE)
+
+
+def start(folder: Path) -> subprocess.Popen[str]:
+    """Begin ``command`` in a folder."""
+    write(folder)
+    return subprocess.Popen(
+        command(),
+        cwd=folder,
+        env=environment(folder),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """That of the run: it finds the codes, and its processes can be found."""
+    return {**os.environ, "PYTHONPATH": str(SUPPORT), "SOUTHWELL_TEST": str(folder), "MPLBACKEND": "agg"}
+
+
+def ended(child: subprocess.Popen[str]) -> tuple[int, str, str]:
+    """Status, standard output and standard error."""
+    out, err = child.communicate(timeout=300)
+    return child.returncode, out, err
+
+
+def kill(child: subprocess.Popen[str], when: Callable[[], bool]) -> bool:
+    """Kill the main process, and it alone, as soon as ``when`` says; whether it was still running."""
+    while child.poll() is None and not when():
+        sleep(0.002)
+    alive = child.poll() is None
+    if alive:
+        os.kill(child.pid, signal.SIGKILL)
+    child.communicate(timeout=60)
+    return alive
+
+
+def running(folder: Path) -> list[str]:
+    """Processes that runs in ``folder`` have started and that are still there, a few seconds for them to go."""
+    until = monotonic() + 20
+    while (found := _running(folder)) and monotonic() < until:
+        sleep(0.05)
+    return found
+
+
+def _running(folder: Path) -> list[str]:
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            text = entry.read_bytes()
+        except OSError:
+            continue
+        if f"SOUTHWELL_TEST={folder}\0".encode() in text:
+            found.append(entry.parent.name)
+    return found
+
+
+def untimed(results: Path) -> list[str]:
+    """The lines of a results file as they stand, but for the times of cells."""
+    lines = []
+    for line in results.read_text(encoding="utf-8").splitlines():
+        row = json.loads(line)
+        if "seconds" in row:
+            row["seconds"] = None
+        lines.append(json.dumps(row))
+    return lines
+
+
+def asked(folder: Path) -> list[str]:
+    """Every question that the codes were asked, in their order."""
+    path = folder / "asked.txt"
+    return path.read_text().splitlines() if path.exists() else []
+
+
+def stored(journal: Path) -> list[str]:
+    """Code and blade of each of these codes' columns that a journal holds."""
+    found = []
+    for line in journal.read_bytes().split(b"\n")[:-1] if journal.exists() else []:
+        value = json.loads(line).get("value")
+        if isinstance(value, list) and value[0] == "tuple" and value[1][1:] and value[1][1][0] == "Cell":
+            (
+                _,
+                case,
+                *_,
+            ) = value[1][1]
+            found.append(f"{value[1][1][5]} {case}")
+    return [name for name in found if name.startswith(("first", "second"))]
+
+
+def files(folder: Path) -> Sequence[str]:
+    """Every file in a folder and below, by its path in it."""
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
