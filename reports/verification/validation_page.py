@@ -23,8 +23,9 @@ PAGE, FIGURE = "validation.md", "validation.svg"
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
     """Compare the model of a measured rotor with its measurements.
 
-    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotor is the Sandia 34 m vertical-axis test bed. Writes validation.md and a Campbell diagram with the measured points.
-    Takes several minutes. The status is 0 whatever the comparison shows: a measurement is not a code.
+    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotor is the Sandia 34 m vertical-axis test
+    bed. Writes validation.md and a Campbell diagram with the measured points. Takes several minutes. The status is 0
+    whatever the comparison shows: a measurement is not a code.
 
     Parameters
     ----------
