@@ -44,7 +44,8 @@ class Blade:
         pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
         root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
-            N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring.
+            N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring. The blade
+            slides along x, y and z, then turns about x, y and z in sequence; each spring is on one of these coordinates.
         kinks: those of the inner stations where the curve's tangent jumps, m: each piece between them has a spline of its own,
             and the sections turn with the tangent. A piece of two stations is straight.
 

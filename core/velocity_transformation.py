@@ -113,8 +113,9 @@ def _shapes(body: Chain, linear: lz.Linear, vectors: NDArray[np.complex128]) -> 
     nodes = k.poses[1 : n + 1]  # behind the hub, whose axes are the ground's now
     twists = sp.adjoint(sp.inverse(nodes)) @ (k.B[1 : n + 1] @ dq)  # δZ = B δq, in the nodes' own axes
     inner = linear.tree.inner[:, None] + np.arange(6)  # β of each element; none where the mass is lumped
-    beta, dbeta = k.q[inner], dq[inner]
-    if not len(inner):
-        beta, dbeta = np.zeros((n - 1, 0)), np.zeros((n - 1, 0, vectors.shape[1]), complex)
+    beta = np.zeros((n - 1, body.beams.inner))
+    dbeta = np.zeros((*beta.shape, vectors.shape[1]), complex)
+    if len(inner):  # not of a joint at the root
+        beta[-len(inner) :], dbeta[-len(inner) :] = k.q[inner], dq[inner]
     own = np.concatenate([dbeta, twists[1:]], axis=1).reshape(-1, vectors.shape[1])
     return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), own)

@@ -1,7 +1,7 @@
 """A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
 
 A joint at the root is an elastic connection too, without length: it lies along the root's axes, the coordinates that it
-holds are prescribed to stay at zero (Φᴹ), and its springs are the chain's first element.
+holds are prescribed to stay at zero (Φᴹ), and its springs are on the others.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from ..element.beams import Beams, Points
 from ..element.discretize import Chain
 from ..element.measures import part
 from ..multibody.joints import SCREWS, Joint
-from ..multibody.mechanism import GROUND, Beam, Body, Load, Mechanism, Motion
+from ..multibody.mechanism import GROUND, Beam, Body, CoordinateSpring, Load, Mechanism, Motion
 from . import root_joint
 
 
@@ -26,10 +26,14 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
     frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
     held: list[str] = []
+    springs: list[CoordinateSpring] = []
     if chain.held.size:
         frames[0, :3, :3] = chain.root_axes
-        fixed = root_joint.holds(chain)
-        held = [f"element 1.{name}" for (name, _), stays in zip(SCREWS["elastic"], fixed, strict=True) if stays]
+        names = [f"element 1.{name}" for name, _ in SCREWS["elastic"]]
+        held = [name for name, stays in zip(names, root_joint.holds(chain), strict=True) if stays]
+        springs = [
+            CoordinateSpring(*one) for one in zip(names, root_joint.springs(chain).tolist(), strict=True) if one[1]
+        ]
     joints = (
         Joint("hub", "revolute", GROUND, "hub"),
         Joint("root", "fixed", "hub", "body 0", at_parent=chain.nodes[0]),
@@ -49,9 +53,10 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
         bodies=bodies,
         joints=joints,
         motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in held)),
+        coordinate_springs=tuple(springs),
         beams=tuple(
             Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), at_b=chain.corner[k], axes_of="hub")
-            for k in range(n)
+            for k in range(1 if chain.held.size else 0, n)
         ),
         loads=tuple(Load(f"body {k}", f, "hub") for k, f in enumerate(chain.force) if f.any()),
         gravity=gravity,

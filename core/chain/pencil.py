@@ -33,7 +33,8 @@ _CANCELLED, _STRAINLESS = (
 class Linear:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
-    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses; ``held`` as in ``Chain``,
+    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses, the identity for a joint at the root, whose
+    springs are on the twist of node 1; ``held`` as in ``Chain``,
     at this shape. What is held is replaced by a unit stiffness on its own, without mass or load: it stays where it is, and
     makes no mode.
     """
@@ -109,14 +110,17 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, model: M
     p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], model, axes[:-1])
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
     inertia.carried(chain.lumps, frame, fall, push, model.geometric, g, C, K)
-    residual = np.empty((n - 1, d))
+    residual, held = np.empty((n - 1, d)), chain.held
+    if held.size:  # the joint takes the first element's place
+        p.residual[0], p.rest[0, :, :12], p.rest[0, :12], lever[0] = 0.0, 0.0, 0.0, np.eye(6)
     _balance(p.residual, lever, g, residual)
-    held = chain.held
     if held.size:
-        held, turning = root_joint.held(chain, shape.nodes, residual[0, -6:])
+        joint = root_joint.response(chain, relative[0], residual[0, -6:])
+        held, p.spring[0] = joint.held, joint.stiffness
+        residual[0, -6:] += joint.wrench
         residual[0, -6:] -= held @ residual[0, -6:]
         if model.geometric:
-            K[1] += turning
+            K[1] += joint.turning
     moving = 1.0 if model.coriolis else 0.0
     return Linear(
         residual.ravel(),

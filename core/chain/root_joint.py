@@ -1,9 +1,12 @@
-"""The joint at a chain's root: a sequence of screws along the root's axes, x, y, z, then about x, y, z, some of them held.
+"""The joint at a chain's root: a sequence of screws along the root's axes x, y, z, then about x, y, z.
 
-Node 1 may move by the joint's coordinates q only. Two hinges do not commute: which twists are free depends on how far the
-joint has turned, F(q), and with a held reaction r that turning is a stiffness of its own, ``r · ∂F_i/∂q_j``. Without it K is
-not symmetric, and the steady state depends on the steps that led there.
+Each screw is prescribed to stay at zero, free, or on a spring of its own coordinate: the potential of the springs is
+``½ Σ k_i q_i²``. Node 1 moves by the joint's coordinates q only. Two hinges do not commute: the twists F_i(q) of node 1
+depend on how far the joint has turned, and with a wrench w that turning is a stiffness of its own, ``w · ∂F_i/∂q_j``.
+Without it K is not symmetric, and the steady state depends on the steps that led there.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,47 +20,77 @@ Array = NDArray[np.float64]
 _SCREWS = np.array([screw for _, screw in SCREWS["elastic"]])
 
 
+class Response(NamedTuple):
+    """What the joint does to node 1, in that node's own axes.
+
+    Attributes:
+        held: (6, 6) projector on the twists that the joint holds.
+        wrench: (6,) residual of its springs.
+        stiffness: (6, 6) of its springs.
+        turning: (6, 6) geometric stiffness of the wrench that node 1 bears.
+    """
+
+    held: Array
+    wrench: Array
+    stiffness: Array
+    turning: Array
+
+
 def holds(chain: Chain) -> NDArray[np.bool_]:
-    """(6,) which of the joint's freedoms are held."""
+    """(6,) which of the joint's coordinates are held."""
     turn = _turn(chain)
     return np.diagonal(turn.T @ chain.held @ turn) > 0.5
 
 
-def put(chain: Chain, nodes: Array) -> tuple[Array, Array]:
+def springs(chain: Chain) -> Array:
+    """(6,) stiffness of each of the joint's coordinates, N/m and N m/rad; zero where it is held or free."""
+    turn = _turn(chain)
+    return np.diagonal(turn.T @ chain.beams.stiffness[0] @ turn).copy()
+
+
+def put(chain: Chain, nodes: Array, first: Array) -> tuple[Array, Array]:
     """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its held coordinates zero; the blade is carried along.
 
-    Also returned: the pose (4, 4) of node 1 in the frame of node 0.
+    ``first`` is the pose (4, 4) of node 1 in the frame of node 0; it is returned too.
     """
     fixed = holds(chain)
     if not fixed.any():
-        return nodes, sp.inverse(nodes[0]) @ nodes[1]
-    q = np.where(fixed, 0.0, _coordinates(chain, nodes))
+        return nodes, first
+    q = np.where(fixed, 0.0, _coordinates(chain, first))
     frame = sp.pose(chain.root_axes, np.zeros(3))
     here = frame.copy()
     for step in sp.exp(_SCREWS * q[:, None]):
         here = here @ step
-    first = here @ frame.T
+    allowed = here @ frame.T
     out = nodes.copy()
-    out[1:] = nodes[0] @ first @ sp.inverse(nodes[1]) @ nodes[1:]
-    return out, first
+    out[1:] = nodes[0] @ allowed @ sp.inverse(nodes[1]) @ nodes[1:]
+    return out, allowed
 
 
-def held(chain: Chain, nodes: Array, wrench: Array) -> tuple[Array, Array]:
-    """In node 1's own axes: the projector (6, 6) on what is held, and the stiffness (6, 6) of a wrench (6,) that it bears."""
+def response(chain: Chain, first: Array, wrench: Array) -> Response:
+    """The joint's part of node 1's balance.
+
+    Args:
+        chain: a chain on a joint.
+        first: (4, 4) pose of node 1 in the frame of node 0.
+        wrench: (6,) residual of node 1 without the joint, in its own axes.
+    """
     fixed = holds(chain)
-    if not fixed.any() or fixed.all():
-        return chain.held, np.zeros((6, 6))
-    q = np.where(fixed, 0.0, _coordinates(chain, nodes))
+    q = np.where(fixed, 0.0, _coordinates(chain, first))
     F, outer = np.empty((6, 6)), np.eye(4)  # columns: twists of node 1 in the joint's axes, from the last screw inwards
     for i in reversed(range(6)):
         F[:, i] = sp.adjoint(outer) @ _SCREWS[i]
         outer = outer @ sp.exp(-_SCREWS[i] * q[i])
     F = (_turn(chain) @ F)[:, ~fixed]
-    back = np.linalg.pinv(F)
-    turning = np.triu(
-        -np.einsum("k,jkl,li->ij", wrench, sp.ad(F.T), F), 1
-    )  # r · ∂F_i/∂q_j = −r · (F_j × F_i), j beyond i
-    return np.eye(6) - F @ back, back.T @ turning @ back
+    back = np.linalg.pinv(F)  # q̇ of a twist
+    k = springs(chain)[~fixed]
+    second = -np.einsum("k,jkl,li->ij", wrench, sp.ad(F.T), F)  # w · ∂F_i/∂q_j = −w · (F_j × F_i), j beyond i
+    return Response(
+        held=np.eye(6) - F @ back,
+        wrench=back.T @ (k * q[~fixed]) + chain.beams.preload[0],
+        stiffness=back.T * k @ back,
+        turning=back.T @ np.triu(second, 1) @ back,
+    )
 
 
 def _turn(chain: Chain) -> Array:
@@ -65,9 +98,9 @@ def _turn(chain: Chain) -> Array:
     return sp.adjoint(sp.pose(chain.root_axes, np.zeros(3)))
 
 
-def _coordinates(chain: Chain, nodes: Array) -> Array:
-    """(6,) of the joint's screws, from the poses of nodes 0 and 1: displacements, and Cardan angles x, y, z."""
+def _coordinates(chain: Chain, first: Array) -> Array:
+    """(6,) of the joint's screws, from the pose of node 1 seen from node 0: displacements, and Cardan angles x, y, z."""
     frame = sp.pose(chain.root_axes, np.zeros(3))
-    x = frame.T @ sp.inverse(nodes[0]) @ nodes[1] @ frame
+    x = frame.T @ first @ frame
     angles = np.arctan2(-x[1, 2], x[2, 2]), np.arcsin(np.clip(x[0, 2], -1.0, 1.0)), np.arctan2(-x[0, 1], x[0, 0])
     return np.array([*x[:3, 3], *angles])

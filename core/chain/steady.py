@@ -86,7 +86,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     before = np.inf
     for _ in range(_STEPS):
         if chain.held.size:
-            nodes, first = root_joint.put(chain, shape.nodes)
+            nodes, first = root_joint.put(chain, shape.nodes, shape.relative[0])
             shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
         try:

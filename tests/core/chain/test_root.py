@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from southwell.core import velocity_transformation
 from southwell.core.blade import Blade, BladeError, uniform_blade, without_rotary_inertia
 from southwell.core.chain import steady
 from southwell.core.eigen import UnstableError
@@ -123,3 +124,17 @@ def test_a_uniform_load_bends_the_cantilever_as_it_should() -> None:
 def test_a_load_of_another_form_is_refused() -> None:
     with pytest.raises(ValueError, match=r"load: shape \(3, 3\)"):
         modes(PARK, 1.0, load=np.zeros((3, 3)))
+
+
+def test_springs_act_on_the_coordinates_of_a_joint_that_slides_and_turns() -> None:
+    """Against Exudyn's kinematic tree of prismatic and revolute joints, its error of second order removed."""
+    code = registry.code("exudyn-tree")
+    if code.version() is None:
+        pytest.skip(code.hint)
+    soft = uniform_blade("soft", 1.0, 0.2, EA=1e4, GJ=1.0, EI_y=1.0, EI_z=1.0, mass=1.0, I_y=1e-3, I_z=2e-3)
+    blade = replace(on(soft, [80.0, 60.0, 40.0, 2.0, 5.0, 7.0]), pitch=0.3)
+    coarse, fine = (code.solve(blade, 2.0, n, 5).frequencies for n in (24, 48))
+    np.testing.assert_allclose(modes(blade, 2.0, 40, 5).frequencies, fine + (fine - coarse) / 3, rtol=2e-6)
+    np.testing.assert_allclose(
+        modes(blade, 2.0, 40, 5).frequencies, velocity_transformation.modes(blade, 2.0, 40, 5).frequencies, rtol=1e-10
+    )
