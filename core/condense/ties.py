@@ -28,6 +28,7 @@ Kind = Literal["rigid", "average"]
 
 ASYMMETRY = 1e-5  # of a stiffness with a unit diagonal: what seven printed digits leave
 ON_SECTION = 1e-6  # distance from its plane, of the model's size
+FARTHEST = 1e6  # m, of a point: what is beyond is no blade, and its products overflow
 
 
 class CondensationError(ValueError):
@@ -61,6 +62,10 @@ class FiniteElements:
                 raise CondensationError(
                     f"{self.name}: {field} has shape {given}, expected {shape} for {n} freedoms: is it from another model?"
                 )
+        if not (np.abs(self.points) <= FARTHEST).all():
+            raise CondensationError(
+                f"{self.name}: a point at {np.abs(self.points).max():g} m: a gap in the exported mesh, or wrong units?"
+            )
         if not np.isfinite(self.stiffness.data).all():
             raise CondensationError(f"{self.name}: stiffness is not finite: a gap or overflow in the exported matrix?")
         diagonal = self.stiffness.diagonal()

@@ -124,7 +124,12 @@ def _is_run(path: Path) -> bool:
 
 def _page(run: Run, gate: Comparison, strict: bool) -> str:
     """What the run found, and what the gate did."""
-    parts = ["### Southwell", *matrix_report.headline(run), gate_text.markdown(gate, strict), matrix_report.heat(run)]
+    parts = [
+        "### Southwell",
+        *matrix_report.marked(run, matrix_report.headline(run)),
+        gate_text.markdown(gate, strict),
+        matrix_report.heat(run),
+    ]
     return "\n\n".join(parts) + "\n"
 
 

@@ -67,7 +67,7 @@ def show_tables(run: Run) -> None:
 
     console = output()
     for line in matrix_report.headline(run):
-        console.print(line.replace("**", ""), markup=False, soft_wrap=True)
+        console.print(line, markup=False, soft_wrap=True)
     for table in terminal.matrix(run, console.width):
         console.print(table)
     console.print(terminal.legend(), style="dim", markup=False)

@@ -71,7 +71,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
 
 
 def headline(run: Run) -> list[str]:
-    """The verdict in a few lines, those of the report, without its markup."""
+    """The verdict in a few lines, those of the report."""
     lines = [
         summary.incomplete(run),
         *evidence.first(run),
@@ -79,7 +79,7 @@ def headline(run: Run) -> list[str]:
         *witnesses.missing(run),
         controls.headline(run),
     ]
-    return [line.replace("**", "") for line in lines if line]
+    return [line for line in lines if line]
 
 
 def _control(control: Control) -> dict[str, Any]:
@@ -113,7 +113,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     return {
         "name": case,
         "setting": asdict(setting) if setting else None,
-        "answer": evidence.answer(Run(tuple(cells))).split("**")[1],
+        "answer": evidence.verdict(Run(tuple(cells))),
         "told": told(run, case),
         "speed": u.speed,
         "frequency": u.frequency,

@@ -24,30 +24,43 @@ SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
 """Verdicts on a difference from core with the same effects, gravest first."""
 
 
-def answer(run: Run) -> str:
-    """The verdict in a sentence, and how many cells it rests on."""
+def verdict(run: Run) -> str:
+    """The verdict on the run, a sentence."""
     counts = summary.counts(run.cells)
-    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in counts.items() if n)
-    cells = f"{len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
     if not summary.compared(run.cells):
-        return f"**Nothing was compared.** {cells}"
-    if counts["fail"]:
-        return f"**No: {_number(counts['fail'])} core.** {cells}"
+        return "Nothing was compared."
+    missing = sum(_mute(c) for c in run.cells)
+    if wrong := counts["fail"] - missing:
+        also = f", and {missing} {'is' if missing == 1 else 'are'} missing" if missing else ""
+        return (
+            f"No: {wrong} answer contradicts core{also}."
+            if wrong == 1
+            else f"No: {wrong} answers contradict core{also}."
+        )
+    if missing:
+        return f"No: {missing} answer is missing." if missing == 1 else f"No: {missing} answers are missing."
     if counts["inconclusive"]:
-        return f"**Nothing contradicts core, but {counts['inconclusive']} of the answers cannot tell.** {cells}"
-    return f"**Nothing contradicts core.** {cells}"
+        return f"Nothing contradicts core, but {counts['inconclusive']} of the answers cannot tell."
+    return "Nothing contradicts core."
 
 
-def _number(n: int) -> str:
-    return f"{n} answer contradicts" if n == 1 else f"{n} answers contradict"
+def answer(run: Run) -> str:
+    """The verdict, and how many cells it rests on."""
+    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
+    return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
+
+
+def _mute(cell: Cell) -> bool:
+    """Whether a code failed without a frequency to compare."""
+    return cell.verdict == "fail" and cell.difference is None
 
 
 def urgent(run: Run) -> list[str]:
     """Lines for the worst failure, for failures without a number, and for the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
     told = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
-    mute = dict.fromkeys(f"{c.code} ({c.case})" for c in run.cells if c.verdict == "fail" and c.difference is None)
-    return [*told, *([f"Failed without a frequency: {', '.join(mute)}."] if mute else [])]
+    mute = {(c.code, c.case): c.reason for c in run.cells if _mute(c)}
+    return [*told, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
 
 
 def first(run: Run) -> list[str]:

@@ -93,7 +93,7 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     environment.filters["plain"] = plain
     found = lumped.taken(run)
     return environment.get_template("report.md.jinja").render(
-        headline=first(run),
+        headline=marked(run, [told for told in (summary.incomplete(run), *evidence.first(run)) if told]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
         remarks=[plain(told) for told in (witnesses.headline(run), controls.headline(run)) if told],
         heat=heat(run, linked=True),
@@ -120,23 +120,23 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 
 def headline(run: Run) -> list[str]:
-    """The verdict in a few sentences, the gravest first."""
-    lines = [*_unfinished(run), evidence.answer(run), *(plain(line) for line in evidence.urgent(run))]
+    """The verdict in a few sentences, the gravest first; text without markup."""
+    lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run)]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
-            lines.append(f"{what}: {summary.plus_minus(worst)} ({plain(evidence.where(run, worst))}).")
-    remarks = [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
-    return lines + [plain(told) for told in remarks if told]
+            lines.append(f"{what}: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
+    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    return [line for line in lines if line]
 
 
-def first(run: Run) -> list[str]:
-    """The answer, and after it what ``evidence`` names first, as text."""
-    answer, *rest = evidence.first(run)
-    return [*_unfinished(run), answer, *map(plain, rest)]
-
-
-def _unfinished(run: Run) -> list[str]:
-    return [f"**{plain(told)}**"] if (told := summary.incomplete(run)) else []
+def marked(run: Run, lines: Sequence[str]) -> list[str]:
+    """Lines of text as Markdown: that the run is incomplete, and the verdict, in bold type."""
+    out = []
+    for line in lines:
+        bold = next((b for b in (summary.incomplete(run), evidence.verdict(run)) if b and line.startswith(b)), "")
+        rest = line[len(bold) :]
+        out.append(f"**{plain(bold)}**{' ' * rest.startswith(' ')}{plain(rest)}" if bold else plain(line))
+    return out
 
 
 def unasked(run: Run) -> str:

@@ -29,7 +29,7 @@ source = "Rayleigh (1877)"
 kind = "dimensionless"
 slenderness = 1000
 [speeds]
-gamma = [0, 2]
+gamma = [0, 0.1]
 [compare]
 motions = ["chordwise", "flapwise"]
 modes = 2
@@ -37,14 +37,14 @@ time_limit = 20
 """
 
 BAD = {
-    "import-exit_0": ("fail", "fail"),
-    "import-sys_exit": ("fail", "fail"),
-    "version-raises": ("fail", "fail"),
-    "unsupported-exit_0": ("fail", "fail"),
-    "unsupported-two_lines": ("not applicable", "not applicable"),
-    "solve-patches_json": ("fail", "fail"),
+    "import-exit_0": "fail",
+    "import-sys_exit": "fail",
+    "version-raises": "fail",
+    "unsupported-exit_0": "fail",
+    "unsupported-two_lines": "not applicable",
+    "solve-patches_json": "fail",
 }
-"""Verdicts at the two speeds."""
+"""The verdict of every cell."""
 
 
 @pytest.fixture(autouse=True)
@@ -78,16 +78,17 @@ def of(run: Run, code: str) -> list[Cell]:
 
 def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) -> None:
     """They declare the name ``misdeed``, if they come so far; else they go by what they were asked for."""
-    for key, verdicts in BAD.items():
+    alone = of(run(case, "southwell-equation"), "southwell-equation")
+    assert len(alone) == 4
+    for key, verdict in BAD.items():
         path = written(key, folder)
         found = run(case, path, "southwell-equation")
         bad = [c for c in found.cells if c.code in ("misdeed", path)]
-        assert tuple(c.verdict for c in sorted(bad, key=lambda c: c.omega)) == verdicts, (key, bad)
-        assert all(c.reason and c.mode == 0 for c in bad)
+        assert {(c.omega > 0, c.verdict) for c in bad} == {(False, verdict), (True, verdict)}, (key, bad)
+        assert all(c.reason for c in bad)
         good = of(found, "southwell-equation")
-        assert len(good) == 4
-        assert {c.verdict for c in good} <= {"pass", "known difference"}
-        assert summary.status(found) == (1 if "fail" in verdicts else 0)
+        assert [(c.frequency, c.verdict) for c in good] == [(c.frequency, c.verdict) for c in alone]
+        assert summary.status(found) == (1 if verdict == "fail" else 0)
 
 
 def test_an_exit_at_import_is_no_success(case: Case, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
