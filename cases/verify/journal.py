@@ -28,6 +28,10 @@ WORDS = {"run": {"plan", "settings", "versions", "command"}, "answer": {"key", "
 """What a line of each kind has: a run that was begun, an answer, an earlier answer that the run begun last takes up."""
 
 
+class JournalError(OSError):
+    """The disk does not take an answer. The run stops: what cannot be kept is not asked for."""
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """While this lasts, no other run writes in the folder. The system's lock on the folder itself: it leaves no file behind,
@@ -51,7 +55,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 class Journal:
-    """An open journal. Every method that writes raises OSError if the disk does not take the whole line."""
+    """An open journal. Every method that writes raises ``JournalError`` if the disk does not take the whole line."""
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / NAME
@@ -99,7 +103,7 @@ class Journal:
             except OSError as error:
                 with suppress(OSError):
                     self.file.truncate(self.size)
-                raise OSError(error.errno, error.strerror, str(self.path)) from error
+                raise JournalError(error.errno, error.strerror, str(self.path)) from error
             self.size += len(text)
 
     def __enter__(self) -> "Journal":
@@ -185,7 +189,7 @@ class Remembering(Executor):
         self.executor, self.journal = executor, journal
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """See ``Executor``. The future fails with OSError if the answer cannot be stored."""
+        """See ``Executor``. The future fails with ``JournalError`` if the answer cannot be stored."""
         key = digest(fn, args, kwargs)
         try:
             found: Future[Any] = Future()

@@ -21,6 +21,7 @@ from ..judge.results import Cell, Level, Origin, Planned, Run, Share
 from . import error_budget, mechanism_columns
 from .columns import Column, Rows, columns, failing
 from .identity import adapter
+from .journal import JournalError
 from .mechanism_case import MechanismCase, Turning
 from .names import unique
 from .reference import references
@@ -166,7 +167,7 @@ def _answer(future: Future[Any]) -> Any:
     """What a task gave, or that it failed by an error of ours: that costs its cells, and no others."""
     try:
         return future.result()
-    except (CaseError, BrokenExecutor):
+    except (CaseError, BrokenExecutor, JournalError):
         raise
     except Exception as error:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")

@@ -71,7 +71,10 @@ def rounding(linear: Linear, found: eigen.Eigen | eigen.Damped) -> Array:
 
 def _vectors(Q: Complex, count: int) -> tuple[Complex, Complex]:
     """Right and left singular vectors (n, count) of the smallest singular values."""
-    u, _, vh = cast(tuple[Complex, Array, Complex], scipy.linalg.svd(Q))
+    try:
+        u, _, vh = cast(tuple[Complex, Array, Complex], scipy.linalg.svd(Q))
+    except scipy.linalg.LinAlgError:  # divide and conquer may not converge
+        u, _, vh = cast(tuple[Complex, Array, Complex], scipy.linalg.svd(Q, lapack_driver="gesvd"))
     return vh[-count:].conj().T, u[:, -count:]
 
 

@@ -37,6 +37,9 @@ STALLED, NOTHING = 10.0, 1e-4
 SHRINKING = 1e-2
 """Least factor between the energies of steps that converge."""
 
+RIGID = 1e-9
+"""Departure from a rigid body's inertia that is taken for rounding, of its largest entry."""
+
 
 class Plant(Protocol):
     """A chain in another code: a hub that turns about z, then a body on six joints for every node but the clamped one.
@@ -62,8 +65,13 @@ class Plant(Protocol):
 
 
 def refusal(blade: Blade) -> str | None:
-    """Why a blade is not such a chain: its root moves."""
-    return None if clamped(blade) else "the root is not clamped: the chain begins at the hub"
+    """Why a blade is not such a chain: its root moves, or an inertia is a rigid body's only roughly, as published ones are."""
+    if not clamped(blade):
+        return "the root is not clamped: the chain begins at the hub"
+    for name, inertia in (("mass", blade.mass), ("tip_mass", blade.tip_mass[None])):
+        if (far := _from_rigid(inertia)) > RIGID:
+            return f"{name} is not a rigid body's to {far:.1e}: one mass in all directions, antisymmetric in its offset"
+    return None
 
 
 def chain_modes(
@@ -121,6 +129,17 @@ def places(chain: Chain) -> Array:
 def bodies(chain: Chain) -> Array:
     """(e, 6, 6) inertia of each body, in the frame that ``places`` gives it."""
     return moved(chain.lumps[1:], sp.inverse(chain.corner))
+
+
+def _from_rigid(inertia: Array) -> float:
+    """How far inertias (k, 6, 6) are from the form [[m, −m c×], [m c×, J]], of their largest entry."""
+    linear, offset = inertia[:, :3, :3], inertia[:, :3, 3:]
+    wrong = [
+        linear - inertia[:, :1, :1] * np.eye(3),
+        offset + np.swapaxes(offset, 1, 2),
+        inertia - np.swapaxes(inertia, 1, 2),
+    ]
+    return max(float(np.abs(w).max()) for w in wrong) / max(float(np.abs(inertia).max()), np.finfo(float).tiny)
 
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:

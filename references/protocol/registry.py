@@ -46,6 +46,9 @@ class Address(TypedDict):
     folder: str | None
 
 
+ADVICE = "is it module:attribute, and installed or in this folder?"
+
+
 class UnknownCodeError(ValueError):
     """A code that cannot be had: the message names it, the likely cause, and the remedy."""
 
@@ -112,16 +115,15 @@ def code(name: str) -> Any:
     """
     path = locate(name)
     module, _, attribute = path.partition(":")
-    advice = "is it module:attribute, and installed or in this folder?"
     if not module or module.startswith("."):
-        raise UnknownCodeError(f"code: {name!r}: no module is named: {advice}")
+        raise UnknownCodeError(f"code: {name!r}: no module is named: {ADVICE}")
     try:
         holder = import_module(module)
     except ImportError as error:
-        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}: {advice}") from error
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}: {ADVICE}") from error
     if not hasattr(holder, attribute):
         told = f"module {module!r} has no attribute {attribute!r}"
-        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {advice}")
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {ADVICE}")
     found = getattr(holder, attribute)
     needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]

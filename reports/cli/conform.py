@@ -7,7 +7,7 @@ from rich.table import Table
 
 from ...cases.conformance.worker import outcomes
 from ...references.protocol.description import describe
-from ...references.protocol.registry import UnknownCodeError
+from ...references.protocol.registry import ADVICE, UnknownCodeError
 from ..shared.console import output
 
 MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"}
@@ -25,6 +25,9 @@ def command(code: str, /) -> int:
         Name (`southwell codes`), or import path `module:attribute` of an adapter.
     """
     (known,) = describe([code])
+    if known.failure and known.failure.reason.startswith("import: "):
+        why = known.failure.reason.removeprefix("import: ")
+        raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
     if not known.blades:
         raise UnknownCodeError(f"code: {code!r} takes mechanisms, not blades: there are no checks for it")
     table = Table(box=box.SIMPLE_HEAD)

@@ -191,7 +191,7 @@ def test_what_is_not_of_the_run_is_bad_input(
         ("results.csv", "--add results.csv: give a name and a file, as in --add rig=results.csv"),
         ("=results.csv", "give a name and a file"),
         ("rig=", "give a name and a file"),
-        ("yoo-shin={}", "--add yoo-shin: there is a code or another file of that name"),
+        ("yoo-shin={}", "code: 'yoo-shin' is given twice, by --codes yoo-shin and by --add "),
     ],
 )
 def test_names_are_needed_and_their_own(

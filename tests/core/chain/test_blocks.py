@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from southwell.core import compiled
+from southwell.core import compiled, compiled_files, regular_files
 from southwell.core.chain import blocks
 from southwell.core.chain.blocks import Tridiagonal
 
@@ -69,7 +69,8 @@ def test_compiled_code_is_not_taken_from_before_a_change(tmp_path: Path) -> None
     """A function compiled into another, changed in another file: the caller must not keep the old one."""
     package = tmp_path / "loops"
     package.mkdir()
-    shutil.copy(compiled.__file__, package / "compiled.py")
+    for module in (compiled, compiled_files, regular_files):
+        shutil.copy(str(module.__file__), package)
     (package / "__init__.py").touch()
     (package / "outer.py").write_text(
         "from . import inner\nfrom .compiled import compiled\n\n@compiled\ndef outer(x):\n    return inner.inner(x) + 1.0\n"
