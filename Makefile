@@ -20,7 +20,7 @@ verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
 
 test: $(INSTALLED)
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist loadgroup
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check

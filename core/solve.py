@@ -207,10 +207,11 @@ class _Mesh:
     gravity: Array
     known: list[tuple[float, Shape]] = field(default_factory=list)
 
-    def at(self, omega: float) -> _Solved:
-        """Solve at one speed."""
+    def at(self, omega: float, near: Shape | None = None) -> _Solved:
+        """Solve at one speed, from the speeds before or else from a shape near by."""
         begun, body = time.perf_counter(), self.body
-        state = balance(body, omega, self.gravity, self.model, steady.extrapolate(self.known, omega))
+        guess = steady.extrapolate(self.known, omega)
+        state = balance(body, omega, self.gravity, self.model, near if guess is None else guess)
         try:
             found = lanczos(state.linear, self.count)
         except (UnstableError, EigensolverError) as error:
@@ -284,8 +285,10 @@ def _refined(meshes: _Meshes, omega: float, fastest: float, wanted: float) -> Mo
         one = meshes.level(level, fastest)
         if level > 2 and one.body.elements > MOST:
             break
+        before = meshes.level(level - 1, fastest) if solved else None
+        near = steady.carried_over(before.body, solved[-1].state.shape, one.body) if before else None
         try:
-            solved.append(one.at(omega))
+            solved.append(one.at(omega, near))
         except _FAILURES as error:
             if best is not None:
                 break

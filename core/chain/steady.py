@@ -6,6 +6,7 @@ from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from ..compiled import compiled
 from ..effects import Model
@@ -176,6 +177,28 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
         step[:, :-6] += weight * (shape.beta - now.beta)
         _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
     return moved(now, step)
+
+
+def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
+    """A guess of a shape on a finer mesh of the same blade: its nodes' motions in the hub's axes, interpolated along the blade.
+
+    Args:
+        chain: the coarser mesh.
+        shape: its shape.
+        finer: the finer mesh.
+    """
+    first = 1 if chain.held.size else 0  # behind the joint at the root, which has no length
+    twists = sp.log(shape.nodes[first:] @ sp.inverse(chain.nodes[first:]))
+    at = CubicSpline(_lengths(chain)[first:], twists)(_lengths(finer)[first:])
+    nodes = finer.nodes.copy()
+    nodes[first:] = sp.exp(at) @ finer.nodes[first:]
+    return Shape(nodes, np.zeros((len(nodes) - 1, finer.beams.inner)), sp.inverse(nodes[:-1]) @ nodes[1:])
+
+
+def _lengths(chain: Chain) -> Array:
+    """(n+1,) m, along the chords between the nodes, of their sum."""
+    steps = np.linalg.norm(chain.between[:, :3, 3], axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
 
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:

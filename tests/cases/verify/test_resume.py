@@ -49,7 +49,9 @@ def told(folder: Path, command: str) -> tuple[int, str]:
     return done.returncode, (done.stdout + done.stderr).splitlines()[0]
 
 
-@pytest.mark.parametrize("count", [1, 4, 8])
+@pytest.mark.parametrize(
+    "count", [pytest.param(1, marks=pytest.mark.nightly), 4, pytest.param(8, marks=pytest.mark.nightly)]
+)
 def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
     path = tmp_path / "out" / JOURNAL
     assert killing.kill(killing.start(tmp_path), lambda: answers(path) >= count)
@@ -67,6 +69,7 @@ def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: P
     same(tmp_path, undisturbed)
 
 
+@pytest.mark.nightly
 def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Path, undisturbed: Path) -> None:
     out = tmp_path / "out"
     assert killing.kill(killing.start(tmp_path), (out / RESULTS).exists)
@@ -77,6 +80,7 @@ def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Pat
     same(tmp_path, undisturbed)
 
 
+@pytest.mark.nightly
 def test_a_changed_case_or_version_takes_no_earlier_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "out" / JOURNAL
     assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)

@@ -186,3 +186,14 @@ def test_unprestressed_chain_needs_no_newton() -> None:
 def test_bad_arguments_are_named(arguments, match) -> None:
     with pytest.raises(ValueError, match=match):
         modes(*arguments)
+
+
+def test_a_shape_carried_over_to_a_finer_mesh_is_a_near_guess() -> None:
+    """Within a hundredth of the way from the undeformed shape; where the meshes share nodes, it is the same."""
+    coarse, fine = (discretize(curved(), n) for n in (8, 16))
+    there = steady.steady(coarse, 4.0, np.zeros(3)).shape
+    guess = steady.carried_over(coarse, there, fine)
+    found = steady.steady(fine, 4.0, np.zeros(3)).shape
+    moved = np.abs(found.nodes - fine.nodes).max()
+    assert np.abs(guess.nodes - found.nodes).max() < 0.01 * moved
+    np.testing.assert_allclose(guess.nodes[::2], there.nodes, atol=1e-12)
