@@ -1,6 +1,7 @@
 """The verification matrix: every case × code × speed is what ``capabilities`` says, and no cell fails or stays open.
 
-A blade's references, and a code's answers for it, are computed once; tests of one blade belong together
+Blades that ask nothing of a code that another does not ask too are left to the night; ``make verify`` has them all. A
+blade's references, and a code's answers for it, are computed once; tests of one blade belong together
 (``pytest -n 2 --dist loadgroup``).
 """
 
@@ -26,6 +27,26 @@ CASES: dict[str, tuple[Case, Variant]] = {
     for case in [library.load(name)]
     for variant in case.variants
 }
+
+
+NIGHTLY = {
+    "articulated/both",
+    "articulated/sprung",
+    "nrel-5mw-beamdyn",
+    "park-blade/surrogate",
+    "park-blade/surrogate-untwisted",
+    "tapered-beam",
+    "windpact-1.5/centred",
+    "windpact-1.5/offset",
+    "yoo-shin-chordwise/delta-0.1",
+    "yoo-shin-chordwise/delta-1",
+    "yoo-shin-chordwise/delta-5",
+}
+
+
+def marks(blade: str) -> list[pytest.MarkDecorator]:
+    """One process for a blade; and when."""
+    return [pytest.mark.xdist_group(blade), *([pytest.mark.nightly] if blade in NIGHTLY else [])]
 
 
 @cache
@@ -57,7 +78,7 @@ def at(blade: str, name: str, omega: float) -> list[Cell]:
 
 def at_every_speed(names: list[tuple[str, str]]) -> list:
     return [
-        pytest.param(blade, name, omega, id=f"{blade}-{name}-{omega:.4g}", marks=pytest.mark.xdist_group(blade))
+        pytest.param(blade, name, omega, id=f"{blade}-{name}-{omega:.4g}", marks=marks(blade))
         for blade, name in sorted(names)
         for omega in CASES[blade][1].speeds.tolist()
     ]
@@ -98,9 +119,7 @@ def test_code(blade: str, name: str, omega: float) -> None:
             assert cell.family in ("axial", "mixed")
 
 
-@pytest.mark.parametrize(
-    ("name", "blade"), [pytest.param(n, b, marks=pytest.mark.xdist_group(b)) for n, b in TABLES.items()]
-)
+@pytest.mark.parametrize(("name", "blade"), [pytest.param(n, b, marks=marks(b)) for n, b in TABLES.items()])
 def test_table(name: str, blade: str) -> None:
     cells, _ = column(blade, name)
     assert cells

@@ -222,8 +222,8 @@ def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
     [
         ((), 0, "8 ✔ pass"),
         ((("lag_damper = 600.0", "lag_damper = 601.0"),), 1, "4 ✘ fail"),
-        ((("first = 80.0 ", "first = 81.0 "),), 1, "8 ✘ fail"),
-        ((("offset = 0.3\n", ""),), 1, "✘ fail"),
+        pytest.param((("first = 80.0 ", "first = 81.0 "),), 1, "8 ✘ fail", marks=pytest.mark.nightly),
+        pytest.param((("offset = 0.3\n", ""),), 1, "✘ fail", marks=pytest.mark.nightly),
     ],
     ids=["right", "another damper", "another blade", "a parameter missing"],
 )

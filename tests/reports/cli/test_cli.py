@@ -319,7 +319,12 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
 
 
 @pytest.mark.parametrize(
-    ("whom", "how"), [(os.kill, signal.SIGTERM), (os.killpg, signal.SIGTERM), (os.kill, signal.SIGKILL)]
+    ("whom", "how"),
+    [
+        (os.kill, signal.SIGKILL),
+        pytest.param(os.kill, signal.SIGTERM, marks=pytest.mark.nightly),
+        pytest.param(os.killpg, signal.SIGTERM, marks=pytest.mark.nightly),
+    ],
 )
 def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
     how: signal.Signals,

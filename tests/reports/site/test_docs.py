@@ -33,6 +33,8 @@ PAGES = sorted(page.name for page in DOCS.glob("*.md"))
 ELSEWHERE = {"add-your-code.md": "test_add_your_code.py", "pytest-plugin.md": "test_pytest_plugin.py"}
 """Pages whose examples are followed by tests of their own: the second's are parts of tests/example_project."""
 
+NIGHTLY = {"add-a-case.md", "your-blade.md"}
+
 
 def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", (DOCS / page).read_text(encoding="utf-8"), re.M | re.S)
@@ -94,7 +96,14 @@ def test_the_api_has_every_module() -> None:
 # ------------------------------------------------------------------------------------------------------- what is typed
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page not in ELSEWHERE])
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=pytest.mark.nightly) if page in NIGHTLY else page
+        for page in PAGES
+        if page not in ELSEWHERE
+    ],
+)
 def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
     """Its files are saved under the names it says, its commands typed in their order, its Python run in one go.
 
