@@ -20,7 +20,7 @@ verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
 
 test: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadfile
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check

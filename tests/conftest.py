@@ -13,14 +13,11 @@ settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the property tests; keep the tests of a file in one process, as what they share takes longer than they do; leave out
-    what is for the night, unless it is asked for."""
+    """Mark the property tests; leave out what is for the night, unless it is asked for."""
     night = "nightly" in str(config.getoption("-m"))
     for item in items:
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker("random")
-        if not item.get_closest_marker("xdist_group"):
-            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
     left = [item for item in items if item.get_closest_marker("nightly") and not night]
     if left:
         config.hook.pytest_deselected(items=left)

@@ -54,19 +54,20 @@ BEGIN, END = "<!-- {}: begin, written by `make readme` -->", "<!-- {}: end -->"
 
 
 ELSEWHERE = ("sharpy", "frame3dd", "calculix")
-"""Codes that `make verify` does not install, and uses where they are: the README shows what it runs anywhere."""
+"""Codes that `make verify` does not install, and uses where they are: the rows are those of any machine."""
 
 
 def condense(run: Run) -> Run:
     """The rows that the tables need: of each case and column the worst cell, and all of the paper's Table 1."""
     cells: list[Cell] = []
     for case in summary.cases(run):
-        mine = [c for c in run.cells if c.case == case]
+        mine = [c for c in run.cells if c.case == case and c.code not in ELSEWHERE]
         for name in columns(mine, broad):
             group = [c for c in mine if broad(c) == name]
             grave = summary.gravest(group)
             cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
-    cells += [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
+    table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
+    cells += [c for c in table if c.code not in ELSEWHERE]
     kept = dict.fromkeys(replace(c, seconds=None) for c in cells)
     return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings)
 
@@ -77,7 +78,6 @@ def five(run: Run) -> str:
     rows = []
     for case, what in SHOWN.items():
         codes = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
-        codes = [c for c in codes if c.code not in ELSEWHERE]
         answers = [c for c in codes if c.verdict not in ("not run", "not applicable")]
         others = [c for c in answers if c.verdict != "pass"]
         short = {

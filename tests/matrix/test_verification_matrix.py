@@ -1,8 +1,7 @@
 """The verification matrix: every case × code × speed is what ``capabilities`` says, and no cell fails or stays open.
 
 Blades that ask nothing of a code that another does not ask too are left to the night; ``make verify`` has them all. A
-blade's references, and a code's answers for it, are computed once; tests of one blade belong together
-(``pytest -n 2 --dist loadgroup``).
+blade's references, and a code's answers for it, are computed once in a process (``pytest -n 2 --dist loadfile``).
 """
 
 from functools import cache
