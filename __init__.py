@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .core import multibody
     from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
-    from .core.effects import Model
+    from .core.effects import Effects
     from .core.modes import Modes
     from .reports.notebook import campbell, modes, read, verify
 
@@ -31,7 +31,7 @@ _WHERE = {
     "section_mass": "core.blade",
     "section_stiffness": "core.blade",
     "uniform_blade": "core.blade",
-    "Model": "core.effects",
+    "Effects": "core.effects",
     "Modes": "core.modes",
     "campbell": "reports.notebook",
     "modes": "reports.notebook",
@@ -42,7 +42,7 @@ _WHERE = {
 __all__ = [
     "Blade",
     "BladeError",
-    "Model",
+    "Effects",
     "Modes",
     "__version__",
     "campbell",

@@ -1,13 +1,13 @@
-"""The one description of a blade that every code is given.
+"""The description of a blade that every code receives.
 
-Axes, stated here once and converted by every adapter at its own door (right-handed, all rotating with the hub):
+Axes, defined here and converted by each adapter (right-handed, all rotating with the hub):
 
 * ``x`` runs along the blade, from the hub's centre outwards;
 * ``z`` is the rotor's axis: the rotor turns at ``omega`` about ``+z``;
 * ``y = z × x`` lies in the plane of rotation, in the direction of motion.
 
 Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
-flapwise. A section's own axes are the blade's turned by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
+flapwise. A section's own axes are the blade's rotated by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
 
 Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bending about y, bending about z)``;
 forces likewise ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
@@ -18,7 +18,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .blade_checks import ROOT, BladeError, check
+from .blade_checks import ROOT_TOLERANCE, BladeError, check
+from .space.inertia import about_centre
+from .space.spatial import skew
 
 Array = NDArray[np.float64]
 
@@ -41,16 +43,16 @@ class Blade:
             the stations it is a cubic spline of the arc length.
         hub_radius: m, from the rotor's axis to the root.
         precone: rad, the blade's axis tilted from the plane of rotation towards +z.
-        pitch: rad, the whole blade turned about its own axis at the root, same sense as twist.
+        pitch: rad, the whole blade rotated about its own axis at the root, same sense as twist.
         tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
         root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
-            N/m and N m/rad: ``inf`` holds (all, by default: clamped), 0 leaves free, a number is a spring. The blade
+            N/m and N m/rad: ``inf`` clamps (the default for all six), 0 is free, any other number is a spring. The blade
             slides along x, y and z, then turns about x, y and z in sequence; each spring is on one of these coordinates.
-        kinks: those of the inner stations where the curve's tangent jumps, m: each piece between them has a spline of its own,
-            and the sections turn with the tangent. A piece of two stations is straight.
+        kinks: inner stations where the curve's tangent jumps, m: each piece between them has its own spline, and the sections
+            rotate with the tangent. A piece of two stations is straight.
 
     Raises:
-        BladeError: what cannot be; see ``blade_checks``. A first station within rounding of 0 is made 0.
+        BladeError: invalid data; see ``blade_checks``. A first station within rounding of 0 is set to 0.
     """
 
     name: str
@@ -71,7 +73,7 @@ class Blade:
         for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass", "root"):
             set_(self, name, np.ascontiguousarray(getattr(self, name), dtype=float))
         s = self.stations
-        if s.ndim == 1 and len(s) and 0 < abs(s[0]) <= ROOT * abs(s[-1]):
+        if s.ndim == 1 and len(s) and 0 < abs(s[0]) <= ROOT_TOLERANCE * abs(s[-1]):
             set_(self, "stations", np.concatenate([[0.0], s[1:]]))
         set_(self, "kinks", _on_stations(self))
         if self.curve.size == 0:
@@ -85,12 +87,12 @@ class Blade:
 
 
 def _on_stations(blade: Blade) -> tuple[float, ...]:
-    """The kinks, each on its station to the last digit where it is one within rounding."""
+    """The kinks, each moved to the station that it equals within rounding."""
     s = blade.stations
     if s.ndim != 1 or not len(s):
         return ()
     nearest = ((float(kink), float(s[np.abs(s - kink).argmin()])) for kink in blade.kinks)
-    return tuple(at if abs(kink - at) <= ROOT * abs(s[-1]) else kink for kink, at in nearest)
+    return tuple(at if abs(kink - at) <= ROOT_TOLERANCE * abs(s[-1]) else kink for kink, at in nearest)
 
 
 def section_stiffness(
@@ -224,7 +226,7 @@ def straight(blade: Blade) -> bool:
 
 
 def clamped(blade: Blade) -> bool:
-    """Whether the root is held in every direction."""
+    """Whether the root is clamped in every direction."""
     return bool(np.isinf(blade.root).all())
 
 
@@ -245,8 +247,8 @@ def uniform(blade: Blade) -> bool:
 
 
 def without_rotary_inertia(blade: Blade) -> Blade:
-    """The same blade with its mass at the sections' mass centres: no moments of inertia about those."""
+    """Copy of a blade without moments of inertia about the mass centres of its sections."""
     mass = blade.mass.copy()
-    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m c×
-    mass[:, 3:, 3:] = -moment @ moment / mass[:, :1, :1]
+    m, centre, _ = about_centre(mass)
+    mass[:, 3:, 3:] = -m[:, None, None] * skew(centre) @ skew(centre)
     return replace(blade, mass=mass)

@@ -1,6 +1,6 @@
-"""What a blade must be: a curve with the arc length of its stations, sections that resist, bodies that can exist.
+"""Validation of a blade: arc length of the curve, positive definite sections, physically possible inertias.
 
-Tolerances admit the rounding of published files and no more; each is stated where it is used.
+The tolerances admit the rounding of published files.
 """
 
 from typing import TYPE_CHECKING
@@ -8,38 +8,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from . import curve
-from .space import spatial as sp
+from . import curve, gauss
+from .space.inertia import about_centre
 
 if TYPE_CHECKING:
     from .blade import Blade
 
 Array = NDArray[np.float64]
 
-ROOT = 1e-9
-"""Of the length: a first station this near to 0 is the root."""
+ROOT_TOLERANCE = 1e-9
+"""Fraction of the length within which the first station counts as 0."""
 
-ASIDE = 0.2
-"""Of the length: how far beside the root the reference curve may begin."""
+MAX_ROOT_OFFSET = 0.2
+"""Largest distance of the curve's first point from the x axis, as a fraction of the length."""
 
-ARC, ROUNDED = 2e-4, 1e-5
-"""How much longer or shorter than the stations say the curve may be between two of them: of that length, and of the blade's.
+ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
+"""Largest difference between the length of the curve and the stations: fractions of the interval and of the blade's length.
 
-The second admits coordinates rounded to millimetres. A spline is longer by half its mean square angle to the curve it should
-follow: 1.1° is 2e-4. A smooth curve with points every 15° keeps within this; of a kink of 3° between few points it does not.
+The second admits coordinates rounded to millimetres. A spline is too long by half its mean square angle to the true curve:
+1.1° gives 2e-4. A smooth curve with a point every 15° passes; an undeclared kink of 3° between few points does not.
 """
 
-NEAR = 3
-"""How many stations away the corner may be about which a spline swings."""
+SWING_REACH = 3
+"""Number of stations over which a spline oscillates about a corner."""
 
-BACK = -0.9
-"""Least x component of the tangent: sections are swung from the blade's axes to it, which is not defined for −1."""
+MIN_TANGENT_X = -0.9
+"""Least x component of the tangent: the rotation from the x axis to the tangent is undefined at −1."""
 
-LINEAR, ROTARY = 1e-4, 1e-2
-"""Departure of a mass matrix from a rigid body's: of its mass, of its moments of inertia (published ones are rounded)."""
+MASS_TOLERANCE, INERTIA_TOLERANCE = 1e-4, 1e-2
+"""Largest deviation of a mass matrix from that of a rigid body, relative to its mass and to its moments of inertia."""
 
-SYMMETRIC = 1e-9
-"""Departure from symmetry, of a unit diagonal."""
+SYMMETRY_TOLERANCE = 1e-9
+"""Largest asymmetry of a matrix scaled to a unit diagonal."""
 
 STRAINS = ("axial", "shear y", "shear z", "torsion", "bending about y", "bending about z")
 
@@ -47,11 +47,11 @@ GAUSS = 8
 
 
 class BladeError(ValueError):
-    """A blade that cannot be: the message names the field, the value, the likely cause and the remedy."""
+    """An invalid blade: the message names the field, the value, the likely cause and the remedy."""
 
 
 def check(blade: "Blade") -> None:
-    """Refuse a blade that cannot be.
+    """Validate a blade.
 
     Raises:
         BladeError: naming the field, where along the blade, the value, the likely cause and the remedy.
@@ -75,7 +75,7 @@ def _arrays(blade: "Blade") -> None:
     for name, shape in shapes.items():
         value = getattr(blade, name)
         if value.shape != shape:
-            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry a station is needed")
+            raise BladeError(f"{name}: shape {value.shape}, expected {shape}: one entry per station is needed")
         finite = ~np.isnan(value) if name in ("stiffness", "root") else np.isfinite(value)
         if not finite.all():
             where = np.argwhere(~finite)[0].tolist()
@@ -100,7 +100,7 @@ def _stations(blade: "Blade") -> None:
         if not np.isfinite(getattr(blade, name)):
             raise BladeError(f"{name}: {getattr(blade, name)}: not a finite number; give an angle in radians")
     if (blade.root < 0).any():
-        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for held")
+        raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for clamped")
 
 
 def _kinks(blade: "Blade") -> None:
@@ -117,19 +117,19 @@ def _kinks(blade: "Blade") -> None:
 
 
 def _curve(blade: "Blade") -> None:
-    """|r′(s)| = 1: the spline through the points must have the arc length that the stations say, from a point at the root."""
+    """Check that the curve begins at the root and that its arc length is that of the stations, |r′(s)| = 1."""
     s, r, length = blade.stations, blade.curve, blade.length
     x, *beside = np.abs(r[0])
-    if x > ROUNDED * length or np.hypot(*beside) > ASIDE * length:
+    if x > COORDINATE_ROUNDING * length or np.hypot(*beside) > MAX_ROOT_OFFSET * length:
         raise BladeError(
             f"curve: begins at ({r[0, 0]:.6g}, {r[0, 1]:.6g}, {r[0, 2]:.6g}) m: the curve is measured from the root and "
-            f"begins there, at x = 0 and no more than {ASIDE:g} of the length beside it; subtract its first point "
+            f"begins there, at x = 0 and no more than {MAX_ROOT_OFFSET:g} of the length beside it; subtract its first point "
             "(the hub's radius goes into hub_radius)"
         )
     step = np.diff(s)
     with np.errstate(over="ignore"):
         chord = np.linalg.norm(np.diff(r, axis=0), axis=1)
-    allowed = ARC * step + ROUNDED * length
+    allowed = ARC_TOLERANCE * step + COORDINATE_ROUNDING * length
     if (chord > step + allowed).any():
         k = int(np.argmax(chord - step - allowed))
         raise BladeError(
@@ -141,7 +141,7 @@ def _curve(blade: "Blade") -> None:
     if (np.abs(arc - step) > allowed).any():
         raise BladeError(_unresolved(blade, int(np.argmax(np.abs(arc - step) / allowed)), arc, chord, allowed))
     ends = np.concatenate([curve.at(s, r, blade.kinks, s, before=side)[1] for side in (False, True)])
-    if (ends[:, 0] < BACK * np.linalg.norm(ends, axis=1)).any():
+    if (ends[:, 0] < MIN_TANGENT_X * np.linalg.norm(ends, axis=1)).any():
         k = int(np.argmin(ends[:, 0])) % len(s)
         raise BladeError(
             f"curve: turns back towards the hub at {s[k]:g} m: x, y and z in another order? the first runs along the blade"
@@ -150,29 +150,27 @@ def _curve(blade: "Blade") -> None:
 
 def lengths(s: Array, r: Array, kinks: tuple[float, ...] = ()) -> Array:
     """∫ |r′| ds (n−1,) between stations ``s`` (n,) of the spline through points ``r`` (n, 3), m."""
-    node, weight = np.polynomial.legendre.leggauss(GAUSS)
-    step = np.diff(s)
-    inside = s[:-1, None] + step[:, None] * (node + 1) / 2
+    inside, weight = gauss.between(s, GAUSS)
     _, rate = curve.at(s, r, kinks, inside.ravel())
-    return np.linalg.norm(rate, axis=1).reshape(inside.shape) @ weight / 2 * step
+    return (np.linalg.norm(rate, axis=1).reshape(inside.shape) * weight).sum(1)
 
 
 def follows(s: Array, r: Array) -> bool:
-    """Whether a spline through points ``r`` (n, 3) has the arc length that stations ``s`` (n,) say, as a blade's must."""
-    return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC * np.diff(s) + ROUNDED * s[-1]).all())
+    """Whether the spline through points ``r`` (n, 3), m, has the arc lengths ``s`` (n,), m, as ``check`` requires."""
+    return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC_TOLERANCE * np.diff(s) + COORDINATE_ROUNDING * s[-1]).all())
 
 
 def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array) -> str:
-    """What to say of a spline whose length between stations k and k + 1 is not the arc length there."""
+    """Message for a spline whose length between stations k and k + 1 differs from their distance."""
     s = blade.stations
     step, found = s[k + 1] - s[k], f"curve: between {s[k]:g} m and {s[k + 1]:g} m"
     along = np.diff(blade.curve, axis=0) / chord[:, None]
     turn = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
     turn[np.isin(s[1:-1], blade.kinks)] = 0.0
-    beside, around = (turn[max(k - n, 0) : k + n] for n in (1, NEAR))
+    beside, around = (turn[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
     longest = chord[k] / np.sinc(beside.max(initial=0.0) / (2 * np.pi))  # of an arc that turns so much
     if around.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
-        corner = s[max(k - NEAR, 0) + 1 + int(around.argmax())]
+        corner = s[max(k - SWING_REACH, 0) + 1 + int(around.argmax())]
         return (
             f"{found} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it swings about the "
             f"curve, which turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points around there, or declare a "
@@ -209,7 +207,7 @@ def _stiffness(blade: "Blade") -> None:
     size = np.sqrt(np.where(np.isinf(d), 1.0, d))
     unit = np.where(rigid, 1.0, blade.stiffness) / (size[:, :, None] * size[:, None, :])
     wrong = np.abs(unit - np.swapaxes(unit, 1, 2))
-    if wrong.max() > SYMMETRIC:
+    if wrong.max() > SYMMETRY_TOLERANCE:
         k, i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
         one, other = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
         raise BladeError(
@@ -226,7 +224,7 @@ def _stiffness(blade: "Blade") -> None:
 
 
 def body_fault(matrix: Array, unit: str) -> str | None:
-    """Why an inertia (6, 6) about a point is no rigid body's, or a slice's: cause and remedy; None if it is one.
+    """Why an inertia (6, 6) is not that of a rigid body or a slice of one: cause and remedy; None if it is.
 
     It must be ``[[m, −m c×], [m c×, J]]``, one mass m ≥ 0 in all directions, and the moments of inertia about the mass centre,
     ``J + m c× c×``, must be those of a distribution of mass: none negative, none larger than the two others together.
@@ -240,21 +238,21 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         return (
             f"diagonal {i} is {d[i]:g} {unit if i < 3 else ''}".rstrip() + ": it must be positive; wrong sign or unit?"
         )
-    if np.ptp(d[:3]) > LINEAR * m:
+    if np.ptp(d[:3]) > MASS_TOLERANCE * m:
         return (
             f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has one mass in all directions; a table's "
             "columns shifted? give one"
         )
     size = np.maximum(np.sqrt(d)[:, None] * np.sqrt(d), 1e-9 * scale)  # np.outer(d, d) may underflow
     wrong = np.abs(matrix - matrix.T) / size
-    if wrong.max() > SYMMETRIC:
+    if wrong.max() > SYMMETRY_TOLERANCE:
         i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
         return (
             f"entries ({i}, {j}) and ({j}, {i}) are {matrix[i, j]:g} and {matrix[j, i]:g}: it must be symmetric; one "
             "triangle only, or a sign lost? correct one"
         )
     linear = np.abs(np.triu(matrix[:3, :3], 1))
-    if linear.max() > LINEAR * m:
+    if linear.max() > MASS_TOLERANCE * m:
         i, j = np.unravel_index(int(linear.argmax()), (3, 3))
         return (
             f"entry ({i}, {j}) is {matrix[i, j]:g}: motion along one axis has no momentum along another; wrong order of "
@@ -262,17 +260,16 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         )
     moment = matrix[:3, 3:]
     even = np.abs(moment + moment.T)
-    if even.max() > LINEAR * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
+    if even.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
         i, j = np.unravel_index(int(even.argmax()), (3, 3))
         return (
             f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: mass times the centre's "
             "offset has opposite signs there, and zeros on the diagonal; wrong sign or order of rows? correct them"
         )
-    first = 0.5 * np.array([moment[1, 2] - moment[2, 1], moment[2, 0] - moment[0, 2], moment[0, 1] - moment[1, 0]])
-    cross = sp.skew(first / m) if m else np.zeros((3, 3))
-    least, middle, most = np.linalg.eigvalsh(J + m * cross @ cross)
-    rounding = ROTARY * np.trace(J)
-    if least < -rounding or (m * np.abs(cross).max() ** 2 > 1e-12 * scale and not np.trace(J)):
+    _, centre, moments = about_centre(matrix)
+    least, middle, most = np.linalg.eigvalsh(moments)
+    rounding = INERTIA_TOLERANCE * np.trace(J)
+    if least < -rounding or (m * np.abs(centre).max() ** 2 > 1e-12 * scale and not np.trace(J)):
         return (
             f"moments of inertia about the mass centre reach down to {least:.3g}: less than none; are those given about the "
             "mass centre? they are about the reference point, m d² included"

@@ -128,7 +128,7 @@ def product(a: Array, b: Array, out: Array) -> None:
 
 
 @compiled
-def turned_product(a: Array, b: Array, out: Array) -> None:
+def transposed_product(a: Array, b: Array, out: Array) -> None:
     """out = aᵀ b, of a (6, m) and b (6, n), as far as the columns of ``out`` and b go."""
     for i in range(a.shape[1]):
         a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
@@ -144,7 +144,7 @@ def apply(a: Array, v: Array, out: Array) -> None:
 
 
 @compiled
-def turned_apply(a: Array, v: Array, out: Array) -> None:
+def transposed_apply(a: Array, v: Array, out: Array) -> None:
     """out = aᵀ v, of a (6, n) and v (6,)."""
     for j in range(a.shape[1]):
         out[j] = a[0, j] * v[0] + a[1, j] * v[1] + a[2, j] * v[2] + a[3, j] * v[3] + a[4, j] * v[4] + a[5, j] * v[5]
@@ -154,7 +154,7 @@ def turned_apply(a: Array, v: Array, out: Array) -> None:
 def congruence(a: Array, m: Array, work: Array, out: Array) -> None:
     """out = aᵀ m a, of a (6, n) and m (6, 6); ``work`` is as large as ``a``."""
     product(m, a, work)
-    turned_product(a, work, out)
+    transposed_product(a, work, out)
 
 
 @compiled

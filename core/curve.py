@@ -1,6 +1,6 @@
 """The reference curve of a blade: a cubic spline of arc length through its points, one for each piece between two kinks.
 
-At a kink the tangent jumps, so neither piece knows of the other; a piece of two points is straight.
+At a kink the tangent jumps and the pieces on either side are independent; a piece of two points is straight.
 """
 
 from typing import Any
@@ -13,7 +13,7 @@ Array = NDArray[Any]
 Kinks = tuple[float, ...]
 
 SAME = 1e-12
-"""Of the length: arc lengths closer than this to a kink are the kink's."""
+"""Fraction of the length: arc lengths closer than this to a kink count as the kink."""
 
 
 def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool = False) -> tuple[Array, Array]:
@@ -21,10 +21,10 @@ def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool =
 
     Args:
         stations: (n,) arc length of the points, m.
-        values: (n, …) there: of the curve, (n, 3) m; or of what else is continuous, and smooth but for the kinks.
+        values: (n, …) at the stations: the curve (n, 3), m, or any quantity that is smooth between kinks.
         kinks: those of the stations where the derivative jumps, ascending, m.
-        s: (k,) where, m.
-        before: which side of a kink its own arc length belongs to: the one before it, or the one beyond it.
+        s: (k,) arc lengths, m.
+        before: evaluate at a kink from the side before it instead of the side beyond it.
     """
     s = on_kinks(s, kinks, SAME * stations[-1])
     piece = np.searchsorted(np.array(kinks), s, side="left" if before else "right")
@@ -38,7 +38,7 @@ def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool =
 
 
 def on_kinks(s: Array, kinks: Kinks, within: float) -> Array:
-    """The arc lengths ``s`` (k,), those ``within`` a kink's put on it."""
+    """The arc lengths ``s`` (k,), m, with those ``within`` (m) of a kink moved onto it."""
     s = np.array(s, dtype=float)
     for kink in kinks:
         s[np.abs(s - kink) <= within] = kink

@@ -1,11 +1,11 @@
-"""Which physical effects a model of a rotating blade keeps."""
+"""Which physical effects an analysis of a rotating blade keeps."""
 
 from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True)
-class Model:
-    """The effects kept; all of them by default. A code declares what it lacks, and core can leave out the same.
+class Effects:
+    """The effects kept; all of them by default. A code declares those it lacks, and core can leave out the same.
 
     Attributes:
         prestretch: the steady state's displacements are followed (deformed radius), not only its internal forces.
@@ -24,4 +24,4 @@ class Model:
         return tuple(f.name.replace("_", " ") for f in fields(self) if not getattr(self, f.name))
 
 
-FULL = Model()
+ALL_EFFECTS = Effects()

@@ -2,7 +2,7 @@
 
 The dense solver here and ``lanczos`` work on the inverse: with y = λ x, A = diag(K, M) and S = [[C, M], [−M, 0]], the
 operator A⁻¹S has eigenvalues −1/λ, the lowest modes largest. S is skew in the plain product, A⁻¹S in A's, so the eigenvalues
-lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly, without a fudge.
+lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly.
 (Meirovitch 1974; Lancaster 2013, *Stability of linear gyroscopic systems*.)
 """
 
@@ -24,7 +24,7 @@ MASSLESS = 1e-14
 
 
 class UnstableError(ValueError):
-    """The steady state has no positive definite stiffness: it is not a stable one to vibrate about."""
+    """The stiffness about the steady state is not positive definite: the steady state is unstable."""
 
 
 class EigenError(RuntimeError):
@@ -49,7 +49,7 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     _check_finite(M, C, K)
     k, m = np.diagonal(K), np.diagonal(M)
     usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
-    if (k <= 1e-14 * usual * m).any():  # a coordinate that nothing holds, but for rounding
+    if (k <= 1e-14 * usual * m).any():  # a coordinate without stiffness, but for rounding
         raise unstable()
     scale = 1.0 / np.sqrt(np.diagonal(K))  # coordinates of unlike units made alike
     M, C, K = (scale[:, None] * a * scale for a in (M, C, K))
@@ -100,15 +100,15 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     A motion x without mass, M x = 0, has no velocity of its own in the pencil: its infinite eigenvalue would be double, and
     rounding would make two huge ones of it. Simple, it is found as infinite; with a damper the motion has one real mode.
 
-    A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of either sign. With Wᵀ K = 0 the
-    equations along W are ``Wᵀ (C + λ M) x = 0`` for every other mode: put in, they take these zeros out, and each rigid
-    motion is one mode with λ = 0.
+    A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of opposite sign. With Wᵀ K = 0 all
+    other modes satisfy ``Wᵀ (C + λ M) x = 0``; these replace the equations along W. Each rigid motion is
+    then one mode with λ = 0.
 
     Args:
         M: (n, n).
         C: (n, n).
         K: (n, n).
-        count: how many modes, from the lowest; all by default.
+        count: number of modes, from the lowest; all by default.
         rigid: bases (n, d) of the motions that K does not resist, and of the directions W in which it gives no force.
 
     Raises:
@@ -166,17 +166,17 @@ def _by_mass(M: Array) -> tuple[Array, Array]:
 def _check_finite(*matrices: Array) -> None:
     if not all(np.isfinite(a).all() for a in matrices):
         raise EigenError(
-            "eigenvalues: the matrices are not finite: a mass, stiffness or speed is out of all proportion"
+            "eigenvalues: the matrices are not finite: an implausibly large mass, stiffness or speed; check units"
         )
 
 
 def _failed(error: Exception) -> EigenError:
-    return EigenError(f"eigenvalues: LAPACK did not converge ({error}): check for values out of all proportion")
+    return EigenError(f"eigenvalues: LAPACK did not converge ({error}): check the units for implausible magnitudes")
 
 
 def unstable() -> UnstableError:
-    """What to raise where a Cholesky factorisation of K fails."""
+    """The error for a failed Cholesky factorisation of K."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: too few elements for a blade that soft (a cable), "
+        "the stiffness about the steady state is not positive definite: too few elements for a very soft blade (a cable), "
         "or the centrifugal force outgrows the stiffness; check units"
     )

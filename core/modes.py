@@ -1,4 +1,4 @@
-"""Modes, as every code returns them."""
+"""Natural frequencies and mode shapes in the form that every code returns."""
 
 from dataclasses import dataclass, field
 
@@ -20,9 +20,9 @@ class Modes:
         frequencies: (m,) natural frequencies, rad/s, ascending.
         shapes: (m, 21, 4) complex: displacement along the blade axes x, y, z (m) and rotation about x (rad) of the
             reference curve at ``STATIONS``; any scale, the phase carries the gyroscopic lag.
-        elements: what refinement this is (elements, or terms of a series).
+        elements: refinement: number of elements, or of terms in a series.
         damping: (m,) damping ratios, zero for undamped models.
-        uncertainty: (m,) relative, where the code itself brackets its answer; empty: to be had by refinement.
+        uncertainty: (m,) relative, where the code brackets its own answer; empty: determined by refinement.
         rounding: (m,) relative error due to rounding alone, where the code estimates it; empty: not estimated.
         strain: largest steady strain of the reference curve (axial and shear); nan: not computed.
         seconds: wall time of the solution.

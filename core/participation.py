@@ -1,13 +1,13 @@
-"""What moves in a mode: shares of its kinetic energy in flap, edge, torsion and axial motion, and the name they give it.
+"""Energy fractions of a mode in flap, edge, torsion and axial motion, and the family name that follows from them.
 
-Metres and radians are never added. Each slice of blade moves with its mass centre and turns about it, so that its kinetic
-energy (König's theorem) splits into four parts, none negative, whatever the reference axis:
+A slice of the blade translates with its mass centre and rotates about it, so that its kinetic energy (König's theorem) is
+the sum of four parts, none negative and none dependent on the reference axis:
 
 * flap and edge: the mass centre's motion along the blade's z and y, and the section's own turning in bending;
 * torsion: turning about the blade's axis through the mass centre, with the polar inertia about it;
 * axial: the mass centre's motion along the blade.
 
-The blade's axes are the hub's turned by precone and pitch, not by twist. A blade whose sections have no moments of inertia
+The blade's axes are the hub's rotated by precone and pitch, not by twist. A blade whose sections have no moments of inertia
 has no kinetic energy in torsion, however far it turns.
 """
 
@@ -19,31 +19,31 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from . import curve
+from . import curve, gauss
 from .blade import Blade, mass_at
 from .element.sections import frames, root
 from .modes import STATIONS, Modes
-from .space import spatial as sp
+from .space.inertia import about_centre
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FAMILIES = ("flap", "edge", "torsion", "axial")
-"""What the four shares are, in their order."""
+"""Names of the four energy fractions, in their order."""
 
 MIXED = "mixed"
 
-DOMINANT = 0.6
-"""Share of the kinetic energy that names a mode; with less it is mixed."""
+DOMINANT_FRACTION = 0.6
+"""Energy fraction that names a mode; with less it is mixed."""
 
-SPOKEN = 0.05
-"""Shares below this are not worth a word."""
+MIN_NAMED_FRACTION = 0.05
+"""Energy fractions below this are not named."""
 
 _GAUSS = 4
 
 
 def participation(modes: Modes, blade: Blade) -> Array:
-    """Shares (m, 4) of each mode's kinetic energy, in the order of ``FAMILIES``; each row adds up to 1.
+    """Energy fractions (m, 4) of the modes in the order of ``FAMILIES``; each row adds up to 1.
 
     Shapes are interpolated between the common stations by cubic splines; mass is integrated between the blade's own
     stations by Gauss quadrature, and the tip mass is added. Sections turn in bending as the line of mass centres does.
@@ -62,7 +62,7 @@ def participation(modes: Modes, blade: Blade) -> Array:
 
 
 def in_blade_axes(modes: Modes, blade: Blade) -> Complex:
-    """Shapes (m, 21, 4) with displacements along the blade's axes, which precone and pitch turn from the hub's."""
+    """Shapes (m, 21, 4) with displacements along the blade's axes instead of the hub's (precone, pitch)."""
     out = modes.shapes.copy()
     out[:, :, :3] = modes.shapes[:, :, :3] @ root(blade)[:3, :3]
     return out
@@ -78,9 +78,9 @@ def gyration(blade: Blade) -> float:
     return float(np.sqrt(max(polar, 0.0) / mass[:, 0, 0].sum()))
 
 
-def families(shares: Array) -> tuple[str, ...]:
-    """The family of each row of ``shares`` (m, 4): the one with at least ``DOMINANT``, else ``mixed``."""
-    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT else MIXED for row in shares)
+def families(energy_fractions: Array) -> tuple[str, ...]:
+    """Family of each row of energy fractions (m, 4): the one with at least ``DOMINANT_FRACTION``, else ``mixed``."""
+    return tuple(FAMILIES[int(row.argmax())] if row.max() >= DOMINANT_FRACTION else MIXED for row in energy_fractions)
 
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
@@ -93,20 +93,20 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def spoken(share: Array) -> str:
-    """One mode's shares (4,) in words, largest first: ``54 % flap, 43 % edge``."""
-    order = np.argsort(-share, kind="stable")
-    return ", ".join(f"{100 * share[k]:.0f} % {FAMILIES[k]}" for k in order if share[k] >= SPOKEN)
+def spoken(energy_fractions: Array) -> str:
+    """Energy fractions (4,) of one mode in words, largest first: ``54 % flap, 43 % edge``."""
+    order = np.argsort(-energy_fractions, kind="stable")
+    return ", ".join(
+        f"{100 * energy_fractions[k]:.0f} % {FAMILIES[k]}" for k in order if energy_fractions[k] >= MIN_NAMED_FRACTION
+    )
 
 
 def _quadrature(blade: Blade) -> tuple[Array, Array]:
     """Points and weights between the blade's stations and the common ones; the tip is the last point, without a weight."""
     ends = np.unique(np.concatenate([blade.stations, STATIONS * blade.length]))
     ends = ends[np.append(True, np.diff(ends) > 1e-9 * blade.length)]
-    x, w = np.polynomial.legendre.leggauss(_GAUSS)
-    h = np.diff(ends)
-    s = (ends[:-1, None] + 0.5 * h[:, None] * (1.0 + x)).ravel()
-    return np.append(s, blade.length), (0.5 * h[:, None] * w).ravel()
+    s, weight = gauss.between(ends, _GAUSS)
+    return np.append(s, blade.length), weight.ravel()
 
 
 def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Complex, Complex]:
@@ -138,10 +138,12 @@ def _smooth_motion(
 ) -> tuple[Complex, Complex]:
     """As ``_motion``, from shapes (m, n, 4) and axes (n, 3, 3) at stations ``at`` (n,) between which the curve is smooth."""
     tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
-    moved = shapes[:, :, :3]
-    bent = np.cross(tangent, CubicSpline(at, moved, axis=1)(at, 1))  # of the sections' turning about x, not torsion
+    displacement = shapes[:, :, :3]
+    bent = np.cross(
+        tangent, CubicSpline(at, displacement, axis=1)(at, 1)
+    )  # of the sections' turning about x, not torsion
     torsion = (shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
-    line = CubicSpline(at, moved + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
+    line = CubicSpline(at, displacement + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
     along = frames(blade, s)[:, :3, 0]
     bending = np.cross(along, line(s, 1))
     turning = bending + CubicSpline(at, torsion, axis=1)(s)[:, :, None] * along
@@ -151,10 +153,5 @@ def _smooth_motion(
 
 def _about_centre(mass: Array, section: Array) -> tuple[Array, Array]:
     """Mass centre (k, 3) from the reference point and inertia (k, 3, 3) about it, hub axes, from 6×6 in ``section`` axes."""
-    m = mass[:, 0, 0]
-    moment = 0.5 * (mass[:, 3:, :3] - mass[:, :3, 3:])  # m skew(centre)
-    first = np.stack([moment[:, 2, 1], moment[:, 0, 2], moment[:, 1, 0]], axis=-1)
-    centre = np.divide(first, m[:, None], out=np.zeros_like(first), where=m[:, None] > 0)
-    cross = sp.skew(centre)
-    own = mass[:, 3:, 3:] + m[:, None, None] * cross @ cross
+    _, centre, own = about_centre(mass)
     return np.einsum("sij,sj->si", section, centre), section @ own @ np.swapaxes(section, -1, -2)

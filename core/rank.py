@@ -1,4 +1,4 @@
-"""The one rank criterion of the mechanism solver: which constraints are independent, which directions nothing resists."""
+"""The rank criterion of the mechanism solver: independent constraints, and directions without stiffness."""
 
 from dataclasses import dataclass
 from typing import cast

@@ -15,7 +15,7 @@ from .chain.lanczos import EigensolverError, lanczos
 from .chain.mode_shapes import mode_shapes
 from .chain.pencil import Shape
 from .chain.steady import LargeStrainError, Steady, SteadyStateError
-from .effects import FULL, Model
+from .effects import ALL_EFFECTS, Effects
 from .eigen import UnstableError
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 NO_GRAVITY = np.zeros(3)
 
 
-MOST = 6400
+MAX_ELEMENTS = 6400
 """Elements that a mesh is refined to, by default."""
 
 LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
@@ -50,7 +50,7 @@ def modes(
     accuracy: float = 1e-6,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
     allow_large_strain: bool = False,
@@ -64,10 +64,10 @@ def modes(
             and the frequencies are extrapolated (Richardson).
         count: how many modes (fewer if the discretisation has fewer).
         accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given; ``AccuracyWarning`` where
-            ``MOST`` elements, or rounding, do not allow it.
+            ``MAX_ELEMENTS`` elements, or rounding, do not allow it.
         mass: ``consistent`` (fourth order) or ``half_end`` (lumped, Park et al. 2010; second order).
-        stiffness: ``corotational``, or ``parent``: linear in the parent body's frame (Park et al. 2010).
-        model: physical effects kept.
+        stiffness: ``corotational``, or ``body_fixed``: linear in the parent body's frame (Park et al. 2010).
+        effects: physical effects kept.
         gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
         load: (n, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them.
         allow_large_strain: accept steady strains above ``LARGEST_STRAIN``.
@@ -87,7 +87,7 @@ def modes(
         accuracy=accuracy,
         mass=mass,
         stiffness=stiffness,
-        model=model,
+        effects=effects,
         gravity=gravity,
         load=load,
         allow_large_strain=allow_large_strain,
@@ -104,7 +104,7 @@ def sweep(
     accuracy: float = 1e-6,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
     allow_large_strain: bool = False,
@@ -115,13 +115,13 @@ def sweep(
     """
     if not accuracy > 0:
         raise ValueError(f"accuracy: {accuracy}: give a positive relative number, as in 1e-6")
-    body = blade if model.rotary_inertia else without_rotary_inertia(blade)
-    meshes, fastest = _Meshes(body, count, mass, stiffness, load, model, gravity), 0.0
+    body = blade if effects.rotary_inertia else without_rotary_inertia(blade)
+    meshes, fastest = _Meshes(body, count, mass, stiffness, load, effects, gravity), 0.0
     for omega in _checked(omegas, count):
         begun = time.perf_counter()
         if abs(omega) > fastest:  # the graded mesh is made for a range of speeds, up to a power of two
             fastest = 2.0 ** np.ceil(np.log2(abs(omega)))
-            meshes = _Meshes(body, count, mass, stiffness, load, model, gravity)
+            meshes = _Meshes(body, count, mass, stiffness, load, effects, gravity)
         found = (
             _refined(meshes, omega, fastest, accuracy)
             if elements is None
@@ -143,12 +143,12 @@ def mesh_modes(
     *,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
 ) -> Modes:
     """The modes of one mesh, for studies of refinement: without uncertainties, at any strain; otherwise as ``modes``."""
-    return next(mesh_sweep(blade, [omega], elements, count, mass, stiffness, model, gravity, load))
+    return next(mesh_sweep(blade, [omega], elements, count, mass, stiffness, effects, gravity, load))
 
 
 def mesh_sweep(
@@ -158,14 +158,16 @@ def mesh_sweep(
     count: int = 10,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
 ) -> Iterator[Modes]:
     """The modes of one mesh at one speed after another; see ``mesh_modes``."""
     speeds = _checked(omegas, count)
-    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load)
-    one = _Mesh(body, count, model, gravity)
+    body = discretize(
+        blade if effects.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load
+    )
+    one = _Mesh(body, count, effects, gravity)
     return (one.at(omega).modes for omega in speeds)
 
 
@@ -180,10 +182,10 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
 
 
 def chain_modes(
-    body: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = NO_GRAVITY
+    body: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain, of which rounding is all that is known; arguments and errors as for ``modes``."""
-    one = _Mesh(body, count, model, gravity)
+    one = _Mesh(body, count, effects, gravity)
     solved = one.at(next(_checked([omega], count)))
     return replace(solved.modes, rounding=one.rounding(solved))
 
@@ -203,7 +205,7 @@ class _Mesh:
 
     body: Chain
     count: int
-    model: Model
+    effects: Effects
     gravity: Array
     known: list[tuple[float, Shape]] = field(default_factory=list)
 
@@ -211,11 +213,11 @@ class _Mesh:
         """Solve at one speed, from the speeds before or else from a shape near by."""
         begun, body = time.perf_counter(), self.body
         guess = steady.extrapolate(self.known, omega)
-        state = balance(body, omega, self.gravity, self.model, near if guess is None else guess)
+        state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
         try:
-            found = lanczos(state.linear, self.count)
+            found = lanczos(state.pencil, self.count)
         except (UnstableError, EigensolverError) as error:
-            if pencil.loose(state.linear):
+            if pencil.loose(state.pencil):
                 raise UnstableError(
                     f"omega: {omega:.6g} rad/s: nothing holds a free hinge (at rest, or lead–lag without offset): add a spring"
                 ) from error
@@ -228,10 +230,10 @@ class _Mesh:
 
     def rounding(self, solved: _Solved) -> Array:
         """(m,) relative error of the frequencies by rounding."""
-        if not (self.model.geometric and self.model.prestretch):  # about the undeformed shape, which is not rounded
+        if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is not rounded
             return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
         state, omega = solved.state, solved.modes.omega
-        return accuracy.rounding(self.body, state, omega, self.gravity, self.model, solved.vectors)
+        return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
 
 
 @dataclass
@@ -243,7 +245,7 @@ class _Meshes:
     mass: Mass
     stiffness: Measure
     load: Array | None
-    model: Model
+    effects: Effects
     gravity: Array
     made: dict[int, _Mesh] = field(default_factory=dict)
     nodes: list[Array] = field(default_factory=list)
@@ -271,7 +273,7 @@ class _Meshes:
 
     def _mesh(self, elements: int | Array) -> _Mesh:
         body = discretize(self.blade, elements, self.mass, self.stiffness, self.load)
-        return _Mesh(body, self.count, self.model, self.gravity)
+        return _Mesh(body, self.count, self.effects, self.gravity)
 
 
 _FAILURES = (SteadyStateError, UnstableError, ArithmeticError)
@@ -283,7 +285,7 @@ def _refined(meshes: _Meshes, omega: float, fastest: float, wanted: float) -> Mo
     best: Modes | None = None
     for level in itertools.count():
         one = meshes.level(level, fastest)
-        if level > 2 and one.body.elements > MOST:
+        if level > 2 and one.body.elements > MAX_ELEMENTS:
             break
         before = meshes.level(level - 1, fastest) if solved else None
         near = steady.carried_over(before.body, solved[-1].state.shape, one.body) if before else None
@@ -373,13 +375,15 @@ def _from_default(meshes: _Meshes, last: Modes, fastest: float) -> Array:
     return sure
 
 
-def balance(body: Chain, omega: float, gravity: Array, model: Model, guess: Shape | None = None) -> Steady:
-    """The steady state that the model has, and the pencil about it."""
-    if model.geometric and model.prestretch:
+def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
+    """The steady state with the given effects, and the pencil about it."""
+    if effects.geometric and effects.prestretch:
         state = steady.steady(body, omega, gravity, guess)
         return (
-            state if model == FULL else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, model))
+            state
+            if effects == ALL_EFFECTS
+            else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, effects))
         )
-    still = pencil.rest(body)
-    loaded = steady.prestress_at_rest(body, omega, gravity) if model.geometric else body
-    return Steady(still, pencil.linearize(loaded, still, omega, gravity, model))
+    still = pencil.undeformed(body)
+    loaded = steady.prestress_at_rest(body, omega, gravity) if effects.geometric else body
+    return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))

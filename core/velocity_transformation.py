@@ -1,7 +1,7 @@
 """A blade's modes by the method of Park et al. (2010): bodies, joints, B, M*, Q*, partition, linearisation, eigenproblem.
 
-The blade's bodies and elements are those of ``solve``, which works with the bodies' own twists and never forms B. Here they
-are a mechanism, in relative coordinates, with dense matrices: the same answer by the paper's way, for some tens of elements.
+The bodies and elements are those of ``solve``, which works with the bodies' own twists and never forms B. Here they form a
+mechanism in relative coordinates with dense matrices: the same result by the paper's method, for some tens of elements.
 """
 
 import time
@@ -15,7 +15,7 @@ from .chain import as_mechanism
 from .chain.mode_shapes import mode_shapes
 from .chain.pencil import Shape
 from .chain.steady import SteadyStateError
-from .effects import FULL, Model
+from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
@@ -28,7 +28,7 @@ from .space import spatial as sp
 
 Array = NDArray[np.float64]
 
-MOST_ELEMENTS = 200  # of dense matrices, 12 coordinates an element: gigabytes and minutes beyond
+MAX_ELEMENTS = 200  # of dense matrices, 12 coordinates an element: gigabytes and minutes beyond
 _BALANCED = 1e-8  # how far off the steady state may be, of the blade's length (or a radian)
 
 
@@ -40,14 +40,14 @@ def modes(
     *,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array | None = None,
     load: Array | None = None,
 ) -> Modes:
     """The lowest modes of a blade turning steadily at ``omega``; arguments, units and answer as those of ``solve.modes``.
 
     Raises:
-        ValueError: as ``solve.modes``; or a model without prestretch or geometric stiffness, which the steady state of a
+        ValueError: as ``solve.modes``; or effects without prestretch or geometric stiffness, which the steady state of a
             mechanism always has.
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
@@ -56,32 +56,32 @@ def modes(
         raise ValueError(f"count: {count}: ask for at least one mode")
     if not np.isfinite(omega):
         raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise ValueError(
-            f"elements: {elements}: the velocity transformation has dense matrices: at most {MOST_ELEMENTS}; "
+            f"elements: {elements}: the velocity transformation has dense matrices: at most {MAX_ELEMENTS}; "
             "use the chain solver"
         )
-    if not (model.prestretch and model.geometric):
+    if not (effects.prestretch and effects.geometric):
         raise ValueError(
-            f"model: no {', no '.join(model.lacks())}: the velocity transformation keeps prestretch and geometric stiffness; "
-            "use the chain solver"
+            f"effects: no {', no '.join(effects.lacks())}: the velocity transformation keeps prestretch and geometric "
+            "stiffness; use the chain solver"
         )
     begun = time.perf_counter()
-    kept = blade if model.rotary_inertia else without_rotary_inertia(blade)
+    kept = blade if effects.rotary_inertia else without_rotary_inertia(blade)
     body = discretize(kept, elements, mass, stiffness, load)
     linear = about_steady_state(body, omega, np.zeros(3) if gravity is None else gravity)
     M, C, K = (0.5 * (linear.M + linear.M.T), 0.5 * (linear.C - linear.C.T), 0.5 * (linear.K + linear.K.T))
     try:
-        found = eigen.gyroscopic(M, C if model.coriolis else np.zeros_like(C), K, count)
+        found = eigen.gyroscopic(M, C if effects.coriolis else np.zeros_like(C), K, count)
     except eigen.UnstableError as error:
-        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.held.size else ""
+        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.clamped.size else ""
         raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
     _check_balance(linear, K, omega, body.scale)
     shapes = _shapes(body, linear, found.vectors)
     return Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 
 
-def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linear:
+def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linearization:
     """M̂, Ĉ, K̂ of a chain as a mechanism, about its steady state at ``omega`` (rad/s).
 
     Raises:
@@ -95,7 +95,7 @@ def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linear:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
 
 
-def _check_balance(linear: lz.Linear, K: Array, omega: float, length: float) -> None:
+def _check_balance(linear: lz.Linearization, K: Array, omega: float, length: float) -> None:
     """Where Q̂ is not zero, K̂⁻¹ Q̂ is how far off the steady state is."""
     Q_hat = reduced(linear.tree, linear.state.q, np.zeros(len(K)), linear.names).Q_hat
     off = np.abs(np.linalg.solve(K, Q_hat)).max(initial=0.0) / max(length, 1.0)
@@ -105,7 +105,7 @@ def _check_balance(linear: lz.Linear, K: Array, omega: float, length: float) -> 
         )
 
 
-def _shapes(body: Chain, linear: lz.Linear, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the independent coordinates."""
     k, n = linear.state.kinematics, len(body.nodes)
     dq = np.zeros((len(k.q), vectors.shape[1]), complex)

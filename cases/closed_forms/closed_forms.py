@@ -67,10 +67,10 @@ def oscillating(mechanism: mb.Mechanism, guess: Mapping[str, float] | None = Non
 
 def _pendulum_solved(omega: float) -> Complex:
     if omega**2 * pendulums.LENGTH <= pendulums.G:
-        return oscillating(pendulums.pendulum(omega, held=True))
-    free = oscillating(pendulums.pendulum(omega, held=False), {"swing.rz": -1.0})
+        return oscillating(pendulums.pendulum(omega, prescribed=True))
+    free = oscillating(pendulums.pendulum(omega, prescribed=False), {"swing.rz": -1.0})
     return np.append(
-        oscillating(pendulums.pendulum(omega, held=True), {"swing.rz": -1.0}), free[np.argmax(np.abs(free))]
+        oscillating(pendulums.pendulum(omega, prescribed=True), {"swing.rz": -1.0}), free[np.argmax(np.abs(free))]
     )
 
 

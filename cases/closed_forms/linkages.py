@@ -124,7 +124,7 @@ def ring(omega: float, arcs: int = ARCS) -> mb.Mechanism:
         (
             mb.Joint("turn", "revolute", "ground", "frame"),
             mb.Joint("float", "free", "frame", "b0", place),
-            *(mb.Joint(f"j{k}", "elastic", names[k - 1], names[k], element.rest[0]) for k in range(1, arcs)),
+            *(mb.Joint(f"j{k}", "elastic", names[k - 1], names[k], element.undeformed[0]) for k in range(1, arcs)),
         ),
         (mb.Motion("turn.rz", rate=omega),),
         beams=tuple(mb.Beam(names[k], names[(k + 1) % arcs], element) for k in range(arcs)),

@@ -43,7 +43,7 @@ def turntable_values(omega: float) -> Complex:
 LENGTH = 1.0
 
 
-def pendulum(omega: float, held: bool) -> mb.Mechanism:
+def pendulum(omega: float, prescribed: bool) -> mb.Mechanism:
     """A bob on an arm that swings in a plane, which turns at a prescribed rate, or freely."""
     return mb.Mechanism(
         (mb.Body("arm"), mb.Body("bob", mb.inertia(1.0, 0.0, (0.0, 0.0, -LENGTH)))),
@@ -51,7 +51,7 @@ def pendulum(omega: float, held: bool) -> mb.Mechanism:
             mb.Joint("turn", "revolute", "ground", "arm"),
             mb.Joint("swing", "revolute", "arm", "bob", mb.at(axis="y"), mb.at(axis="y")),
         ),
-        (mb.Motion("turn.rz", rate=omega, held=held),),
+        (mb.Motion("turn.rz", rate=omega, prescribed=prescribed),),
         gravity=(0.0, 0.0, -G),
     )
 
@@ -82,8 +82,8 @@ def top(precession: float) -> mb.Mechanism:
             mb.Joint("spin", "revolute", "cradle", "rotor"),
         ),
         (
-            mb.Motion("precession.rz", rate=precession, held=False),
-            mb.Motion("spin.rz", rate=spin, held=False),
+            mb.Motion("precession.rz", rate=precession, prescribed=False),
+            mb.Motion("spin.rz", rate=spin, prescribed=False),
         ),
         gravity=(0.0, 0.0, -G),
     )

@@ -12,6 +12,7 @@ from ...core.condense.segments import Segment
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
 from ...core.regular_files import LARGEST_DATA, read_bytes
+from ...core.space.inertia import about_centre
 from ..input import atomic
 from ..input.errors import NO_STATE, CaseError, unsteady
 from ..input.names import Name
@@ -51,7 +52,7 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
 
     Bodies move as the samples beside them do, sections' frames taken as parallel to the hub's.
     """
-    ends = np.append(0.0, np.cumsum([np.linalg.norm(s.rest[:3, 3]) for s in segments]))
+    ends = np.append(0.0, np.cumsum([np.linalg.norm(s.undeformed[:3, 3]) for s in segments]))
     at = 0.5 * (ends[:-1] + ends[1:]) / ends[-1]
     k = np.clip(np.searchsorted(STATIONS, at) - 1, 0, len(STATIONS) - 2)
     t = ((at - STATIONS[k]) / (STATIONS[k + 1] - STATIONS[k]))[:, None]
@@ -66,10 +67,8 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
 
 def body(s: Segment) -> tuple[float, Array, Array]:
     """A segment's mass, its centre (3,) in frame a, and its moments of inertia (3, 3) about the centre."""
-    mass = float(s.inertia[0, 0])
-    first = s.inertia[3:, :3] / mass  # skew(centre)
-    centre = np.array([first[2, 1], first[0, 2], first[1, 0]])
-    return mass, centre, s.inertia[3:, 3:] - mass * first @ first.T
+    mass, centre, moments = about_centre(s.inertia)
+    return float(mass), centre, moments
 
 
 def write(path: Path, blade: Condensed) -> None:
@@ -80,7 +79,7 @@ def write(path: Path, blade: Condensed) -> None:
 
 
 class _Piece(msgspec.Struct, forbid_unknown_fields=True):
-    rest: list[list[float]]
+    undeformed: list[list[float]]
     stiffness: list[list[float]]
     inertia: list[list[float]]
     ride: list[list[float]]
@@ -106,7 +105,7 @@ def read(path: Path) -> Condensed:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
-    sizes = {"rest": 4, "stiffness": 6, "inertia": 6, "ride": 6}
+    sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []
     for k, piece in enumerate(kept.segments):
         found = {field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...core.condense.compressed import chain_from_segments, chain_modes
 from ...core.condense.segments import Segment
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
 from ...core.regular_files import read_bytes
 from ...references.protocol.interface import CodeError
@@ -201,12 +201,12 @@ def _at_speed(
         condensed=_plain(ours.frequencies[:MODES]),
         apart={how: _plain(m.frequencies[:MODES]) for how, m in chains.items()},
         calculix=_plain(theirs[:MODES]),
-        without=_plain(_chain(pieces["in place"], solids.ROOT, omega, MODES + 1, calculix.MODEL).frequencies[:MODES]),
+        without=_plain(_chain(pieces["in place"], solids.ROOT, omega, MODES + 1, calculix.EFFECTS).frequencies[:MODES]),
     )
 
 
-def _chain(segments: list[Segment], root: float, omega: float, count: int, model: Model = FULL) -> Modes:
-    return chain_modes(chain_from_segments(segments, solids.at(root)), omega, count, model=model)
+def _chain(segments: list[Segment], root: float, omega: float, count: int, model: Effects = ALL_EFFECTS) -> Modes:
+    return chain_modes(chain_from_segments(segments, solids.at(root)), omega, count, effects=model)
 
 
 def _plain(values: np.ndarray) -> tuple[float, ...]:

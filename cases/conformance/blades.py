@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, uniform_blade
+from ...references.theories import timoshenko as timoshenko_beam
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,7 @@ WITH_TIP_MASS = replace(
 STUBBY = uniform_blade(
     "stubby beam", LENGTH, 0.0, EA=3e4, GJ=200.0, EI_y=EI, EI_z=EI, mass=MASS, I_y=MASS * EI / 3e4, I_z=MASS * EI / 3e4
 )
-"""Slenderness 50, inertia of the sections to match: each effect of ``core.model`` shows at ``FAST``, by 0.7 % at least."""
+"""Slenderness 50, inertia of the sections to match: each effect of ``core.effects`` shows at ``FAST``, by 0.7 % at least."""
 
 FAST = 10.0
 """rad/s."""
@@ -93,26 +94,9 @@ def cantilever_shape() -> Array:
 
 
 def timoshenko() -> float:
-    """First frequency of the short beam, rad/s, at rest (T. C. Huang, J. Appl. Mech. 28, 1961, 579–584).
-
-    In units of EI, m and L, with λ = ω², b = λ/GA, c = λ I: the section turns by ψ, ``ψ' = w'' + b w`` and
-    ``ψ'' + c ψ = GA (ψ − w')``, hence ``w'''' + (b + c) w'' − (λ − b c) w = 0``. Solutions with w = ψ = 0 at the root are
-    two; at the tip, for some sum of them, ψ' = 0 (no moment) and ψ'' + c ψ = 0 (no force).
-    """
-
-    def free_tip(square: float) -> float:
-        b, c = square / SHEAR, square / SHORT**2
-        root = np.sqrt((b + c) ** 2 / 4 + square - b * c)
-        p, q = np.sqrt(root - (b + c) / 2), np.sqrt(root + (b + c) / 2)
-        turn_p, turn_q = (p**2 + b) / p, (q**2 - b) / q  # ψ of cosh px is turn_p sinh px, that of −cos qx turn_q sin qx
-        moment = turn_p * p * np.cosh(p) + turn_q * q * np.cos(q), p * np.sinh(p) + q * np.sin(q)
-        force = (
-            turn_p * (p**2 + c) * np.sinh(p) - turn_q * (q**2 - c) * np.sin(q),
-            (p**2 + c) * np.cosh(p) + (q**2 - c) * np.cos(q),
-        )
-        return moment[0] * force[1] - moment[1] * force[0]
-
-    return float(np.sqrt(root_scalar(free_tip, bracket=(1.0, CANTILEVER[0] ** 2)).root))
+    """First frequency of the short beam at rest, rad/s; units of EI, m and L."""
+    (found,) = timoshenko_beam.cantilever(1, EI=1.0, GA=SHEAR, mass=1.0, rotary=SHORT**-2, length=1.0)
+    return float(found)
 
 
 def cornered() -> tuple[Blade, float]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...core import solve
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.eigen import UnstableError
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.interface import Code, CodeError, Shares, digits
@@ -102,7 +102,7 @@ def declares(code: Code) -> None:
     _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
     _keep(code.title.strip(), "title: empty")
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
-    _keep(isinstance(code.model, Model), f"model: {code.model!r}: not a core.model.Model")
+    _keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
     _keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: a whole number, 0 if spectral")
     told = digits(code)
     _keep(isinstance(told, int) and told >= FEWEST, f"digits: {told!r}: a whole number, {FEWEST} at least")
@@ -290,15 +290,15 @@ def shear(code: Code) -> None:
 
 
 @cache
-def _stubby(model: Model) -> Array:
-    return solve.mesh_modes(known.STUBBY, known.FAST, 30, 4, model=model).frequencies
+def _stubby(effects: Effects) -> Array:
+    return solve.mesh_modes(known.STUBBY, known.FAST, 30, 4, effects=effects).frequencies
 
 
 @cache
-def _with_and_without(name: str, model: Model) -> tuple[Array, Array]:
+def _with_and_without(name: str, effects: Effects) -> tuple[Array, Array]:
     """Core's frequencies of the blades that have a property, and lack it."""
     (one,) = (p for p in PROPERTIES if p.name == name)
-    having, lacking = (solve.mesh_modes(b, one.omega, 30, 4, model=model) for b in (one.having, one.lacking))
+    having, lacking = (solve.mesh_modes(b, one.omega, 30, 4, effects=effects) for b in (one.having, one.lacking))
     return having.frequencies, lacking.frequencies
 
 
@@ -306,35 +306,35 @@ def _far(found: Array, other: Array) -> float:
     return float(np.abs(np.log(found[: len(other)] / other[: len(found)])).max())
 
 
-def model(code: Code) -> None:
+def effects(code: Code) -> None:
     """Each effect by turns, at a speed where leaving it out is seen, and which not every code can reach."""
     try:
         found, _, bracket = _limit(code, known.STUBBY, known.FAST, (-2, -1))
     except CodeError as error:
         raise NotForItError(str(error)) from error
-    here = _stubby(code.model)
+    here = _stubby(code.effects)
     near = _far(found, here)
-    for name in (f.name for f in fields(Model)):
-        kept = getattr(code.model, name)
+    for name in (f.name for f in fields(Effects)):
+        kept = getattr(code.effects, name)
         try:
-            change = _far(_stubby(replace(code.model, **{name: not kept})), here)
+            change = _far(_stubby(replace(code.effects, **{name: not kept})), here)
         except UnstableError:  # as without geometric stiffness: then no answer is wrong enough
             continue
         if bracket > DROPPED * change:
             raise NotForItError(f"its own bracket, {bracket:.1%}, hides {name}")
         _keep(
             near <= DROPPED * change,
-            f"model.{name} = {kept}: {near:.2%} from core with the model declared; {name} makes {change:.2%}",
+            f"effects.{name} = {kept}: {near:.2%} from core with the effects declared; {name} makes {change:.2%}",
         )
 
 
 def keeps(one: Property, code: Code) -> None:
     """A property is not dropped without a word; told from two coarse levels."""
     found, _, bracket = _limit(code, one.having, one.omega)
-    having, lacking = _with_and_without(one.name, code.model)
+    having, lacking = _with_and_without(one.name, code.effects)
     change = _far(having, lacking)
     if change < VISIBLE:
-        raise NotForItError(f"not felt without {', '.join(code.model.lacks())}")
+        raise NotForItError(f"not felt without {', '.join(code.effects.lacks())}")
     if bracket > DROPPED * change:
         raise NotForItError(f"its own bracket, {bracket:.1%}, is wider than what {one.name} does")
     near, far = _far(found, having), _far(found, lacking)

@@ -71,7 +71,7 @@ def judge(code: Code, check: Check) -> Outcome:
 CHECKS = (
     Check(
         "declarations",
-        "name, title, shares, model, levels, order, digits, and a version or a hint",
+        "name, title, shares, effects, levels, order, digits, and a version or a hint",
         checks.declares,
         runs=False,
     ),
@@ -93,7 +93,7 @@ CHECKS = (
     Check("kink", "a corner of the curve: refused, or the closed form of two beams at right angles", checks.corner),
     Check("hinged root", "refused, or a straight line at Ω", checks.hinged_root),
     Check("shear", "refused, or Timoshenko's frequency in closed form", checks.shear),
-    Check("model", "effects declared are kept, and no others", checks.model),
+    Check("effects", "effects declared are kept, and no others", checks.effects),
     *(Check(f"keeps {p.name}", "refused, or not dropped", partial(checks.keeps, p)) for p in PROPERTIES),
 )
 """Every check, in the order in which failures are best read."""

@@ -9,7 +9,7 @@ import numpy as np
 from ...core import solve
 from ...core.blade import BEND_Z, TORSION, Blade
 from ...core.chain.steady import Steady
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.element import discretize, sections
 from ...core.element.discretize import Chain
 from ..verify import core_solver, mistakes
@@ -46,7 +46,7 @@ def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
     """Core leaves effects out and does not say so."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, model: Model, guess: Any = None) -> Steady:
+        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
             return right(body, omega, gravity, replace(model, **lacks), guess)
 
         return wrong
@@ -58,9 +58,9 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     """Spin softening times ``factor``; effects in ``lacks`` left out too."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, model: Model, guess: Any = None) -> Steady:
+        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
             state = right(body, omega, gravity, replace(model, **lacks), guess)
-            return replace(state, linear=mistakes.softened(body, state, omega, factor))
+            return replace(state, pencil=mistakes.softened(body, state, omega, factor))
 
         return wrong
 
@@ -73,7 +73,7 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     def make(right: Balance) -> Balance:
         def wrong(*args: Any, **kwargs: Any) -> Steady:
             state = right(*args, **kwargs)
-            return replace(state, linear=alter(state.linear))
+            return replace(state, pencil=alter(state.pencil))
 
         return wrong
 

@@ -162,7 +162,7 @@ FAULTS = (
              judge(_excuses), "no Coriolis"),
     Fault("judged with a bias", "verdict", "differences are 0.2 % too small", "−0.2 %", judge(_half), PARK),
     Fault("model ignored", "verdict", "a code without effects is compared with core with all of them", "Coriolis at γ = 10",
-          ((reference, "felt", lambda right: lambda *_: reference.FULL),), replace(FAST, codes=("assumed-modes",))),
+          ((reference, "felt", lambda right: lambda *_: reference.ALL_EFFECTS),), replace(FAST, codes=("assumed-modes",))),
     Fault("printed digit", "reader", "the last digit of a printed number is misread", "0.1 to 0.5 %",
           ((published_tables, "from_print", _digits),), Trial("park-cantilever", (10.0,), ())),
     Fault("printed unit", "reader", "a table's unit is 5 % off", "+5 %",

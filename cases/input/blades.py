@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Meta
 
 from ...core.blade import (
-    ROOT,
+    ROOT_TOLERANCE,
     Blade,
     BladeError,
     mass_at,
@@ -145,7 +145,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         path = folder / self.file
         columns = read_table(path, self.COLUMNS, self.OPTIONAL)
         fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
-        if abs(fraction[-1] - 1.0) > ROOT:
+        if abs(fraction[-1] - 1.0) > ROOT_TOLERANCE:
             raise CaseError(
                 f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
             )

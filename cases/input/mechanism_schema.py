@@ -67,7 +67,7 @@ class MotionData(Struct, frozen=True, forbid_unknown_fields=True):
     position: Annotated[float | None, Meta(description="m or rad")] = None
     rate: Annotated[float, Meta(description="m/s or rad/s")] = 0.0
     acceleration: Annotated[float, Meta(description="m/s² or rad/s²")] = 0.0
-    held: Annotated[bool, Meta(description="false: free to vibrate about this motion")] = True
+    prescribed: Annotated[bool, Meta(description="false: free to vibrate about this motion")] = True
     polynomial: Annotated[tuple[float, ...], Meta(description="coefficients of 1, t, t² …, SI")] = ()
     harmonics: tuple[HarmonicData, ...] = ()
 
@@ -77,7 +77,7 @@ class CoordinateSpringData(Struct, frozen=True, forbid_unknown_fields=True):
 
     stiffness: Annotated[float, Meta(description="N/m or N m/rad")] = 0.0
     damping: Annotated[float, Meta(description="N s/m or N m s/rad")] = 0.0
-    rest: Annotated[float, Meta(description="where it pulls nothing, m or rad")] = 0.0
+    neutral: Annotated[float, Meta(description="where it pulls nothing, m or rad")] = 0.0
 
 
 class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
@@ -89,7 +89,7 @@ class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
     point_b: Annotated[Three, Meta(description="m, in body_b")] = ORIGIN
     stiffness: Annotated[float, Meta(description="N/m")] = 0.0
     damping: Annotated[float, Meta(description="N s/m")] = 0.0
-    rest: Annotated[float, Meta(ge=0, description="length without tension, m")] = 0.0
+    free_length: Annotated[float, Meta(ge=0, description="length without tension, m")] = 0.0
 
 
 class BushingData(Struct, frozen=True, forbid_unknown_fields=True):

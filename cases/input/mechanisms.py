@@ -85,9 +85,11 @@ def decode(data: Mapping[str, Any], path: str) -> Described:
         bodies=_bodies(text, path),
         joints=_joints(text, path),
         motions=_motions(text, path),
-        coordinate_springs=tuple(mb.CoordinateSpring(c, s.stiffness, s.damping, s.rest) for c, s in springs),
+        coordinate_springs=tuple(mb.CoordinateSpring(c, s.stiffness, s.damping, s.neutral) for c, s in springs),
         springs=tuple(
-            mb.Spring(s.body_a, s.body_b, np.array(s.point_a), np.array(s.point_b), s.stiffness, s.damping, s.rest)
+            mb.Spring(
+                s.body_a, s.body_b, np.array(s.point_a), np.array(s.point_b), s.stiffness, s.damping, s.free_length
+            )
             for s in text.springs
         ),
         beams=(*_bushings(text, path), *_beams(text, path)),
@@ -129,7 +131,7 @@ def _motions(text: MechanismFile, path: str) -> tuple[mb.Motion, ...]:
                 "harmonics): give one of them"
             )
         law = mb.Sum(tuple(laws)) if laws else None
-        out.append(mb.Motion(name, m.position, m.rate, m.acceleration, m.held, law))
+        out.append(mb.Motion(name, m.position, m.rate, m.acceleration, m.prescribed, law))
     return tuple(out)
 
 

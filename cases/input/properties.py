@@ -17,10 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core import gauss
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, mass_at
-from ...core.element.inertia import moved
 from ...core.element.sections import frames, root
 from ...core.space import spatial as sp
+from ...core.space.inertia import about_centre, transformed
 
 Array = NDArray[np.float64]
 
@@ -87,7 +88,7 @@ def about_hub(blade: Blade) -> Mass:
 
 def about_root(blade: Blade) -> Mass:
     """About the root in the blade's axes (x along the blade, coned and pitched with it), tip mass included."""
-    return _properties(moved(_inertia(blade), sp.inverse(root(blade))))
+    return _properties(transformed(_inertia(blade), sp.inverse(root(blade))))
 
 
 def tip(blade: Blade) -> Mass | None:
@@ -97,18 +98,14 @@ def tip(blade: Blade) -> Mass | None:
 
 def _inertia(blade: Blade) -> Array:
     """(6, 6) about the hub's centre: Gauss quadrature between stations, between which mass is linear."""
-    x, w = np.polynomial.legendre.leggauss(_GAUSS)
-    h = np.diff(blade.stations)
-    s = (blade.stations[:-1, None] + h[:, None] * (x + 1) / 2).ravel()
-    per_length = mass_at(blade, s) * (h[:, None] * w / 2).ravel()[:, None, None]
-    parts = np.concatenate([per_length, blade.tip_mass[None]])
-    return moved(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
+    s, weight = (part.ravel() for part in gauss.between(blade.stations, _GAUSS))
+    parts = np.concatenate([mass_at(blade, s) * weight[:, None, None], blade.tip_mass[None]])
+    return transformed(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
 
 
 def _properties(inertia: Array) -> Mass:
-    mass = float(inertia[0, 0])
-    cross = inertia[3:, :3] / mass  # of the centre
-    return Mass(mass, np.array([cross[2, 1], cross[0, 2], cross[1, 0]]), inertia[3:, 3:])
+    mass, centre, _ = about_centre(inertia)
+    return Mass(float(mass), centre, inertia[3:, 3:])
 
 
 def sections(blade: Blade) -> Sections:

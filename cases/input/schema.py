@@ -14,7 +14,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...references import published
 from . import files
 from .blades import BladeData, Dimensionless
@@ -72,15 +72,15 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
     elements: Annotated[int, Meta(ge=1, description="number of elements")]
     mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]
     stiffness: Annotated[
-        Literal["corotational", "parent"], Meta(description="the frame the beam's stiffness is linear in")
+        Literal["corotational", "body_fixed"], Meta(description="the frame the beam's stiffness is linear in")
     ]
     lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the source leaves out")] = ()
     tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()
 
     @property
-    def model(self) -> Model:
+    def model(self) -> Effects:
         """The effects kept."""
-        return Model(**dict.fromkeys(self.lacks, False))
+        return Effects(**dict.fromkeys(self.lacks, False))
 
     @property
     def what(self) -> str:

@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...core.blade import Blade, mass_at, twist_at
 from ...core.modes import STATIONS, Modes
-from ...core.participation import DOMINANT
+from ...core.participation import DOMINANT_FRACTION
 
 Array = NDArray[np.float64]
 
@@ -82,9 +82,9 @@ def shares(modes: Modes, weight: Array) -> Array:
 
 
 def families(modes: Modes, weight: Array) -> tuple[str, ...]:
-    """Name of each mode: the motion that carries at least ``DOMINANT`` of its modal mass, else ``mixed``."""
+    """Name of each mode: the motion that carries at least ``DOMINANT_FRACTION`` of its modal mass, else ``mixed``."""
     share = shares(modes, weight)
-    return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT else "mixed" for row in share)
+    return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT_FRACTION else "mixed" for row in share)
 
 
 def numbered(families: Iterable[str]) -> list[str]:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from ...core import velocity_transformation
 from ...core.blade import Blade, straight
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
 from ...references.protocol.description import Description
 from ...references.protocol.interface import CORE, Independence
@@ -57,7 +57,7 @@ class Column:
     """
 
     name: str
-    model: Model
+    model: Effects
     head: Head
     work: Callable[[Any], Rows]
     origin: Independence | None = None
@@ -90,14 +90,14 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
             Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
         )
     head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
-    out.append(Column(OTHER_METHOD, FULL, head, partial(_other_method, head, blade), due="highest speed"))
+    out.append(Column(OTHER_METHOD, ALL_EFFECTS, head, partial(_other_method, head, blade), due="highest speed"))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)
         theory = CORE if computed else table.series.theory or table.source
         origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
-        out.append(Column(table.name, felt(table.series.model, blade), head, work, origin, due="somewhere"))
+        out.append(Column(table.name, felt(table.series.effects, blade), head, work, origin, due="somewhere"))
     takers = [code for code in codes if code.blades]
     if not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes]
@@ -109,22 +109,24 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
 
 def _mechanisms_only(case: str, code: Description, target: float) -> Column:
     head = Head(case, code.name, code.version or "", "code", target)
-    return Column(code.name, FULL, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades"))
+    return Column(
+        code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades")
+    )
 
 
 def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column:
     if code.failure:
-        return Column(code.name, FULL, head, failing_work(head, code.failure))
+        return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure))
     if code.refused and code.refused[0]:
-        return Column(code.name, FULL, head, partial(_absent, head, "not applicable", code.refused[0]))
-    name, model = code.asked, felt(code.model, blade)
+        return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", code.refused[0]))
+    name, model = code.asked, felt(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)
         return Column(
             code.name,
             model,
             head,
-            partial(_same, head, name, blade, code.levels[-1], code.model, limits),
+            partial(_same, head, name, blade, code.levels[-1], code.effects, limits),
         )
     refining = Refining(code.levels, code.order, cap(code), bracket=code.bracket)
     return Column(code.name, model, head, partial(_refined, head, name, blade, refining, limits))
@@ -179,11 +181,11 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     )
 
 
-def _same(head: Head, name: str, blade: Blade, elements: int, model: Model, limits: Limits, core: References) -> Rows:
+def _same(head: Head, name: str, blade: Blade, elements: int, model: Effects, limits: Limits, core: References) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
     theirs = answers(name, blade, runs, limits)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
-    mine, *again = (core_solver.answers(b, runs, "half_end", "parent", model) for b in (blade, *scaled))
+    mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", model) for b in (blade, *scaled))
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
     rows = zip(core, theirs, mine, noises, strict=True)
     return _join(same(head, omega, r, a, b, noise) for (omega, r), a, b, noise in rows)

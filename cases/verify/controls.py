@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.chain.steady import SteadyStateError
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.eigen import UnstableError
 from ...core.modes import Modes
 from ..input.schema import Compare, Variant
@@ -68,7 +68,7 @@ def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes
     """None where there is no answer: what is wrong may have no steady state, be singular, or give no finite number."""
     try:
         with np.errstate(invalid="ignore"):
-            return solve(blade, omega, ELEMENTS, 2 * compare.modes + 2, FULL)
+            return solve(blade, omega, ELEMENTS, 2 * compare.modes + 2, ALL_EFFECTS)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
 

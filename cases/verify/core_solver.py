@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
@@ -58,14 +58,16 @@ def answers(
     runs: Sequence[Run],
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     by: Solver | None = None,
 ) -> list[Answer]:
     """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         try:
-            out.append((by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model))
+            out.append(
+                (by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
+            )
         except NO_STATE as error:
             out.append(Failure("refused", str(error)))
     return out
@@ -99,7 +101,7 @@ def as_given(source: Discretisation) -> Refining:
     return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
 
 
-def converged(blade: Blade, omega: float, compare: Compare, model: Model) -> Converged | Failure:
+def converged(blade: Blade, omega: float, compare: Compare, model: Effects) -> Converged | Failure:
     """Core's converged modes at one speed, with the effects of ``model``.
 
     Raises:
@@ -109,10 +111,10 @@ def converged(blade: Blade, omega: float, compare: Compare, model: Model) -> Con
 
 
 def _converged(
-    blade: Blade, omega: float, compare: Compare, model: Model, weight: Array, count: int
+    blade: Blade, omega: float, compare: Compare, model: Effects, weight: Array, count: int
 ) -> Converged | Failure:
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, model=model)
+        return answers(blade, runs, effects=model)
 
     def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
         finest = aligned(solved[-1], weight)

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...core.blade import AXIAL, SHEAR_Y, SHEAR_Z, Blade
 from ...core.chain.steady import SteadyStateError
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.eigen import UnstableError
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
@@ -43,16 +43,16 @@ SHEAR = 5 / 6 / (2 * (1 + 0.3))
 
 WAYS: dict[str, tuple[Mass, Measure]] = {
     "lumped mass": ("half_end", "corotational"),
-    "parent's frame": ("consistent", "parent"),
-    "both": ("half_end", "parent"),
+    "parent's frame": ("consistent", "body_fixed"),
+    "both": ("half_end", "body_fixed"),
     "neither": ("consistent", "corotational"),
 }
 """Ways to discretise."""
 
 EFFECTS = {
-    "no prestretch": Model(prestretch=False),
-    "no Coriolis": Model(coriolis=False),
-    "no rotary inertia": Model(rotary_inertia=False),
+    "no prestretch": Effects(prestretch=False),
+    "no Coriolis": Effects(coriolis=False),
+    "no rotary inertia": Effects(rotary_inertia=False),
 }
 """Effects left out, one at a time."""
 
@@ -92,14 +92,14 @@ def _solved(
     omega: float,
     elements: int,
     count: int,
-    model: Model = FULL,
+    model: Effects = ALL_EFFECTS,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
 ) -> Modes | None:
     """None where there is no answer: what is left out may have held the blade."""
     try:
         with np.errstate(invalid="ignore"):
-            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=model)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
 

@@ -9,7 +9,7 @@ from itertools import product
 from typing import get_args
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.solve import mesh_modes
@@ -27,7 +27,7 @@ ELEMENTS = (10, 20, 50, 100, 200)
 COUNT = 3
 """Chordwise modes, as many as Table 1 prints."""
 
-POINT_MASSES = Model(rotary_inertia=False)
+POINT_MASSES = Effects(rotary_inertia=False)
 """The paper's sections have mass, but no moments of inertia."""
 
 
@@ -45,7 +45,7 @@ def lumping(blade: Blade) -> tuple[Level, ...]:
     rows = []
     for mass, stiffness, n in product(MASSES, STIFFNESSES, ELEMENTS):
         found = aligned(
-            mesh_modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, model=POINT_MASSES), weight
+            mesh_modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, effects=POINT_MASSES), weight
         )
         named = zip(families(found, weight), found.frequencies.tolist(), strict=True)
         chordwise = [f for family, f in named if family == MOTIONS[1]][:COUNT]

@@ -7,7 +7,7 @@ from msgspec import UNSET
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...core.multibody.mechanism import turned_at
+from ...core.multibody.mechanism import at_rate
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError, nearest
 from ..input.mechanisms import Described
@@ -35,7 +35,7 @@ class Turning:
 
     def at(self, omega: float) -> mb.Mechanism:
         """The mechanism with its rotor at ``omega`` (rad/s)."""
-        return turned_at(self.described.mechanism, self.described.text.rotor, omega)
+        return at_rate(self.described.mechanism, self.described.text.rotor, omega)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def case(described: Described) -> MechanismCase:
         missing = "speeds" if text.speeds is None else "compare"
         raise CaseError(f"{path}: {missing}: missing: a mechanism is a case with [speeds] and [compare]; add it")
     try:
-        turned_at(described.mechanism, text.rotor, 0.0)
+        at_rate(described.mechanism, text.rotor, 0.0)
     except mb.MechanismError as error:
         raise CaseError(f"{path}: rotor: {error}") from error
     if text.closed_form and text.closed_form.formula not in blade_formulae.FORMULAE:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from ...core import multibody as mb
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
 from ...references.protocol.description import Description
@@ -34,7 +34,7 @@ from .columns import Column, Rows, failing_work
 from .mechanism_case import MechanismCase, Turning
 
 Array = NDArray[np.float64]
-References = dict[Model, list["Reference"]]
+References = dict[Effects, list["Reference"]]
 Solve = Callable[[Sequence[mb.Mechanism], Sequence[float]], list[Answer]]
 Work = Callable[[Sequence[tuple[float, Any]]], Rows]
 
@@ -55,7 +55,7 @@ def references(variant: Turning) -> References:
     Raises:
         CaseError: if core cannot solve it, or has fewer modes than are compared.
     """
-    return {FULL: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
+    return {ALL_EFFECTS: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
 
 
 def _reference(variant: Turning, omega: float) -> Reference:
@@ -81,10 +81,10 @@ def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
         head = Head(case.name, code.name, code.version or "", "same discretisation", case.target)
-        out.append(Column(code.name, FULL, head, _work(head, variant, code, limits)))
+        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits)))
     if form := variant.described.text.closed_form:
         head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
-        out.append(Column(head.code, FULL, head, partial(_compared, head, variant, partial(_formula, form))))
+        out.append(Column(head.code, ALL_EFFECTS, head, partial(_compared, head, variant, partial(_formula, form))))
     return out
 
 

@@ -17,9 +17,9 @@ from ...core.chain import pencil
 from ...core.chain.blocks import Tridiagonal
 from ...core.chain.lanczos import lanczos
 from ...core.chain.mode_shapes import mode_shapes
-from ...core.chain.pencil import Linear, Shape
+from ...core.chain.pencil import ChainPencil, Shape
 from ...core.chain.steady import Steady
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.element.discretize import Chain, Mass, discretize
 from ...core.element.measures import Measure
 from ...core.modes import Modes
@@ -30,7 +30,7 @@ OFFSET = 0.25
 STILL = np.zeros(3)
 """No gravity."""
 
-Solve = Callable[[Blade, float, int, int, Model], Modes]
+Solve = Callable[[Blade, float, int, int, Effects], Modes]
 """Modes of a blade at a speed (rad/s), with so many elements, so many of them, with a model's effects."""
 
 
@@ -55,22 +55,22 @@ class Mistake:
     at_rest: bool = False
 
 
-def right(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def right(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """Core as it is."""
-    return solve.mesh_modes(blade, omega, elements, count, model=model)
+    return solve.mesh_modes(blade, omega, elements, count, effects=model)
 
 
-def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """The steady internal forces do not stiffen."""
     return right(blade, omega, elements, count, replace(model, geometric=False))
 
 
-def no_coriolis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def no_coriolis(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """No gyroscopic terms."""
     return right(blade, omega, elements, count, replace(model, coriolis=False))
 
 
-def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """The root lies on the rotor's axis."""
     return right(replace(blade, hub_radius=0.0), omega, elements, count, model)
 
@@ -93,40 +93,40 @@ def shifted(blade: Blade) -> Blade:
     return replace(blade, stiffness=stiffness, mass=mass)
 
 
-def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """See ``shifted``."""
     return right(shifted(blade), omega, elements, count, model)
 
 
-def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """The sign of spin softening is wrong: what should soften stiffens."""
     return _altered(blade, omega, elements, count, model, softening=-1.0)
 
 
-def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """Linearised in absolute coordinates of a frame that stands still: neither spin softening nor Coriolis terms."""
     return _altered(blade, omega, elements, count, replace(model, coriolis=False), softening=0.0)
 
 
-def _altered(blade: Blade, omega: float, elements: int, count: int, model: Model, softening: float) -> Modes:
+def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effects, softening: float) -> Modes:
     """Core with its spin softening multiplied by a factor."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
     state = solve.balance(body, omega, STILL, model)
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
 
 
-def softened(body: Chain, state: Steady, omega: float, factor: float) -> Linear:
+def softened(body: Chain, state: Steady, omega: float, factor: float) -> ChainPencil:
     """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
-    parts = zip(_parts(state.linear.rest), _parts(spin_softening(body, state.shape, omega)), strict=True)
-    return replace(state.linear, rest=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
+    parts = zip(_parts(state.pencil.remainder), _parts(spin_softening(body, state.shape, omega)), strict=True)
+    return replace(state.pencil, remainder=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
 
 
 def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
     """The part of the stiffness that the displaced mass' centrifugal force is: of a model without geometric stiffness, the
     stiffness at speed less that at rest, about the same shape.
     """
-    bare = Model(geometric=False)
-    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).rest for speed in (omega, 0.0))
+    bare = Effects(geometric=False)
+    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).remainder for speed in (omega, 0.0))
     return Tridiagonal(*(a - b for a, b in zip(_parts(turning), _parts(standing), strict=True)))
 
 
@@ -134,27 +134,27 @@ def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
     return t.diagonal, t.upper, t.lower
 
 
-def _modes(body: Chain, p: Linear, shape: Shape, omega: float, count: int) -> Modes:
+def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) -> Modes:
     found = lanczos(p, count)
     return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
 
 
-LUMPED: tuple[Mass, Measure] = ("half_end", "parent")
+LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
 """The paper's discretisation, whose end weight the last mistake gets wrong; its 50 elements are divided as the others."""
 
 
-def lumped(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """Core with point masses, half of each element's mass at either end."""
     mass, stiffness = LUMPED
-    return solve.mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, model=model)
+    return solve.mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=model)
 
 
-def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Model) -> Modes:
+def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
     """Every node has an element's mass, the tip too, which should have half of one."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, *LUMPED)
     lumps = body.lumps.copy()
     lumps[-1] += lumps[-1] - blade.tip_mass
-    return solve.chain_modes(replace(body, lumps=lumps), omega, count, model=model)
+    return solve.chain_modes(replace(body, lumps=lumps), omega, count, effects=model)
 
 
 PLAIN = ("park-cantilever",)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.blade import Blade, sample, uniform
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...references.protocol.worker import Answer, Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
@@ -94,7 +94,9 @@ def rows(
     for omega, reference in core:
         data = table.at(omega, reference.core.names)
         if any(data):
-            coarse = discretised(blade, omega, table.series.model, reference, source) if source else [None] * len(data)
+            coarse = (
+                discretised(blade, omega, table.series.effects, reference, source) if source else [None] * len(data)
+            )
             for i, datum in enumerate(data):
                 if datum:
                     value = from_print(datum.printed, table.unit)
@@ -107,7 +109,7 @@ def rows(
 
 
 def discretised(
-    blade: Blade, omega: float, model: Model, reference: Reference, source: Discretisation
+    blade: Blade, omega: float, model: Effects, reference: Reference, source: Discretisation
 ) -> list[Coarse | None]:
     """Core's answers for the reference's modes in the source's discretisation, and their limits; None without a partner."""
     n, wanted = source.elements, reference.core.wanted

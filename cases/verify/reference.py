@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cache
 
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...references.protocol.process import Failure
 from ..input.errors import CaseError
 from ..input.schema import Compare
@@ -35,39 +35,39 @@ class Reference:
 MAJORITY = 0.5
 """Least MAC of core's modes with and without an effect that changes shapes too: at most one mode can be so alike."""
 
-References = dict[Model, list[Reference | Failure]]
+References = dict[Effects, list[Reference | Failure]]
 """By model, at each speed."""
 
 
-def felt(model: Model, blade: Blade, omega: float = 1.0) -> Model:
+def felt(model: Effects, blade: Blade, omega: float = 1.0) -> Effects:
     """The model as this blade feels it at this speed: what could make no difference is not lacking.
 
     A blade without rotary inertia cannot lack it; at rest only rotary inertia is left to lack.
     """
     inertia = model.rotary_inertia or not blade.mass[:, 3:, 3:].any()
-    return replace(model if omega else FULL, rotary_inertia=inertia)
+    return replace(model if omega else ALL_EFFECTS, rotary_inertia=inertia)
 
 
-def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Model]) -> References:
+def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Effects]) -> References:
     """Core's references with all effects, and with those of each of ``models``.
 
     Raises:
         CaseError: if with all effects there is no stable steady state at one of the speeds, or too few modes.
     """
-    models = set(models) | {FULL}
+    models = set(models) | {ALL_EFFECTS}
     by_speed = [_at(blade, omega, compare, models) for omega in speeds]
     return {model: [solved[model] for solved in by_speed] for model in models}
 
 
-def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Model]) -> dict[Model, Reference | Failure]:
+def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Effects]) -> dict[Effects, Reference | Failure]:
     @cache
-    def solve(model: Model) -> Converged | Failure:
+    def solve(model: Effects) -> Converged | Failure:
         return converged(blade, omega, compare, model)
 
-    full = solve(FULL)
+    full = solve(ALL_EFFECTS)
     if isinstance(full, Failure):
         raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
-    out: dict[Model, Reference | Failure] = {}
+    out: dict[Effects, Reference | Failure] = {}
     for model in models:
         keeps = felt(model, blade, omega)
         mine = solve(keeps)
@@ -76,7 +76,7 @@ def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Model]) -
 
 
 def _reference(
-    mine: Converged, full: Converged, target: float, model: Model, solve: Callable[[Model], Converged | Failure]
+    mine: Converged, full: Converged, target: float, model: Effects, solve: Callable[[Effects], Converged | Failure]
 ) -> Reference:
     whole, likeness = _partners(mine, full)
     values = [s.estimate.value if s.estimate else None for s in mine.settled]
@@ -84,7 +84,7 @@ def _reference(
     effects: list[list[Effect]] = [[] for _ in values]
     if any(shift is None or abs(shift) > target for shift in shifts):  # each effect alone is worth solving for
         for name in (f.name for f in fields(model) if not getattr(model, f.name)):
-            without, _ = _partners(mine, solve(replace(FULL, **{name: False})))
+            without, _ = _partners(mine, solve(replace(ALL_EFFECTS, **{name: False})))
             for found, f, reference in zip(effects, without, whole, strict=True):
                 found.append(Effect(name.replace("_", " "), _change(f, reference)))
     return Reference(mine, whole, likeness, tuple(map(tuple, effects)))

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import Modes
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.worker import Failure
@@ -27,7 +27,7 @@ from .refinement import Settled, Wanted
 
 TYPES: dict[str, type] = {
     kind.__name__: kind
-    for kind in (Cell, Control, Level, Share, Model, Modes, MechanismModes, Failure, Pair, Estimate, Effect)
+    for kind in (Cell, Control, Level, Share, Effects, Modes, MechanismModes, Failure, Pair, Estimate, Effect)
 } | {
     "Converged": Converged,
     "Reference": Reference,

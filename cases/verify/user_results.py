@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.participation import MIXED
 from ..input import files
 from ..input.errors import CaseError, nearest
@@ -199,7 +199,7 @@ def columns(variant: Variant, added: Sequence[Added], target: float) -> list[Col
         mine = [row for row in one.rows if row.blade in ("", variant.name)]
         if mine:
             head = Head(variant.name, one.name, f"from {Path(one.path).name}", "code", target, "nothing")
-            out.append(Column(one.name, FULL, head, partial(_rows, head, mine), due="somewhere"))
+            out.append(Column(one.name, ALL_EFFECTS, head, partial(_rows, head, mine), due="somewhere"))
     return out
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
@@ -36,7 +36,7 @@ class Yours:
             frequencies in rad/s; shapes (m, 21, 4) at ``core.modes.STATIONS``, as in ``Modes``, or (m, 21, 3) without the
             rotation about the blade's axis; any scale, real or complex, in any order of frequency.
         name: of its column.
-        lacks: effects it leaves out, see ``Model``: core is compared without them.
+        lacks: effects it leaves out, see ``Effects``: core is compared without them.
         levels: refinements, coarse to fine; those of a function without ``elements`` count for nothing.
         order: order of convergence of its frequencies.
         unsupported: why it cannot solve a blade; None if it can.
@@ -56,9 +56,9 @@ class Yours:
     known: dict[str, tuple[str, float]] = field(default_factory=dict)
 
     @property
-    def model(self) -> Model:
+    def effects(self) -> Effects:
         """The effects it keeps."""
-        return replace(FULL, **dict.fromkeys(self.lacks, False))
+        return replace(ALL_EFFECTS, **dict.fromkeys(self.lacks, False))
 
     @property
     def refines(self) -> bool:
@@ -78,7 +78,7 @@ def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
     speeds = variant.speeds.tolist()
     if why := yours.unsupported(variant.blade):
         return [empty(head, omega, "not applicable", why) for omega in speeds], []
-    model = felt(yours.model, variant.blade)
+    model = felt(yours.effects, variant.blade)
     solved = references(variant.blade, speeds, compare, [model])
     core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
     if len(core) < len(speeds):
@@ -129,7 +129,7 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
     """Its frequencies against printed numbers: those that core, with the table's effects, passes."""
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
-        model = felt(table.series.model, variant.blade)
+        model = felt(table.series.effects, variant.blade)
         if model not in solved:
             solved |= references(variant.blade, variant.speeds.tolist(), compare, [model])
         core = [

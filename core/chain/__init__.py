@@ -1,5 +1,23 @@
 """The fast solver for a blade: a chain of elements with block-tridiagonal matrices.
 
-A ``Chain`` comes in. ``steady`` finds its rotating equilibrium, ``pencil`` linearises about it, ``lanczos`` finds the lowest
-modes, and ``mode_shapes`` reads their shapes. ``as_mechanism`` hands the same chain to ``multibody``.
+A ``Chain`` and a rotor speed come in. ``steady.steady`` finds the steady state, ``pencil.linearize`` the matrices about it and
+``lanczos.lanczos`` the lowest modes, whose shapes ``mode_shapes.mode_shapes`` reads. ``as_mechanism`` gives the same chain to
+``multibody``.
 """
+
+from .completeness import MissedModesError
+from .lanczos import EigensolverError
+from .pencil import ChainPencil, Shape, linearize
+from .steady import LargeStrainError, Steady, SteadyStateError, extrapolate
+
+__all__ = [
+    "ChainPencil",
+    "EigensolverError",
+    "LargeStrainError",
+    "MissedModesError",
+    "Shape",
+    "Steady",
+    "SteadyStateError",
+    "extrapolate",
+    "linearize",
+]

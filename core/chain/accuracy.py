@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..effects import Model
+from ..effects import Effects
 from ..element.discretize import Chain
 from ..space import spatial as sp
 from .lanczos import frequencies_of
@@ -62,7 +62,7 @@ def estimate(f: Array, order: int) -> Estimate:
 
 
 def rounding(
-    body: Chain, state: Steady, omega: float, gravity: Array, model: Model, vectors: NDArray[np.complex128]
+    body: Chain, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
 ) -> Array:
     """(m,) relative error by rounding: three times the change that a rounding of the relative poses makes.
 
@@ -74,7 +74,7 @@ def rounding(
     sign = np.random.default_rng(1921).choice([-1.0, 1.0], size.shape)
     relative = shape.relative @ sp.exp(float(np.finfo(float).eps) * size * sign)
     rounded = replace(shape, relative=relative)
-    near = linearize(body, rounded, omega, gravity, model)
-    a, b = frequencies_of(state.linear, vectors), frequencies_of(near, vectors)
+    near = linearize(body, rounded, omega, gravity, effects)
+    a, b = frequencies_of(state.pencil, vectors), frequencies_of(near, vectors)
     change = np.abs(b / a - 1.0)
     return FLOOR + 3.0 * np.maximum(change, np.median(change))

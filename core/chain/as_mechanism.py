@@ -1,7 +1,7 @@
 """A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
 
 A joint at the root is an elastic connection too, without length: it lies along the root's axes, the coordinates that it
-holds are prescribed to stay at zero (Φᴹ), and its springs are on the others.
+clamps are prescribed to stay at zero (Φᴹ), and its springs are on the others.
 """
 
 import numpy as np
@@ -20,17 +20,18 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     Args:
         chain: the blade, clamped or on a joint; its loads turn with the hub.
         omega: rotor speed, rad/s.
-        gravity: (3,) m/s², in the hub's axes at the instant looked at, when they are the ground's.
+        gravity: (3,) m/s², in the hub's axes, which coincide with the ground's at this instant.
     """
     n, between = len(chain.nodes) - 1, chain.between
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
     frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
-    held: list[str] = []
+    clamped: list[str] = []
     springs: list[CoordinateSpring] = []
-    if chain.held.size:
+    if chain.clamped.size:
         frames[0, :3, :3] = chain.root_axes
         names = [f"element 1.{name}" for name, _ in SCREWS["elastic"]]
-        held = [name for name, stays in zip(names, root_joint.holds(chain), strict=True) if stays]
+        fixed = root_joint.clamped_freedoms(chain)
+        clamped = [name for name, stays in zip(names, fixed, strict=True) if stays]
         springs = [
             CoordinateSpring(*one) for one in zip(names, root_joint.springs(chain).tolist(), strict=True) if one[1]
         ]
@@ -52,11 +53,11 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     return Mechanism(
         bodies=bodies,
         joints=joints,
-        motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in held)),
+        motions=(Motion("hub.rz", 0.0, omega), *(Motion(name, 0.0) for name in clamped)),
         coordinate_springs=tuple(springs),
         beams=tuple(
             Beam(f"body {k}", f"body {k + 1}", one(chain.beams, k), at_b=chain.corner[k], axes_of="hub")
-            for k in range(1 if chain.held.size else 0, n)
+            for k in range(1 if chain.clamped.size else 0, n)
         ),
         loads=tuple(Load(f"body {k}", f, "hub") for k, f in enumerate(chain.force) if f.any()),
         gravity=gravity,
@@ -64,7 +65,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
 
 
 def one(beams: Beams, k: int) -> Beams:
-    """The k-th element alone."""
+    """The k-th element as a batch of one."""
     mine = beams.points.element == k
     p = beams.points
     none = np.zeros(int(mine.sum()), dtype=np.intp)
@@ -72,7 +73,7 @@ def one(beams: Beams, k: int) -> Beams:
     return Beams(
         law=part(beams.law, at),
         stiffness=beams.stiffness[at],
-        points=Points(none, p.rest[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
+        points=Points(none, p.zeta0[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
         preload=beams.preload[at],
         inner_preload=beams.inner_preload[at],
     )

@@ -1,4 +1,4 @@
-"""Block-tridiagonal matrices: what a chain of bodies gives.
+"""Block-tridiagonal matrices of a chain of bodies.
 
 A block holds the internal coordinates β of one element and then the six of the node beyond it, so a block is coupled to the
 next only through its last six rows.
@@ -83,7 +83,7 @@ def _gather(on_ends: Array, lever: Array, on_nodes: Array, diagonal: Array, uppe
                     upper[k - 1, i, j], lower[k - 1, j, i] = own[i, 12 + j], own[12 + j, i]
 
 
-class Turned(NamedTuple):
+class Transposed(NamedTuple):
     """A matrix with every block transposed: (n, d, d) on the diagonal, (n−1, 6, d) below it and (n−1, d, 6) above it."""
 
     diagonal: Array
@@ -91,16 +91,16 @@ class Turned(NamedTuple):
     upper: Array
 
 
-def turned(t: Tridiagonal) -> Turned:
-    """The matrix as compiled products want it."""
-    out = Turned(*(np.empty(np.swapaxes(part, -1, -2).shape) for part in (t.diagonal, t.lower, t.upper)))
+def transposed(t: Tridiagonal) -> Transposed:
+    """The matrix with transposed blocks, for the compiled products."""
+    out = Transposed(*(np.empty(np.swapaxes(part, -1, -2).shape) for part in (t.diagonal, t.lower, t.upper)))
     for part, there in zip((t.diagonal, t.lower, t.upper), out, strict=True):
-        _turn(part, there)
+        _transpose(part, there)
     return out
 
 
 @compiled
-def _turn(part: Array, out: Array) -> None:
+def _transpose(part: Array, out: Array) -> None:
     for k in range(part.shape[0]):
         for i in range(part.shape[1]):
             for j in range(part.shape[2]):
@@ -112,15 +112,23 @@ _ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @inlined
 def _more(
-    turned: Array, k: int, row: int, column: int, x: Array, v: int, w: int, at: int, count: int, a: Six, b: Six
+    transposed: Array, k: int, row: int, column: int, x: Array, v: int, w: int, at: int, count: int, a: Six, b: Six
 ) -> tuple[Six, Six]:
     """a and b plus the transpose of a part (count, 6) of block k times x[v, at …] and x[w, at …]."""
     a0, a1, a2, a3, a4, a5 = a
     b0, b1, b2, b3, b4, b5 = b
     for j in range(count):
         p, q = x[v, at + j], x[w, at + j]
-        t0, t1, t2 = turned[k, row + j, column], turned[k, row + j, column + 1], turned[k, row + j, column + 2]
-        t3, t4, t5 = turned[k, row + j, column + 3], turned[k, row + j, column + 4], turned[k, row + j, column + 5]
+        t0, t1, t2 = (
+            transposed[k, row + j, column],
+            transposed[k, row + j, column + 1],
+            transposed[k, row + j, column + 2],
+        )
+        t3, t4, t5 = (
+            transposed[k, row + j, column + 3],
+            transposed[k, row + j, column + 4],
+            transposed[k, row + j, column + 5],
+        )
         a0, a1, a2, a3, a4, a5 = a0 + t0 * p, a1 + t1 * p, a2 + t2 * p, a3 + t3 * p, a4 + t4 * p, a5 + t5 * p
         b0, b1, b2, b3, b4, b5 = b0 + t0 * q, b1 + t1 * q, b2 + t2 * q, b3 + t3 * q, b4 + t4 * q, b5 + t5 * q
     return (a0, a1, a2, a3, a4, a5), (b0, b1, b2, b3, b4, b5)
@@ -132,7 +140,7 @@ def _put(a: Six, out: Array, v: int, at: int) -> None:
 
 
 @compiled
-def times(t: Turned, x: Array, out: Array) -> None:
+def times(t: Transposed, x: Array, out: Array) -> None:
     """The matrix times the vectors that the rows of x (k, dn or more) begin with, to where those of ``out`` begin."""
     n, d = t.diagonal.shape[:2]
     for i in range(n):
@@ -153,7 +161,7 @@ def times(t: Turned, x: Array, out: Array) -> None:
 def dense(t: Tridiagonal) -> Array:
     """The full matrix."""
     out = np.empty((t.size, t.size))
-    times(turned(t), np.eye(t.size), out)
+    times(transposed(t), np.eye(t.size), out)
     return out.T
 
 
@@ -173,12 +181,12 @@ class Factor(NamedTuple):
 
 
 def factor(t: Tridiagonal) -> Factor:
-    """Factor a matrix that needs no pivoting: one that is, or is nearly, symmetric positive definite.
+    """Factor a matrix that needs no pivoting: (nearly) symmetric positive definite.
 
     Raises:
         numpy.linalg.LinAlgError: if it is singular.
     """
-    pivots, lower, upper = turned(t)
+    pivots, lower, upper = transposed(t)
     kind = _eliminate(pivots, lower, upper)
     if kind == 0:
         raise np.linalg.LinAlgError("singular")
@@ -187,7 +195,7 @@ def factor(t: Tridiagonal) -> Factor:
 
 @compiled
 def _eliminate(pivots: Array, lower: Array, upper: Array) -> int:
-    """As ``invert``, of all pivots."""
+    """Block LU in place; returns the worst result of ``invert`` over all pivots."""
     n, d = pivots.shape[:2]
     between, less, kind = np.empty((6, 6)), np.empty((6, d)), 2
     for k in range(n):

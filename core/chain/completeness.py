@@ -1,4 +1,4 @@
-"""Are all modes there? A count of the frequencies below a given one, by Sylvester's law of inertia.
+"""Proof that no mode is missing: a count of the frequencies below a given one, by Sylvester's law of inertia.
 
 For K positive definite, M positive semi-definite and C skew, the Hermitian matrix H(ω) = K + iωC − ω²M has as many negative
 eigenvalues as there are natural frequencies between 0 and ω: its eigenvalues are positive at ω = 0, and each one that
@@ -11,39 +11,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from .pencil import Linear
+from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_GAP, _NEAR, _FAR = 1e-3, 1e-6, 0.03
-"""Relative distances: between frequencies, where there is room for a count; from a frequency, where there is none, and the most
-that rounding makes of it."""
+_MIN_GAP, _MIN_DISTANCE, _MAX_DISTANCE = 1e-3, 1e-6, 0.03
+"""Relative distances: the least gap in which to count; otherwise the distance of the count from a frequency, at least and at
+most."""
 
 
 class MissedModesError(ArithmeticError):
-    """The eigensolver missed modes, or found one twice."""
+    """The eigensolver missed a mode or found one twice."""
 
 
-def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> None:
-    """Prove that frequencies are the lowest ones, each as often as it is there.
+def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
+    """Prove that the frequencies are the lowest ones with their multiplicities.
 
-    The count is taken in the gap above them. Where the last one belongs to a cluster of which the rest was not asked for, there
-    may be more than were found; then there must be no more than found below that one.
+    The count is taken in the gap above the last frequency. If that frequency belongs to a cluster that ``count`` cuts, the
+    count may exceed what was found; then the count below the cluster must not.
 
     Args:
         p: the pencil.
         frequencies: (m,) ascending.
-        beyond: (k,) estimates of the next, from above, to find the gap with.
-        noise: relative error of the pencil by rounding; frequencies nearer to each other than ten times that, or 3 %, are not
-            told apart.
+        beyond: (k,) estimates of the next frequencies, from above, which show the gap.
+        rounding: relative error of the pencil by rounding; frequencies closer than ten times that, or 3 %, are not told
+            apart.
 
     Raises:
-        MissedModesError: there are more or fewer.
+        MissedModesError: the count differs.
     """
     last, next_ = frequencies[-1], beyond[beyond > frequencies[-1]].min(initial=2.0 * frequencies[-1])
-    near = min(max(_NEAR, 10.0 * noise), _FAR)
+    near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
-    wide = room > _GAP
+    wide = room > _MIN_GAP
     shift, found = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
     counted = below(p, shift)
     if counted > found or (counted == found and not wide):
@@ -57,8 +57,8 @@ def check(p: Linear, frequencies: Array, beyond: Array, noise: float = 0.0) -> N
         )
 
 
-def below(p: Linear, omega: float) -> int:
-    """How many natural frequencies there are between 0 and ``omega`` (rad/s), which is none of them."""
+def below(p: ChainPencil, omega: float) -> int:
+    """Number of natural frequencies between 0 and ``omega`` (rad/s), which must not be one of them."""
     K, C, M = p.K, p.C, p.M
     return _negative(K.diagonal, K.upper, C.diagonal, C.upper, M.diagonal, M.upper, omega)
 

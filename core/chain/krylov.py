@@ -7,34 +7,35 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled
 from . import blocks, strained
-from .blocks import Factor, Turned
+from .blocks import Factor, Transposed
 from .strained import Strained
 
 Array = NDArray[np.float64]
 
-_CLEAR, _PASSES = 1e-8, 3  # overlap with the basis that is let be, and how often to take it out
+_MAX_OVERLAP, _MAX_PASSES = 1e-8, 3  # tolerated overlap with the basis; orthogonalisation passes
 
 
 class Operator(NamedTuple):
-    """A⁻¹S of A = diag(K, M) and S = [[C, M], [−M, 0]].
+    """The operator A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]].
 
     Attributes:
-        factor: of K.
-        exact: K, to refine solutions with, and for products where that is needed.
-        refinements: how often; 0: not needed.
+        M, C, K: transposed block-tridiagonal matrices.
+        factor: LU factors of K.
+        exact: K by way of the element strains, for iterative refinement.
+        refinements: number of refinement steps for each solution.
     """
 
-    M: Turned
-    C: Turned
-    K: Turned
+    M: Transposed
+    C: Transposed
+    K: Transposed
     factor: Factor
     exact: Strained
     refinements: int
 
 
 @compiled
-def noise(factor: Factor, exact: Strained, M: Turned, v: Array) -> float:
-    """Relative error of a solution with K, in the norm of its energy: of M x of the first of the rows v (k, 2n)."""
+def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
+    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2
     force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
     blocks.times(M, v[:1], force)
@@ -57,13 +58,13 @@ def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     """w = A⁻¹S v, A w = S v, and M y (k, n), of rows v (k, 2n)."""
     k, n = len(v), v.shape[1] // 2
     here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
-    heavy, both = np.empty((k, n)), np.empty((2 * k, n))
+    My, both = np.empty((k, n)), np.empty((2 * k, n))
     blocks.times(a.C, v, here)
     blocks.times(a.M, v.reshape((2 * k, n)), both)  # x and y in turn
     for m in range(k):
         for i in range(n):
-            heavy[m, i] = both[2 * m + 1, i]
-            here[m, i] += heavy[m, i]  # C x + M y
+            My[m, i] = both[2 * m + 1, i]
+            here[m, i] += My[m, i]  # C x + M y
             force[m, i], force[m, n + i] = here[m, i], -both[2 * m, i]
             w[m, n + i] = -v[m, i]
     blocks.solve(a.factor, here)
@@ -79,11 +80,11 @@ def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     for m in range(k):
         for i in range(n):
             w[m, i] = here[m, i]
-    return w, force, heavy
+    return w, force, My
 
 
 @compiled
-def _dual(a: Operator, w: Array, heavy: Array) -> Array:
+def _dual(a: Operator, w: Array, My: Array) -> Array:
     """A w, of rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
     out = np.empty(w.shape)
@@ -97,7 +98,7 @@ def _dual(a: Operator, w: Array, heavy: Array) -> Array:
         blocks.times(a.K, w, out)
     for m in range(k):
         for i in range(n):
-            out[m, n + i] = heavy[m, i]
+            out[m, n + i] = My[m, i]
     return out
 
 
@@ -105,26 +106,26 @@ def _dual(a: Operator, w: Array, heavy: Array) -> Array:
 def extend(
     a: Operator, w: Array, basis: Array, projected: Array, size: int, before: int, look: int
 ) -> tuple[Array, Array, int, int, bool]:
-    """Take steps until the basis has ``look`` vectors, or cannot grow.
+    """Take block Lanczos steps until the basis has ``look`` vectors or cannot grow.
 
     Args:
         a: the operator.
-        w: (k, 2n) what the last step gave; changed.
-        basis: (limit, 2n), whose first ``size`` rows are filled, the last step's from ``before`` on; filled further.
+        w: (k, 2n) result of the last step; changed.
+        basis: (limit, 2n), of which ``size`` rows are filled, those of the last step from ``before`` on; filled further.
         projected: (limit, limit) the operator on the basis, zero beyond what is filled; filled further.
-        size, before: see there; both 0 to begin with.
-        look: how many vectors are wanted.
+        size, before: see ``basis``; both 0 at the start.
+        look: number of vectors wanted.
 
     Returns:
         w orthogonal to the basis, its Gram matrix (k, k), size and before as they are now, and whether the basis is exhausted.
     """
     n = w.shape[1] // 2
-    heavy = np.empty((len(w), n))  # M y of w
-    blocks.times(a.M, w[:, n:].copy(), heavy)
+    My = np.empty((len(w), n))  # M y of w
+    blocks.times(a.M, w[:, n:].copy(), My)
     of_last = np.empty((size - before, n))  # M y of the last step's vectors
     blocks.times(a.M, basis[before:size, n:].copy(), of_last)
     while True:
-        gram, largest = _against(a, w, heavy, basis, projected, size, before)
+        gram, largest = _orthogonalise(a, w, My, basis, projected, size, before)
         value, turn = _axes(gram)
         least = 1e-20 * max(value[-1], largest**2, 1e-300)
         kept = 0
@@ -146,30 +147,30 @@ def extend(
         for i in range(len(overlap)):
             for j in range(kept):
                 projected[before + i, size + j] = overlap[i, j]
-        _take(w, overlap, basis[before:end])
-        heavy = force[:, n:].copy()  # M y = −M x is known
-        _take(heavy, overlap[: size - before], of_last)
-        _take(heavy, overlap[size - before :], of_these)
+        _project_out(w, overlap, basis[before:end])
+        My = force[:, n:].copy()  # M y = −M x is known
+        _project_out(My, overlap[: size - before], of_last)
+        _project_out(My, overlap[size - before :], of_these)
         of_last = of_these
         before, size = size, end
 
 
 @compiled
-def _against(
-    a: Operator, w: Array, heavy: Array, basis: Array, projected: Array, size: int, before: int
+def _orthogonalise(
+    a: Operator, w: Array, My: Array, basis: Array, projected: Array, size: int, before: int
 ) -> tuple[Array, float]:
-    """Make w, M y of which is ``heavy``, orthogonal to the basis in the A product; what is taken out goes to the projection.
+    """Make w, M y of which is ``My``, orthogonal to the basis in the A product; what is taken out goes to the projection.
 
     Returns w's Gram matrix (k, k) and the largest overlap of the last pass.
     """
     gram, largest = np.zeros((len(w), len(w))), 0.0
-    n = heavy.shape[1]
-    for turn in range(_PASSES):
+    n = My.shape[1]
+    for turn in range(_MAX_PASSES):
         if turn > 0:
-            blocks.times(a.M, w[:, n:].copy(), heavy)
-        dual = _dual(a, w, heavy)
+            blocks.times(a.M, w[:, n:].copy(), My)
+        dual = _dual(a, w, My)
         overlap = np.dot(basis[:size], dual.T)
-        _take(w, overlap, basis[:size])
+        _project_out(w, overlap, basis[:size])
         largest = 0.0
         for i in range(size):
             for j in range(size - before):
@@ -179,13 +180,13 @@ def _against(
         smallest = gram[0, 0]
         for i in range(len(w)):
             smallest = min(smallest, gram[i, i])
-        if largest <= _CLEAR * np.sqrt(max(smallest, 0.0)):
+        if largest <= _MAX_OVERLAP * np.sqrt(max(smallest, 0.0)):
             break
     return gram, largest
 
 
 @compiled
-def _take(w: Array, overlap: Array, basis: Array) -> None:
+def _project_out(w: Array, overlap: Array, basis: Array) -> None:
     """w −= overlapᵀ basis."""
     less = np.dot(overlap.T, basis)
     for i in range(w.shape[0]):
@@ -222,13 +223,13 @@ def quotients(a: Operator, x: Array) -> Array:
     """(3, m) of complex vectors x (m, 2, n), real and imaginary parts: x*Kx, x*Mx, and ½ i x*Cx, which is real."""
     m, _, n = x.shape
     out = np.zeros((3, m))
-    stiff, moving, heavy = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
+    Kx, Cx, Mx = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
     for v in range(m):
-        strained.times(a.exact, x[v], stiff)
-        blocks.times(a.C, x[v], moving)
-        blocks.times(a.M, x[v], heavy)
+        strained.times(a.exact, x[v], Kx)
+        blocks.times(a.C, x[v], Cx)
+        blocks.times(a.M, x[v], Mx)
         for i in range(n):
-            out[0, v] += x[v, 0, i] * stiff[0, i] + x[v, 1, i] * stiff[1, i]
-            out[1, v] += x[v, 0, i] * heavy[0, i] + x[v, 1, i] * heavy[1, i]
-            out[2, v] += 0.5 * (x[v, 1, i] * moving[0, i] - x[v, 0, i] * moving[1, i])
+            out[0, v] += x[v, 0, i] * Kx[0, i] + x[v, 1, i] * Kx[1, i]
+            out[1, v] += x[v, 0, i] * Mx[0, i] + x[v, 1, i] * Mx[1, i]
+            out[2, v] += 0.5 * (x[v, 1, i] * Cx[0, i] - x[v, 0, i] * Cx[1, i])
     return out

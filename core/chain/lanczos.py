@@ -1,9 +1,9 @@
 """The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve a step.
 
-A⁻¹S is skew in the A product, A = diag(K, M), so a step's result overlaps with its own and the preceding block only, but for
-rounding; what rounding adds is taken out against the whole basis, again until next to nothing of it is left. Blocks of two
-find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric Eigenvalue
-Problem*, 1998, ch. 13.)
+A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
+and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of two
+vectors find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric
+Eigenvalue Problem*, 1998, ch. 13.)
 """
 
 from functools import lru_cache
@@ -15,46 +15,43 @@ from scipy.linalg import eigh
 from .. import eigen
 from ..eigen import Eigen
 from . import blocks, completeness
-from .krylov import Operator, extend, forward, hermitian, noise, quotients
-from .pencil import Linear
+from .krylov import Operator, extend, forward, hermitian, quotients, solve_error
+from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
-_SOLVED, _REFINEMENTS, _ILL = (
-    1e-8,
-    20,
-    0.3,
-)  # relative error of a solution with K that is let be, the most steps to get there, and of the first
-_FIRST, _EVERY = 26, 12  # when to look whether the modes are there
-_BEYOND = 4  # modes beyond those wanted, to find a gap in
+_VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
+_SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
+_MAX_SOLVE_ERROR = 0.3  # of a solution without refinement: beyond, K is lost to rounding
+_FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
+_EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
 
 class EigensolverError(ArithmeticError):
-    """The eigensolver failed; it says nothing about the blade's stability."""
+    """The eigensolver failed: nothing is known about the stability of the blade."""
 
 
-def lanczos(p: Linear, count: int) -> Eigen:
+def lanczos(p: ChainPencil, count: int) -> Eigen:
     """The ``count`` lowest modes of a chain about a state where K is symmetric.
 
-    The assembled K loses digits to cancellation, as it does with many elements: solutions are refined, by way of the strains,
-    as often as it takes. The frequencies are those of the vectors' gyroscopic Rayleigh quotient,
-    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs.
+    With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with K by way of
+    the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs (Lancaster 2013).
 
     Raises:
         UnstableError: if K is not positive definite.
-        EigensolverError: if the basis is full before the modes are there, or rounding leaves nothing of K.
-        MissedModesError: if the modes are not all there, by ``completeness``.
+        EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
+        MissedModesError: if a mode is missing; see ``completeness``.
     """
     try:
         factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
     n, exact = p.K.size, p.strained
-    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.K))
+    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
-    lost = noise(factor, exact, M, w)
-    if not lost < _ILL:
+    lost = solve_error(factor, exact, M, w)
+    if not lost < _MAX_SOLVE_ERROR:
         raise EigensolverError(
             f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
             "fewer elements, or check units"
@@ -66,18 +63,18 @@ def lanczos(p: Linear, count: int) -> Eigen:
     w, _, _ = forward(a, w)  # smooth
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
-    size, before, look = 0, 0, 3 * count + _FIRST
+    size, before, look = 0, 0, 3 * count + _FIRST_LOOK
     while True:
         w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
         if not size:
-            raise EigensolverError("stiffness and mass are out of all proportion: check their units")
-        look = size + _EVERY
-        wanted, more = min(count, size // 2), min(count + _BEYOND, size // 2)
+            raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
+        look = size + _LOOK_EVERY
+        wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)
         beyond, mu, z = mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
-        if exhausted or (error < _TOLERANCE).all():
+        if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
     positive = mu > 1e-12 * mu.max(initial=0.0)
     if not positive.any() or not np.isfinite(mu).all():
@@ -99,9 +96,9 @@ def lanczos(p: Linear, count: int) -> Eigen:
     return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
 
 
-def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
+def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
-    M, C, K = (blocks.turned(t) for t in (p.M, p.C, p.rest))
+    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.remainder))
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
     kappa, inertia, half = quotients(Operator(M, C, K, p.factor, p.strained, 0), x)
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)
@@ -109,13 +106,13 @@ def frequencies_of(p: Linear, vectors: NDArray[np.complex128]) -> Array:
 
 @lru_cache(maxsize=4)
 def _start(size: int) -> Array:
-    """Two vectors (2, size) to begin with, of no direction."""
+    """Two random start vectors (2, size), the same in every run."""
     return np.random.default_rng(1921).normal(size=(2, size))
 
 
-def _refinements(noise: float) -> int:
-    """How many steps of iterative refinement bring a solution to the accuracy wanted."""
-    for steps in range(_REFINEMENTS):
-        if noise ** (steps + 1) < _SOLVED:
+def _refinements(solve_error: float) -> int:
+    """Number of refinement steps that reduce the error of a solution to the tolerance."""
+    for steps in range(_MAX_REFINEMENTS):
+        if solve_error ** (steps + 1) < _SOLVE_TOLERANCE:
             return steps
-    return _REFINEMENTS
+    return _MAX_REFINEMENTS

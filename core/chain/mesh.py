@@ -1,4 +1,4 @@
-"""Where a blade is divided: at its kinks and stations, and finely in the boundary layer at the root."""
+"""The graded mesh of a blade: nodes at kinks and stations, short elements in the boundary layer at the root."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,13 @@ Array = NDArray[np.float64]
 
 _GROWTH = 1.5  # of an element over the one before, outwards from the root
 _JUMP = 1e-4  # of the blade's length: stations nearer to each other are one step of the properties
-_STATIONS = 200  # more are not told apart
+_MAX_STATIONS = 200  # more are not told apart
 
 
 def coarse(blade: Blade, elements: int, omega: float) -> Array:
-    """(n+1,) arc lengths of nodes: at least ``elements`` elements, no longer at the root than the layer there.
+    """(n+1,) arc lengths of nodes: at least ``elements`` elements, the first no longer than the boundary layer at the root.
 
-    A blade under a tension T bends within √(EI/T) of where it is clamped.
+    A blade under tension T bends within about √(EI/T) of its clamp. ``omega`` is in rad/s.
     """
     longest = blade.length / elements
     sizes = [min(longest, _layer(blade, omega))]
@@ -24,7 +24,7 @@ def coarse(blade: Blade, elements: int, omega: float) -> Array:
         sizes.append(min(longest, _GROWTH * sizes[-1]))
     ends = np.append(0.0, np.cumsum(sizes)) * blade.length / sum(sizes)
     number = np.arange(len(ends), dtype=float)
-    stations = blade.stations[1:-1] if len(blade.stations) <= _STATIONS else np.empty(0)
+    stations = blade.stations[1:-1] if len(blade.stations) <= _MAX_STATIONS else np.empty(0)
     kept = [0.0, *blade.kinks, blade.length]
     for s in stations:
         if np.abs(np.array(kept) - s).min() > _JUMP * blade.length:
@@ -39,14 +39,14 @@ def coarse(blade: Blade, elements: int, omega: float) -> Array:
 
 
 def halved(nodes: Array) -> Array:
-    """Every element in two."""
+    """Nodes (2n+1,) of the mesh with every element divided in two."""
     out = np.empty(2 * len(nodes) - 1)
     out[::2], out[1::2] = nodes, 0.5 * (nodes[1:] + nodes[:-1])
     return out
 
 
 def _layer(blade: Blade, omega: float) -> float:
-    """√(EI/T) at the root, m; the smaller EI."""
+    """Thickness √(EI/T) of the boundary layer at the root, m, with the smaller EI."""
     s = np.linspace(0.0, blade.length, 401)
     mass = mass_at(blade, s)[:, 0, 0]
     tension = omega**2 * (

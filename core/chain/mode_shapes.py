@@ -1,4 +1,4 @@
-"""A chain's mode shapes at the common stations, where massless points ride on its elements as ``beams`` has it."""
+"""Mode shapes of a chain at the common stations, read at massless points of its elements (see ``beams``)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     read = np.empty((len(e), 4, d + 6))
     p = body.samples
     beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
-    _readings(p.element, p.rest, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
+    _readings(p.element, p.zeta0, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
     own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
     first = own[e - 1, -6:]
     first[e == 0] = 0.0  # the clamped node
@@ -29,7 +29,7 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
 @compiled
 def _readings(
     element: NDArray[np.intp],
-    rest: Array,
+    zeta0: Array,
     shape: Array,
     bubble: Array,
     nodes: Array,
@@ -48,7 +48,7 @@ def _readings(
         np.empty((6, 12)),
         np.empty((6, 12)),
     )
-    moved = np.empty((6, 18))
+    motion = np.empty((6, 18))
     for q in range(len(element)):
         e = element[q]
         rigid.inverse(nodes[e], back)
@@ -59,23 +59,23 @@ def _readings(
         rigid.tangent_inverse(eta, inverse)
         for i in range(6):
             change[i] = eta[i] - eta_at_rest[e, i]
-        ride(rest[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
+        ride(zeta0[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
         rigid.exp(zeta, position)
         for i in range(6):  # the twist in a's axes, at a
             for j in range(6):
-                moved[i, j] = (1.0 if i == j else 0.0) - H[i, j]
-                moved[i, 6 + j] = 0.0
-                moved[i, 12 + j] = H[i, 6 + j]
+                motion[i, j] = (1.0 if i == j else 0.0) - H[i, j]
+                motion[i, 6 + j] = 0.0
+                motion[i, 12 + j] = H[i, 6 + j]
                 for k in range(6):
-                    moved[i, 6 + j] += H[i, k] * lever[k, j]
+                    motion[i, 6 + j] += H[i, k] * lever[k, j]
         for j in range(out.shape[2]):
             for i in range(3):  # velocity of the point: v + w × p
                 k, m = (i + 1) % 3, (i + 2) % 3
-                moved[i, j] += moved[3 + k, j] * position[m, 3] - moved[3 + m, j] * position[k, 3]
+                motion[i, j] += motion[3 + k, j] * position[m, 3] - motion[3 + m, j] * position[k, 3]
             for i in range(3):
                 out[q, i, j] = 0.0
                 for k in range(3):
-                    out[q, i, j] += nodes[e, i, k] * moved[k, j]
+                    out[q, i, j] += nodes[e, i, k] * motion[k, j]
             out[q, 3, j] = 0.0
             for k in range(3):
-                out[q, 3, j] += nodes[e, 0, k] * moved[3 + k, j]
+                out[q, 3, j] += nodes[e, 0, k] * motion[3 + k, j]

@@ -24,36 +24,36 @@ class Response(NamedTuple):
     """What the joint does to node 1, in that node's own axes.
 
     Attributes:
-        held: (6, 6) projector on the twists that the joint holds.
+        clamped: (6, 6) projector on the twists that the joint clamps.
         wrench: (6,) residual of its springs.
         stiffness: (6, 6) of its springs.
         turning: (6, 6) geometric stiffness of the wrench that node 1 bears.
     """
 
-    held: Array
+    clamped: Array
     wrench: Array
     stiffness: Array
     turning: Array
 
 
-def holds(chain: Chain) -> NDArray[np.bool_]:
-    """(6,) which of the joint's coordinates are held."""
-    turn = _turn(chain)
-    return np.diagonal(turn.T @ chain.held @ turn) > 0.5
+def clamped_freedoms(chain: Chain) -> NDArray[np.bool_]:
+    """(6,) which of the joint's coordinates are clamped."""
+    turn = _root_to_section(chain)
+    return np.diagonal(turn.T @ chain.clamped @ turn) > 0.5
 
 
 def springs(chain: Chain) -> Array:
-    """(6,) stiffness of each of the joint's coordinates, N/m and N m/rad; zero where it is held or free."""
-    turn = _turn(chain)
+    """(6,) stiffness of each of the joint's coordinates, N/m and N m/rad; zero where it is clamped or free."""
+    turn = _root_to_section(chain)
     return np.diagonal(turn.T @ chain.beams.stiffness[0] @ turn).copy()
 
 
 def put(chain: Chain, nodes: Array, first: Array) -> tuple[Array, Array]:
-    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its held coordinates zero; the blade is carried along.
+    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its clamped coordinates zero; the blade is carried along.
 
     ``first`` is the pose (4, 4) of node 1 in the frame of node 0; it is returned too.
     """
-    fixed = holds(chain)
+    fixed = clamped_freedoms(chain)
     if not fixed.any():
         return nodes, first
     q = np.where(fixed, 0.0, _coordinates(chain, first))
@@ -75,25 +75,25 @@ def response(chain: Chain, first: Array, wrench: Array) -> Response:
         first: (4, 4) pose of node 1 in the frame of node 0.
         wrench: (6,) residual of node 1 without the joint, in its own axes.
     """
-    fixed = holds(chain)
+    fixed = clamped_freedoms(chain)
     q = np.where(fixed, 0.0, _coordinates(chain, first))
     F, outer = np.empty((6, 6)), np.eye(4)  # columns: twists of node 1 in the joint's axes, from the last screw inwards
     for i in reversed(range(6)):
         F[:, i] = sp.adjoint(outer) @ _SCREWS[i]
         outer = outer @ sp.exp(-_SCREWS[i] * q[i])
-    F = (_turn(chain) @ F)[:, ~fixed]
+    F = (_root_to_section(chain) @ F)[:, ~fixed]
     back = np.linalg.pinv(F)  # q̇ of a twist
     k = springs(chain)[~fixed]
     second = -np.einsum("k,jkl,li->ij", wrench, sp.ad(F.T), F)  # w · ∂F_i/∂q_j = −w · (F_j × F_i), j beyond i
     return Response(
-        held=np.eye(6) - F @ back,
+        clamped=np.eye(6) - F @ back,
         wrench=back.T @ (k * q[~fixed]) + chain.beams.preload[0],
         stiffness=back.T * k @ back,
         turning=back.T @ np.triu(second, 1) @ back,
     )
 
 
-def _turn(chain: Chain) -> Array:
+def _root_to_section(chain: Chain) -> Array:
     """(6, 6) twists in the root's axes to the first section's."""
     return sp.adjoint(sp.pose(chain.root_axes, np.zeros(3)))
 

@@ -1,4 +1,4 @@
-"""The steady state of a rotating chain, by Newton, and guesses of it from those at the speeds before."""
+"""Steady state of a rotating chain by Newton's method, and its extrapolation from earlier speeds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,26 +9,23 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ..compiled import compiled
-from ..effects import Model
+from ..effects import Effects
 from ..element import beams as bm
 from ..element import measures
 from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
 from . import blocks, root_joint
-from .pencil import Linear, Shape, linearize, rest
+from .pencil import ChainPencil, Shape, linearize, undeformed
 
 Array = NDArray[np.float64]
 
-_STEPS = 40
+_MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALLED, _NOTHING = (
-    10.0,
-    1e-4,
-)  # times a bound of rounding's energy: Newton's steps may stop shrinking here; and need go on
-_SHRINKING = 1e-2  # least factor between the energies of steps that converge
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # of the rounding energy: accept a stalled step; accept any step
+_MIN_REDUCTION = 1e-2  # least factor between the energies of steps that converge
 ORDER = 3  # of the extrapolation along the speeds
-_SMALLEST_RAMP = 2.0**-8
+_MIN_RAMP = 2.0**-8
 
 
 class SteadyStateError(ValueError):
@@ -44,7 +41,7 @@ class Steady:
     """A steady state: its shape, and the pencil about it."""
 
     shape: Shape
-    linear: Linear
+    pencil: ChainPencil
 
 
 def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
@@ -57,18 +54,18 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
         try:
             return _newton(chain, start, omega, gravity)
         except SteadyStateError:
-            pass  # too far off: begin where there is no load
+            pass  # start too far away: ramp the load instead
     found = None
     done, step = 0.0, 1.0
     while found is None or done < 1.0:
         load = min(1.0, done + step)
         try:
-            shape = rest(chain) if found is None else found.shape
+            shape = undeformed(chain) if found is None else found.shape
             found = _newton(chain, shape, omega * load**0.5, gravity * load)
             done, step = load, 2.0 * step
         except SteadyStateError:
             step *= 0.5
-            if step < _SMALLEST_RAMP:
+            if step < _MIN_RAMP:
                 raise SteadyStateError(
                     f"omega: no steady state at {omega:.6g} rad/s; the loads were followed up to {done:.0%} of Ω²: the "
                     "centrifugal force outgrows the axial stiffness there, or the blade is far too soft; check units or "
@@ -80,13 +77,14 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
 def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     """Newton's method down to rounding.
 
-    The error of the energy norm is that of the step, δᵀKδ. It is compared with the energy of the rounding of the nodes' poses,
-    below which no step can be told from none; the size of the step says nothing about a blade that hardly stretches.
+    The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
+    nodes' poses, below which a step is meaningless. The size of a step is no
+    criterion: those of an almost inextensible blade are tiny.
     """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
-    for _ in range(_STEPS):
-        if chain.held.size:
+    for _ in range(_MAX_STEPS):
+        if chain.clamped.size:
             nodes, first = root_joint.put(chain, shape.nodes, shape.relative[0])
             shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
@@ -94,22 +92,22 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
             step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
-        if p.held.size:
-            step[0, -6:] -= p.held @ step[0, -6:]  # a unit stiffness under the reaction's rounding
+        if p.clamped.size:
+            step[0, -6:] -= p.clamped @ step[0, -6:]  # a unit stiffness under the reaction's rounding
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        energy, noise = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
-        stalled = energy > _SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= _NOTHING * noise or (stalled and energy <= _STALLED * noise):
-            return Steady(moved(shape, step), p)
+        energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
+        stalled = energy > _MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= _CONVERGED_FACTOR * rounding or (stalled and energy <= _STALL_FACTOR * rounding):
+            return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
-        shape, before = moved(shape, step), energy
+        shape, before = displaced(shape, step), energy
     raise SteadyStateError("no convergence")
 
 
-def rounding_energy(p: Linear, shape: Shape) -> float:
-    """Σ ρᵀ S ρ of relative poses in error by rounding: no step of less energy can be told from none."""
+def rounding_energy(p: ChainPencil, shape: Shape) -> float:
+    """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: smaller energies of a step are rounding."""
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
     weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
     return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.spring, weight**2)))
@@ -128,15 +126,15 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
     return float(np.linalg.norm(strain, axis=1).max(initial=0.0))
 
 
-def moved(shape: Shape, step: Array) -> Shape:
-    """A shape whose β change and whose nodes 1 … n move along twists in their own axes: ``step`` (n, 6 or 12)."""
+def displaced(shape: Shape, step: Array) -> Shape:
+    """The shape after a step (n, 6 or 12): changes of β, and twists of nodes 1 … n in their own axes."""
     nodes, relative = shape.nodes.copy(), shape.relative.copy()
-    _move(step, nodes[1:], relative)
+    _displace(step, nodes[1:], relative)
     return Shape(nodes, shape.beta + step[:, :-6], relative)
 
 
 @compiled
-def _move(step: Array, nodes: Array, relative: Array) -> None:
+def _displace(step: Array, nodes: Array, relative: Array) -> None:
     inner, here, between = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
     change, back = np.empty((4, 4)), np.eye(4)
     for k in range(len(nodes)):
@@ -163,7 +161,7 @@ def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
 
 
 def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
-    """A guess of the shape at ``omega`` from those at the speeds before: a polynomial in Ω² through the last few."""
+    """Extrapolate the shape to ``omega`` (rad/s) by a polynomial in Ω² through those at the last few speeds."""
     latest: dict[float, Shape] = {}
     for speed, shape in reversed(known):
         if len(latest) <= ORDER:
@@ -176,7 +174,7 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
         weight = prod((omega**2 - other) / (x - other) for other in latest if other != x)
         step[:, :-6] += weight * (shape.beta - now.beta)
         _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
-    return moved(now, step)
+    return displaced(now, step)
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
@@ -187,7 +185,7 @@ def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
         shape: its shape.
         finer: the finer mesh.
     """
-    first = 1 if chain.held.size else 0  # behind the joint at the root, which has no length
+    first = 1 if chain.clamped.size else 0  # behind the joint at the root, which has no length
     twists = sp.log(shape.nodes[first:] @ sp.inverse(chain.nodes[first:]))
     at = CubicSpline(_lengths(chain)[first:], twists)(_lengths(finer)[first:])
     nodes = finer.nodes.copy()
@@ -203,10 +201,10 @@ def _lengths(chain: Chain) -> Array:
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     """The undeformed chain carrying the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
-    still = Model(geometric=False)
-    residual = linearize(chain, rest(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
+    still = Effects(geometric=False)
+    residual = linearize(chain, undeformed(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
-    elastic = linearize(bare, rest(bare), 0.0, np.zeros(3), still).factor
+    elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
     step = np.concatenate([np.zeros((1, 6)), blocks.solution(elastic, -residual[:, -6:].ravel()).reshape(-1, 6)])
     rho = (sp.adjoint(chain.between) @ step[1:, :, None])[..., 0] - step[:-1]
     loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))

@@ -1,4 +1,4 @@
-"""A chain's stiffness times vectors by way of the elements' strains: no digits are lost however stiff and many they are."""
+"""Products of a chain's stiffness with vectors by way of the element strains, free of cancellation."""
 
 from typing import NamedTuple
 
@@ -7,37 +7,37 @@ from numpy.typing import NDArray
 
 from ..compiled import apply, compiled
 from . import blocks
-from .blocks import Turned
+from .blocks import Transposed
 
 Array = NDArray[np.float64]
 
 
 class Strained(NamedTuple):
-    """K = ``rest`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with what is held cut loose.
+    """K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with the clamped directions decoupled.
 
     Attributes:
-        rest: the part on its own, for products.
-        spring, lever: (n, 6, 6), see ``chain.Linear``.
-        held: (6, 6) projector of node 1's twist; zero if nothing is held.
+        remainder: the part on its own, for products.
+        spring, lever: (n, 6, 6), see ``chain.pencil.ChainPencil``.
+        clamped: (6, 6) projector of node 1's twist; zero if nothing is clamped.
     """
 
-    rest: Turned
+    remainder: Transposed
     spring: Array
     lever: Array
-    held: Array
+    clamped: Array
 
 
 @compiled
 def times(K: Strained, x: Array, out: Array) -> None:
     """out = K x of vectors (k, dn)."""
-    n, d = K.rest.diagonal.shape[:2]
+    n, d = K.remainder.diagonal.shape[:2]
     rho, kept = np.empty(6), np.empty(6)
     free = x.copy()
     for v in range(len(x)):
-        apply(K.held, x[v, d - 6 : d], kept)
+        apply(K.clamped, x[v, d - 6 : d], kept)
         for i in range(6):
             free[v, d - 6 + i] -= kept[i]
-    blocks.times(K.rest, free, out)
+    blocks.times(K.remainder, free, out)
     for v in range(len(x)):
         for k in range(n):
             here = d * k + d - 6
@@ -53,7 +53,7 @@ def times(K: Strained, x: Array, out: Array) -> None:
                     out[v, here + j] += K.lever[k, i, j] * wrench
                 if k > 0:
                     out[v, here - d + i] -= wrench
-        apply(K.held, out[v, d - 6 : d], rho)
-        apply(K.held, x[v, d - 6 : d], kept)
+        apply(K.clamped, out[v, d - 6 : d], rho)
+        apply(K.clamped, x[v, d - 6 : d], kept)
         for i in range(6):
             out[v, d - 6 + i] += kept[i] - rho[i]

@@ -1,7 +1,7 @@
 """The compressed model: segments end to end as a chain of rigid bodies and complex stiffness elements, and its modes.
 
-The paper has its rigid bodies at the sections. Here each segment's body rides on its element (see ``condensation``), which
-costs nothing and converges two orders faster in bending; the sections between are massless.
+The paper places its rigid bodies at the sections. Here the body of each segment follows its element (see ``condensation``),
+which converges two orders faster in bending at no cost; the sections are massless.
 
 A complex stiffness element is linear in its own axes: the steady tension stiffens bending, as in any beam of ``core``, but not
 torsion (a section that twists under tension shortens too). A solid does show that; it grows as Ω².
@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 
 from .. import solve
 from ..chain import accuracy
-from ..effects import FULL, Model
+from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
 from ..element.discretize import Chain
 from ..element.measures import even
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
+from ..space.inertia import about_centre, transformed
 from .joined import joined
 from .segments import Segment
 from .ties import CondensationError
@@ -42,9 +43,9 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
     if not segments:
         raise CondensationError("segments: none given: a chain needs at least one")
     n = len(segments)
-    rest = np.array([s.rest for s in segments])
+    undeformed = np.array([s.undeformed for s in segments])
     nodes = [root]
-    for x in rest:
+    for x in undeformed:
         nodes.append(nodes[-1] @ x)
     centres, bodies = _centred(np.array([s.inertia for s in segments]))
     none = np.zeros((n, 6, 6))
@@ -52,20 +53,20 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
         beams=Beams(
-            law=even("corotational", rest),
-            stiffness=bm.end_stiffness("corotational", rest, np.array([s.stiffness for s in segments])),
-            points=bm.riding(rest, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
+            law=even("corotational", undeformed),
+            stiffness=bm.end_stiffness("corotational", undeformed, np.array([s.stiffness for s in segments])),
+            points=bm.riding(undeformed, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
             preload=np.zeros((n, 6)),
             inner_preload=np.zeros((n, 6)),
         ),
-        samples=_samples(rest),
-        scale=float(np.linalg.norm(rest[:, :3, 3], axis=1).sum()),
+        samples=_samples(undeformed),
+        scale=float(np.linalg.norm(undeformed[:, :3, 3], axis=1).sum()),
         force=np.zeros((n + 1, 3)),
     )
 
 
 def chain_modes(
-    chain: Chain, omega: float, count: int = 10, *, model: Model = FULL, gravity: Array = solve.NO_GRAVITY
+    chain: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = solve.NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain turning steadily at ``omega`` (rad/s); see ``solve.modes``.
 
@@ -73,7 +74,7 @@ def chain_modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
-    return solve.chain_modes(chain, omega, count, model=model, gravity=gravity)
+    return solve.chain_modes(chain, omega, count, effects=effects, gravity=gravity)
 
 
 def segment_modes(
@@ -117,22 +118,19 @@ def segment_modes(
 
 def _centred(inertia: Array) -> tuple[Array, Array]:
     """Poses (n, 4, 4) of the centres of mass, parallel to the frames, and the inertias (n, 6, 6) about them."""
-    first = inertia[:, 3:, :3] / inertia[:, :1, :1]  # skew(c)
-    centre = np.stack([first[:, 2, 1], first[:, 0, 2], first[:, 1, 0]], axis=1)
-    poses = sp.pose(np.eye(3), centre)
-    lever = sp.adjoint(poses)
-    return poses, np.swapaxes(lever, -1, -2) @ inertia @ lever
+    poses = sp.pose(np.eye(3), about_centre(inertia)[1])
+    return poses, transformed(inertia, sp.inverse(poses))
 
 
-def _samples(rest: Array) -> Points:
-    """Where mode shapes are read: between two sections the strain is taken as constant."""
-    length = np.append(0.0, np.cumsum(np.linalg.norm(rest[:, :3, 3], axis=1)))
+def _samples(undeformed: Array) -> Points:
+    """Points at which mode shapes are read; the strain is constant between two sections."""
+    length = np.append(0.0, np.cumsum(np.linalg.norm(undeformed[:, :3, 3], axis=1)))
     at = STATIONS * length[-1]
-    element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(rest) - 1)
+    element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(undeformed) - 1)
     share = (at - length[element]) / np.diff(length)[element]
     return Points(
         element=element,
-        rest=share[:, None] * sp.log(rest)[element],
+        zeta0=share[:, None] * sp.log(undeformed)[element],
         shape=share[:, None, None] * np.eye(6),
         bubble=np.zeros((len(at), 6, 6)),
         mass=np.zeros((len(at), 6, 6)),

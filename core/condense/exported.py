@@ -1,4 +1,4 @@
-"""A matrix that another code exported, with the freedoms it names, as a model to condense.
+"""A finite element model from matrices that another code exported with named freedoms.
 
 Such codes name a freedom by its node and a component: 1–3 displacement along x, y, z, 4–6 rotation about them.
 """
@@ -57,7 +57,7 @@ def model(
         )
     lost = [n for n in stiffness.nodes.tolist() if n not in place]
     if lost:
-        raise MatrixFileError(f"{stiffness.name}: node {lost[0]} has no place: give the coordinates of all its nodes")
+        raise MatrixFileError(f"{stiffness.name}: node {lost[0]} has no coordinates: give those of all its nodes")
     lumped = np.zeros(len(stiffness.nodes))
     if mass is not None:
         at = {key: k for k, key in enumerate(zip(mass.nodes.tolist(), mass.directions.tolist(), strict=True))}
@@ -87,14 +87,14 @@ def assembled(name: str, rows: Index, columns: Index, values: Array, mirror: boo
     freedoms, where = np.unique(np.concatenate([rows, columns]), axis=0, return_inverse=True)
     n = len(freedoms)
     i, j = where.reshape(2, -1)
-    code, turned = i * n + j, j * n + i
+    code, mirrored = i * n + j, j * n + i
     entries, times = np.unique(code, return_counts=True)
     if (times > 1).any():
         k = int(np.argmax(code == entries[times.argmax()]))
         raise MatrixFileError(
             f"{name}: the entry of {rows[k].tolist()} and {columns[k].tolist()} is given twice: two matrices in one file?"
         )
-    alone = ~np.isin(turned, code)
+    alone = ~np.isin(mirrored, code)
     if mirror or (mirror is None and (alone | (i == j)).all()):
         i, j = np.append(i, j[alone]), np.append(j, i[alone])
         values = np.append(values, values[alone])

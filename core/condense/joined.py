@@ -20,7 +20,7 @@ def joined(segments: Sequence[Segment]) -> list[Segment]:
 
 def _pair(a: Segment, b: Segment) -> Segment:
     """In the first frame's axes throughout."""
-    out, back = sp.adjoint(a.rest), sp.adjoint(sp.inverse(a.rest))
+    out, back = sp.adjoint(a.undeformed), sp.adjoint(sp.inverse(a.undeformed))
     first = np.linalg.inv(a.stiffness)  # ρ of a, from a wrench at the far end
     second = out @ np.linalg.inv(b.stiffness) @ out.T
     far = back.T @ b.inertia @ back
@@ -28,4 +28,4 @@ def _pair(a: Segment, b: Segment) -> Segment:
     turned = first + out @ b.ride @ back @ second  # twist of b's body
     mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + far @ turned)
     stiffness = np.linalg.inv(first + second)
-    return Segment(a.rest @ b.rest, 0.5 * (stiffness + stiffness.T), inertia, mean @ stiffness)
+    return Segment(a.undeformed @ b.undeformed, 0.5 * (stiffness + stiffness.T), inertia, mean @ stiffness)

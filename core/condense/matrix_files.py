@@ -1,6 +1,6 @@
 """Stiffness (and mass) matrices that other codes export as text, with the freedoms they belong to.
 
-Read are, told apart by what is in them (the last by name):
+Formats, recognised by content (the last by name):
 
 * CalculiX and Abaqus ``*SUBSTRUCTURE MATRIX OUTPUT, OUTPUT FILE=USER DEFINED``: a ``*USER ELEMENT`` with its nodes in
   comments, lines of the freedoms that are active from each node on, and ``*MATRIX, TYPE=STIFFNESS`` or ``MASS`` with the
@@ -134,7 +134,7 @@ def _triplets(name: str, lines: list[str]) -> Exported:
         labels.append([whole(name, number, w) for w in words[:-1]])
         values.append(real(name, number, words[-1]))
     if not labels:
-        raise MatrixFileError(f"{name}: no matrix in it: see core.matrix_files for the forms that are read")
+        raise MatrixFileError(f"{name}: no matrix in it: see core.condense.matrix_files for the forms that are read")
     at = np.array(labels, dtype=np.intp)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], np.array(values))

@@ -1,7 +1,7 @@
 """A segment of a blade: a complex stiffness element and the rigid body that rides on it (Park et al. 2010, figs 1 and 2).
 
 A 12×12 stiffness between two frames that has six rigid-body modes says no more than a 6×6: the wrench ``k ρ`` on b, with
-ρ = ξ_b − ξ_a in a's axes. That is the complex stiffness element of ``core.beams``.
+ρ = ξ_b − ξ_a in a's axes. That is the complex stiffness element of ``core.element.beams``.
 """
 
 from dataclasses import dataclass
@@ -10,15 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..element import sections
-from ..element.inertia import moved
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from . import ties
 from .ties import CondensationError
 
 Array = NDArray[np.float64]
 
-TOLERANCE = ties.ASYMMETRY
-LEAST = 1e-8  # lowest eigenvalue of a 6×6 with a unit diagonal: below it there is a seventh motion without force
+SYMMETRY_TOLERANCE = ties.ASYMMETRY
+MIN_EIGENVALUE = (
+    1e-8  # lowest eigenvalue of a 6×6 with a unit diagonal: below it there is a seventh motion without force
+)
 
 MOTIONS = tuple(f"{kind} {axis}" for kind in ("translation along", "rotation about") for axis in "xyz")
 
@@ -28,24 +30,24 @@ class Segment:
     """A complex stiffness element from frame a to frame b, and the rigid body that rides on it; in a's axes throughout.
 
     Attributes:
-        rest: (4, 4) pose of b in a's frame.
+        undeformed: (4, 4) pose of b in a's frame.
         stiffness: (6, 6) wrench on b from the twist of b seen from a, both about a's origin.
         inertia: (6, 6) of the body, about a's origin.
         ride: (6, 6) the body's twist seen from a, from that of b.
     """
 
-    rest: Array
+    undeformed: Array
     stiffness: Array
     inertia: Array
     ride: Array
 
 
-def between(stiffness: Array, rest: Array, name: str) -> Array:
+def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     """The 6×6 of a complex stiffness element from the 12×12 between its end frames.
 
     Args:
         stiffness: (12, 12) wrenches on a, then on b, from their twists, each in its own axes.
-        rest: (4, 4) pose of b in a's frame.
+        undeformed: (4, 4) pose of b in a's frame.
         name: what to call it in a message.
 
     Raises:
@@ -56,7 +58,7 @@ def between(stiffness: Array, rest: Array, name: str) -> Array:
     where = f"stiffness of {name!r}"
     if k.shape != (12, 12):
         raise CondensationError(
-            f"{where}: shape {k.shape}, expected (12, 12): six freedoms of each end frame; condense the rest first"
+            f"{where}: shape {k.shape}, expected (12, 12): six freedoms of each end frame; condense the others first"
         )
     if not np.isfinite(k).all():
         raise CondensationError(f"{where}: not finite at index {np.argwhere(~np.isfinite(k))[0].tolist()}")
@@ -69,28 +71,30 @@ def between(stiffness: Array, rest: Array, name: str) -> Array:
         )
     unit = k / np.sqrt(np.outer(diagonal, diagonal))
     wrong = np.abs(unit - unit.T).max()
-    if wrong > TOLERANCE:
+    if wrong > SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: {wrong:.1e} from symmetric: one triangle only, or rows and columns in two orders?"
         )
     lowest = np.linalg.eigvalsh(unit)[0]
-    if lowest < -TOLERANCE:
+    if lowest < -SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: not positive semi-definite (lowest eigenvalue {lowest:.2e} of a unit diagonal): "
             "wrong sign, order of freedoms, or a stiffness under load?"
         )
-    carried = np.concatenate([np.eye(6), sp.adjoint(sp.inverse(rest))]) * np.sqrt(diagonal)[:, None]  # by a twist of a
+    carried = (
+        np.concatenate([np.eye(6), sp.adjoint(sp.inverse(undeformed))]) * np.sqrt(diagonal)[:, None]
+    )  # by a twist of a
     left = np.abs(unit @ carried).max(0) / (np.abs(unit) @ np.abs(carried)).max(0)
-    if left.max() > TOLERANCE:
+    if left.max() > SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: {MOTIONS[int(left.argmax())]} as a rigid body is resisted ({left.max():.1e} of the forces in it): "
             "no six rigid-body modes; a support left in the model, or frames not where the matrix has its nodes (units?)"
         )
-    back = sp.adjoint(sp.inverse(rest))
+    back = sp.adjoint(sp.inverse(undeformed))
     k = back.T @ (0.5 * (k + k.T))[6:, 6:] @ back
     size = np.sqrt(np.diagonal(k))
     lowest = np.linalg.eigvalsh(k / np.outer(size, size))[0]
-    if lowest < LEAST:
+    if lowest < MIN_EIGENVALUE:
         raise CondensationError(
             f"{where}: more than six motions without force (lowest eigenvalue {lowest:.1e} of a unit diagonal): "
             "a mechanism between the sections; tie more nodes"
@@ -98,7 +102,7 @@ def between(stiffness: Array, rest: Array, name: str) -> Array:
     return k
 
 
-def segment_from_matrix(stiffness: Array, rest: Array, inertia: Array, name: str = "segment") -> Segment:
+def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, name: str = "segment") -> Segment:
     """A segment of which only the 12×12 and the rigid body are known, as when another code has condensed it.
 
     The body rides as the mass of a straight uniform beam of the same flexibility does. Of such a beam the sections'
@@ -106,26 +110,28 @@ def segment_from_matrix(stiffness: Array, rest: Array, inertia: Array, name: str
 
     Args:
         stiffness: (12, 12), see ``between``.
-        rest: (4, 4) pose of b in a's frame.
+        undeformed: (4, 4) pose of b in a's frame.
         inertia: (6, 6) about a's frame and in its axes; see ``mechanism.inertia``.
         name: what to call it in a message.
 
     Raises:
         CondensationError: as ``between``; frames that coincide.
     """
-    k = between(stiffness, rest, name)
-    if not rest[:3, 3].any():
+    k = between(stiffness, undeformed, name)
+    if not undeformed[:3, 3].any():
         raise CondensationError(
-            f"rest: the end frames of {name!r} coincide: a segment has a length; give b's place seen from a"
+            f"undeformed: the end frames of {name!r} coincide: a segment has a length; give b's place seen from a"
         )
     t, weight, within = sections.collocation(sections.GAUSS)
     slices = np.repeat(np.eye(4)[None], len(t), axis=0)
-    slices[:, :3, 3] = t[:, None] * rest[:3, 3]
+    slices[:, :3, 3] = t[:, None] * undeformed[:3, 3]
     lever = sp.adjoint(slices)
     spread = np.einsum("q,qij,qkl->ikjl", weight, lever, lever).reshape(36, 36)
     c = np.linalg.solve(spread, np.linalg.inv(k).ravel()).reshape(6, 6)
     twists = np.einsum("qp,pij->qij", within, lever @ c @ np.swapaxes(lever, -1, -2)) @ k
     line = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-    line[3:, 3:] = np.outer(rest[:3, 3], rest[:3, 3])  # turning about the line itself is averaged on its own
-    masses = weight[:, None, None] * moved(np.repeat(line[None], len(t), axis=0), slices)
-    return Segment(rest, k, inertia, np.linalg.solve(masses.sum(0), (masses @ twists).sum(0)))
+    line[3:, 3:] = np.outer(
+        undeformed[:3, 3], undeformed[:3, 3]
+    )  # turning about the line itself is averaged on its own
+    masses = weight[:, None, None] * transformed(np.repeat(line[None], len(t), axis=0), slices)
+    return Segment(undeformed, k, inertia, np.linalg.solve(masses.sum(0), (masses @ twists).sum(0)))

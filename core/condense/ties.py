@@ -1,4 +1,4 @@
-"""Finite element models as freedoms, and their sections tied to frames: rigidly, or on average.
+"""Finite element models as lists of freedoms, and sections tied to frames rigidly or on average.
 
 A freedom is a displacement along, or a rotation about, a coordinate axis at a point. When a frame moves by a small twist
 (in its own axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:
@@ -107,20 +107,20 @@ class Tie:
     mean: Array
 
 
-def rigid(model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Tie:
+def rigid(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Tie:
     """Every freedom given follows the frame.
 
     Raises:
         CondensationError: no freedoms, or too few to tell the six motions of a frame.
     """
-    return _tie(model, _some(model, freedoms, name), frame, name, "rigid", np.ones(len(freedoms)))
+    return _tie(fe_model, freedoms, frame, name, "rigid", np.ones(len(freedoms)))
 
 
-def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
+def average(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
     """The frame moves as the given freedoms do on average; rotations are left free, but not where a section is one node.
 
     Args:
-        model: the model.
+        fe_model: the model.
         freedoms: (k,) indices.
         frame: (4, 4) pose in the model's axes.
         name: what to call it in a message.
@@ -132,50 +132,42 @@ def average(model: FiniteElements, freedoms: Index, frame: Array, name: str, wei
     Raises:
         CondensationError: no freedoms, too few to tell the six motions of a frame, or no usable weights.
     """
-    moves = model.directions[_some(model, freedoms, name)] < 3
+    moves = fe_model.directions[freedoms] < 3
     if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
-        return _tie(model, freedoms, frame, name, "average", np.ones(6))
-    shares = (model.mass[freedoms] if weights is None else weights)[moves]
+        return _tie(fe_model, freedoms, frame, name, "average", np.ones(6))
+    shares = (fe_model.mass[freedoms] if weights is None else weights)[moves]
     if shares.ndim == 1 and not (shares > 0).all():
         raise CondensationError(
             f"section {name!r}: weights {'are the lumped masses, which ' if weights is None else ''}reach down to "
             f"{shares.min(initial=0.0):g}: give each freedom's share of the section, or ∫NᵀN where corners have a negative one"
         )
-    return _tie(model, freedoms[moves], frame, name, "average", shares if shares.ndim == 1 else shares[:, moves])
+    return _tie(fe_model, freedoms[moves], frame, name, "average", shares if shares.ndim == 1 else shares[:, moves])
 
 
-def _some(model: FiniteElements, freedoms: Index, name: str) -> Index:
-    if not len(freedoms):
-        raise CondensationError(
-            f"section {name!r}: a tie with no nodes: select the nodes of {model.name} that lie on it"
-        )
-    return freedoms
-
-
-def section(model: FiniteElements, frame: Array, name: str, kind: Kind = "average") -> Tie:
+def section(fe_model: FiniteElements, frame: Array, name: str, kind: Kind = "average") -> Tie:
     """Tie the nodes in the frame's own yz plane.
 
     Raises:
         CondensationError: if there are none (the message says where the nearest lie), or too few.
     """
-    away = (model.points - frame[:3, 3]) @ frame[:3, 0]
-    near = np.abs(away) < ON_SECTION * np.ptp(model.points, axis=0).max()
+    away = (fe_model.points - frame[:3, 3]) @ frame[:3, 0]
+    near = np.abs(away) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
     if not near.any():
         nearest = away[np.abs(away).argmin()] if len(away) else np.inf
         raise CondensationError(
-            f"section {name!r}: no nodes of {model.name} in its plane, the nearest are {nearest:g} m from it: "
+            f"section {name!r}: no nodes of {fe_model.name} in its plane, the nearest are {nearest:g} m from it: "
             "wrong station or units? put sections where the mesh has a layer of nodes"
         )
     freedoms = np.flatnonzero(near)
-    return rigid(model, freedoms, frame, name) if kind == "rigid" else average(model, freedoms, frame, name)
+    return rigid(fe_model, freedoms, frame, name) if kind == "rigid" else average(fe_model, freedoms, frame, name)
 
 
-def _tie(model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: Kind, weights: Array) -> Tie:
+def _tie(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: Kind, weights: Array) -> Tie:
     if not len(freedoms):
         raise CondensationError(
-            f"section {name!r}: a tie with no nodes: select the nodes of {model.name} that lie on it"
+            f"section {name!r}: a tie with no nodes: select the nodes of {fe_model.name} that lie on it"
         )
-    R = motion(model.points[freedoms], model.directions[freedoms], frame)
+    R = motion(fe_model.points[freedoms], fe_model.directions[freedoms], frame)
     weighed = R.T * weights if weights.ndim == 1 else R.T @ weights
     gram = weighed @ R
     size = np.sqrt(np.diagonal(gram))

@@ -1,5 +1,25 @@
-"""Beam elements: from a blade's sections to stiffness and mass between two frames.
+"""Beam elements: from the sections of a blade to stiffness and mass between two frames.
 
-A ``Blade`` comes in; a ``Chain`` of nodes and beam elements goes out (``discretize``). ``measures`` defines the strain of two
-frames, ``pencil`` the compiled M, C and K of an element.
+A ``Blade`` comes in; a ``Chain`` of nodes and beam elements goes out (``discretize.discretize``). ``StrainLaw`` defines the
+strain of an element from the relative pose of its ends, ``beams.pencil`` gives its residual and M, C, K about any state.
 """
+
+from .beams import Beams, Pencil, Points, bushing
+from .discretize import Chain, Mass, divide
+from .measures import Measure, StrainLaw
+from .sections import StaticSolution, frames, root
+
+__all__ = [
+    "Beams",
+    "Chain",
+    "Mass",
+    "Measure",
+    "Pencil",
+    "Points",
+    "StaticSolution",
+    "StrainLaw",
+    "bushing",
+    "divide",
+    "frames",
+    "root",
+]

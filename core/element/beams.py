@@ -1,9 +1,9 @@
-"""Beam elements with mass: elastic between their end frames, inertia at points that ride on both ends.
+"""Beam elements with mass: elastic between their end frames, with inertia at points that follow both ends.
 
-A point inside an element sits at ``exp ζ`` in the frame of end a, with ``ζ = ζ₀ + L (η − η₀)`` and η the logarithm of the
-relative pose of b: the undeformed element's static shape functions, kept in the coordinates in which an arc is straight.
-Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so its inertia couples both ends: a consistent mass. With the
-mass lumped at the nodes there are no such points.
+A point inside an element lies at ``exp ζ`` in the frame of end a, where ``ζ = ζ₀ + L (η − η₀)`` and η is the logarithm of the
+relative pose of b: the static shape functions L of the undeformed element, in the coordinates in which an arc is straight.
+Its twist is ``ξ_a + H ρ``, ``H = tangent(ζ) L tangent⁻¹(η)``, so that its inertia couples both ends: a consistent mass. An
+element whose mass is lumped at the nodes has no such points.
 """
 
 from dataclasses import dataclass, field, replace
@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..effects import FULL, Model
+from ..effects import ALL_EFFECTS, Effects
 from ..space import spatial as sp
 from . import measures
-from .measures import Law, Measure
+from .measures import Measure, StrainLaw
 from .pencil import BeamArrays, assemble
 
 Array = NDArray[Any]
@@ -24,11 +24,11 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Points:
-    """Points riding on the elements' ends, sorted by element; those with mass as many on each element.
+    """Points that follow the elements' ends, sorted by element; every element has the same number of points with mass.
 
     Attributes:
         element: (q,) the element each rides on.
-        rest: (q, 6) ζ₀, logarithm of the rest pose in the frame of end a.
+        zeta0: (q, 6) ζ₀, logarithm of the undeformed pose in the frame of end a.
         shape: (q, 6, 6) L, ζ from η.
         bubble: (q, 6, 6) ζ from the element's internal coordinates β.
         mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
@@ -36,7 +36,7 @@ class Points:
     """
 
     element: Index
-    rest: Array
+    zeta0: Array
     shape: Array
     bubble: Array
     mass: Array
@@ -63,16 +63,16 @@ class Beams:
         inner_preload: (n, 6) force conjugate to β, at β = 0.
     """
 
-    law: Law
+    law: StrainLaw
     stiffness: Array
     points: Points
     preload: Array
     inner_preload: Array
 
     @property
-    def rest(self) -> Array:
-        """(n, 4, 4) rest pose of end b in the frame of end a."""
-        return self.law.rest
+    def undeformed(self) -> Array:
+        """(n, 4, 4) undeformed pose of end b in the frame of end a."""
+        return self.law.undeformed
 
     @property
     def inner(self) -> int:
@@ -85,40 +85,40 @@ class Pencil:
     """Residual (n, d) on ends a, b and internal coordinates β, and its linearisation M, C, K, each (n, d, d); d = 12 or 18.
 
     Twists and wrenches are in a snapshot of each element's frame a; variations of wrenches are taken along with the body
-    they act on, and ξ is seen in the rotating frame. K is split into ``rest`` (n, d, d) and the ``spring`` (n, 6, 6) that
+    they act on, and ξ is seen in the rotating frame. K is split into ``remainder`` (n, d, d) and the ``spring`` (n, 6, 6) that
     acts on ρ = ξ_b − ξ_a: kept apart, its energy loses no digits to cancellation.
     """
 
     residual: Array
     M: Array
     C: Array
-    rest: Array
+    remainder: Array
     spring: Array
 
     @property
     def K(self) -> Array:
-        """The whole stiffness."""
-        K = self.rest.copy()
+        """The complete stiffness (n, d, d)."""
+        K = self.remainder.copy()
         K[:, :12, :12] += on_ends(self.spring, self.spring)
         return K
 
 
-def end_stiffness(measure: Measure, rest: Array, twist_stiffness: Array) -> Array:
-    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b seen from a, at rest."""
-    a = sp.tangent(sp.log(rest)) if measure == "corotational" else sp.adjoint(rest)
+def end_stiffness(measure: Measure, undeformed: Array, twist_stiffness: Array) -> Array:
+    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b seen from a, about the undeformed pose."""
+    a = sp.tangent(sp.log(undeformed)) if measure == "corotational" else sp.adjoint(undeformed)
     return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
 
 
-def riding(rest: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
-    """Points at rest poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b plus ``bubble`` β."""
+def riding(undeformed: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
+    """Points at undeformed poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b plus ``bubble`` β."""
     zeta = sp.log(pose)
     slope = sp.tangent_inverse(zeta)
-    L = slope @ shape @ sp.tangent(sp.log(rest))[element]
-    return Points(element=element, rest=zeta, shape=L, bubble=slope @ bubble, mass=mass)
+    L = slope @ shape @ sp.tangent(sp.log(undeformed))[element]
+    return Points(element=element, zeta0=zeta, shape=L, bubble=slope @ bubble, mass=mass)
 
 
 def alike(points: Points, elements: int) -> Points:
-    """The same points, with massless ones added until every element has as many: what ``Beams`` wants."""
+    """The points padded with massless copies, so that every element has the same number, as ``Beams`` requires."""
     number = np.bincount(points.element, minlength=elements)
     most = int(number.max())
     if (number == most).all():
@@ -129,7 +129,7 @@ def alike(points: Points, elements: int) -> Points:
     real = (rank < number[:, None]).ravel()
     return Points(
         element=np.repeat(np.arange(elements), most),
-        rest=points.rest[pick],
+        zeta0=points.zeta0[pick],
         shape=points.shape[pick],
         bubble=points.bubble[pick],
         mass=points.mass[pick] * real[:, None, None],
@@ -137,8 +137,10 @@ def alike(points: Points, elements: int) -> Points:
     )
 
 
-def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational") -> Beams:
-    """One massless element with a given 6×6 stiffness for its strain, between frames at relative pose ``rest`` (4, 4).
+def bushing(
+    undeformed: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational"
+) -> Beams:
+    """One massless element with a given 6×6 stiffness for its strain, between frames at relative pose ``undeformed`` (4, 4).
 
     Raises:
         ValueError: if the stiffness is not a symmetric 6×6 matrix.
@@ -147,12 +149,12 @@ def bushing(rest: Array, stiffness: Array, preload: Array | None = None, measure
     if k.shape != (6, 6) or not np.allclose(k, k.T, rtol=1e-9, atol=1e-12 * np.abs(k).max()):
         raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
     load = np.zeros(6) if preload is None else np.asarray(preload, float)
-    return Beams(measures.even(measure, rest[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
+    return Beams(measures.even(measure, undeformed[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
-    """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, at rest."""
-    rate = measures.response(beams.law, beams.rest, np.zeros((len(rho), 6))).rate[..., :6]
+    """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, about the undeformed pose."""
+    rate = measures.response(beams.law, beams.undeformed, np.zeros((len(rho), 6))).rate[..., :6]
     return (beams.stiffness @ rate @ rho[..., None])[..., 0]
 
 
@@ -167,7 +169,7 @@ def pencil(
     beta: Array,
     frame: Array,
     gravity: Array,
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     axes: Array | None = None,
 ) -> Pencil:
     """Assemble residual and matrices of all elements.
@@ -178,7 +180,7 @@ def pencil(
         beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
-        model: the effects kept (``geometric`` matters here).
+        effects: the effects kept (``geometric`` matters here).
         axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
 
     Raises:
@@ -195,11 +197,11 @@ def pencil(
         np.ascontiguousarray(frame),
         np.ascontiguousarray(gravity),
         np.zeros((n, 3, 3)) if axes is None else np.ascontiguousarray(axes),
-        model.geometric,
+        effects.geometric,
         out.residual,
         out.M,
         out.C,
-        out.rest,
+        out.remainder,
         out.spring,
     )
     return out
@@ -220,7 +222,7 @@ def _arrays(beams: Beams) -> BeamArrays:
         stiffness=np.ascontiguousarray(beams.stiffness),
         preload=np.ascontiguousarray(beams.preload),
         inner_preload=np.ascontiguousarray(beams.inner_preload),
-        rest=np.ascontiguousarray(p.rest),
+        zeta0=np.ascontiguousarray(p.zeta0),
         shape=np.ascontiguousarray(p.shape),
         bubble=np.ascontiguousarray(p.bubble),
         mass=np.ascontiguousarray(p.mass),

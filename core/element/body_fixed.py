@@ -1,4 +1,4 @@
-"""The strain measure of ``elements`` in axes fixed in the parent: displacement and Cardan angles, compiled.
+"""The compiled body-fixed strain measure of one element: displacement and Cardan angles in the axes of frame a.
 
 The angles are (x, y, z), R = R_x(α) R_y(β) R_z(γ).
 """
@@ -6,17 +6,17 @@ The angles are (x, y, z), R = R_x(α) R_y(β) R_z(γ).
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import clear, compiled, product, turned_product
+from ..compiled import clear, compiled, product, transposed_product
 from ..space import rigid
 
 Array = NDArray[np.float64]
 
 
 @compiled
-def strains(rest: Array, x: Array, strain: Array, rate: Array) -> None:
-    """ε (6,) and E (6, 12), zero for β, of an element with poses ``rest`` and ``x`` (4, 4)."""
+def strains(undeformed: Array, x: Array, strain: Array, rate: Array) -> None:
+    """ε (6,) and E (6, 12), zero for β, of an element with poses ``undeformed`` and ``x`` (4, 4)."""
     y, back = np.empty((4, 4)), np.empty((4, 4))
-    rigid.inverse(rest, back)
+    rigid.inverse(undeformed, back)
     rigid.compose(back, x, y)
     angles, turn = np.empty(3), np.zeros((6, 6))
     _angles(y, angles)
@@ -26,32 +26,32 @@ def strains(rest: Array, x: Array, strain: Array, rate: Array) -> None:
     rigid.put_skew(-y[0, 3], -y[1, 3], -y[2, 3], 0, 3, turn)
     _rate(angles, 3, 3, turn)
     local = np.empty((6, 6))
-    rigid.adjoint(back, local)  # brings ρ to the rest frame
+    rigid.adjoint(back, local)  # brings ρ to the undeformed frame
     clear(rate)
     product(turn, local, rate)
 
 
 @compiled
 def add_curvature(
-    rest: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
+    undeformed: Array, eta: Array, back: Array, rate: Array, strain: Array, s: Array, on_eta: Array, out: Array
 ) -> None:
     """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``."""
     turn, inverse, local, work = np.zeros((6, 6)), np.empty((4, 4)), np.empty((6, 6)), np.empty((6, 12))
     rigid.put_skew(-s[0], -s[1], -s[2], 3, 0, turn)
     _rate_transpose_derivative(strain[3:], s[3:], 3, 3, turn)
-    rigid.inverse(rest, inverse)
+    rigid.inverse(undeformed, inverse)
     rigid.adjoint(inverse, local)
     product(turn, rate, work)
-    turned_product(local, work, turn)
+    transposed_product(local, work, turn)
     for i in range(6):
         for j in range(6):
             out[i, j] += turn[i, j]
-    add_turned(eta, on_eta, back, out)
+    add_tangent_variation(eta, on_eta, back, out)
 
 
 @compiled
-def add_turned(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
-    """Add what a force conjugate to η makes as its tangent turns, to the part of ρ."""
+def add_tangent_variation(eta: Array, conjugate: Array, back: Array, out: Array) -> None:
+    """Add ∂(tangent⁻ᵀ(η) f)/∂ρ of a constant force f conjugate to η to the ρ block (6, 6) of ``out``."""
     rigid_turn, part = np.empty((6, 6)), np.empty((6, 6))
     rigid.tangent_inverse_transpose_derivative(eta, conjugate, rigid_turn)
     product(rigid_turn, back, part)
@@ -80,7 +80,7 @@ def _rate(angles: Array, i: int, j: int, out: Array) -> None:
 
 @compiled
 def _rate_transpose_derivative(angles: Array, m: Array, i: int, j: int, out: Array) -> None:
-    """Derivative of ``_rate(θ)ᵀ m`` with respect to θ, m held; ``out`` zero before."""
+    """Derivative of ``_rate(θ)ᵀ m`` with respect to θ at constant m; ``out`` zero before."""
     sa, ca = np.sin(angles[0]), np.cos(angles[0])
     sb, cb = np.sin(angles[1]), np.cos(angles[1])
     lever = (m[0] * sb - m[2]) / cb  # (Aᵀm)_y = sα lever + cα m1,  (Aᵀm)_z = −cα lever + sα m1

@@ -1,22 +1,22 @@
-"""The corotational strain measure of ``elements``, element by element, compiled."""
+"""The compiled corotational strain measure of one element; see ``measures``."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, compiled, invert, product, turned_apply, turned_product
+from ..compiled import apply, compiled, invert, product, transposed_apply, transposed_product
 from ..space import rigid
-from .body_fixed import add_turned
+from .body_fixed import add_tangent_variation
 
 Array = NDArray[np.float64]
 
 
-class LawArrays(NamedTuple):
-    """A law for compiled code; ``corotational`` is its measure."""
+class StrainLawArrays(NamedTuple):
+    """``measures.StrainLaw`` for compiled code; ``corotational`` tells which measure it has."""
 
     corotational: bool
-    rest: Array
+    undeformed: Array
     shortening: Array
     mean: Array
     slope: Array
@@ -24,8 +24,11 @@ class LawArrays(NamedTuple):
 
 
 @compiled
-def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
-    """ε (6,), J = ∂ε/∂(η, β) (6, 12) and what the curvature needs of the solution (6, 6), of element ``k``."""
+def strains(law: StrainLawArrays, k: int, eta: Array, beta: Array, strain: Array, J: Array, undo: Array) -> None:
+    """Strain ε (6,) and J = ∂ε/∂(η, β) (6, 12) of element ``k``, from ``(1 + ad(A δ) B_δ/12) ε = δ − ad(A δ) B_β β/12``.
+
+    ``undo`` (6, 6) is the inverse of the matrix on the left, which ``add_curvature`` needs.
+    """
     mean, slope = law.mean[k], law.slope[k]
     delta, bow, r = np.empty(6), np.empty(6), np.empty(6)
     for i in range(6):
@@ -67,12 +70,12 @@ def strains(law: LawArrays, k: int, eta: Array, beta: Array, strain: Array, J: A
 
 @compiled
 def add_curvature(
-    law: LawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
+    law: StrainLawArrays, k: int, eta: Array, back: Array, J: Array, undo: Array, s: Array, on_eta: Array, out: Array
 ) -> None:
-    """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``; the rest from ``strains``."""
+    """Add the geometric stiffness (12, 12) of forces ``s`` and ``on_eta`` (6,) to ``out``, with the results of ``strains``."""
     mean, slope = law.mean[k], law.slope[k]
     force, conjugate = np.empty(6), np.empty(6)
-    turned_apply(undo, s, force)
+    transposed_apply(undo, s, force)
     for i in range(6):
         conjugate[i] = on_eta[i]
         for j in range(6):
@@ -80,25 +83,25 @@ def add_curvature(
     crossed, through, on_slope, half = np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12))
     axial, force[0] = force[0], 0.0
     rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
+    transposed_product(crossed, slope, through)
     product(through, J, on_slope)
     force[0] = axial
     rigid.cross(force, crossed)
-    turned_product(crossed, slope, through)
+    transposed_product(crossed, slope, through)
     for i in range(6):
         for j in range(6, 12):
             on_slope[i, j] += through[i, j]
-    turned_product(mean, on_slope, half)
+    transposed_product(mean, on_slope, half)
     both, left = np.empty((6, 12)), np.empty((6, 12))
     for i in range(6):
         for j in range(6):
             both[i, j] = 2.0 * axial * law.shortening[k, i, j] - (half[i, j] + half[j, i]) / 12.0
             both[i, 6 + j] = -half[i, 6 + j] / 12.0
-    turned_product(back, both, left)
+    transposed_product(back, both, left)
     product(left, back, both)
     for i in range(6):
         for j in range(6):
             out[i, j] += both[i, j]
             out[i, 6 + j] += left[i, 6 + j]
             out[6 + j, i] += left[i, 6 + j]
-    add_turned(eta, conjugate, back, out)
+    add_tangent_variation(eta, conjugate, back, out)

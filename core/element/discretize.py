@@ -10,12 +10,12 @@ from .. import curve
 from ..blade import Blade, clamped, mass_at
 from ..modes import STATIONS
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from . import beams as bm
 from . import sections
 from .beams import Beams, Points
-from .inertia import moved
-from .measures import Law, Measure, even, joined
-from .sections import Segments
+from .measures import Measure, StrainLaw, even, joined
+from .sections import StaticSolution
 
 Array = NDArray[Any]
 Mass = Literal["consistent", "half_end"]
@@ -26,7 +26,7 @@ class Chain:
     """Nodes and elements of a blade; node 0 is clamped to the hub.
 
     Attributes:
-        nodes: (n+1, 4, 4) rest poses in the hub's axes.
+        nodes: (n+1, 4, 4) undeformed poses in the hub's axes.
         lumps: (n+1, 6, 6) inertia of the rigid body at each node, in its own axes.
         beams: the n elements, from node k to node k+1.
         samples: where mode shapes are read, at ``modes.STATIONS``; massless.
@@ -34,9 +34,9 @@ class Chain:
         force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
         corner: (n, 4, 4) pose of each element's end b in the frame of the node there: the identity, but where the blade has a
             kink, whose node has the frame of the section beyond it. All are by default.
-        held: (6, 6) projector of node 1's twist, in its own axes, on what the root's joint holds, where there is one: the first
-            element then is that joint, without length. Else empty.
-        root_axes: (3, 3) the root's axes, which that joint is along, in the first section's.
+        clamped: (6, 6) projector of node 1's twist, in its own axes, on the directions that the root joint clamps; the first
+            element then is that joint and has no length. Empty for a clamped root.
+        root_axes: (3, 3) the root's axes, along which the joint lies, in those of the first section.
     """
 
     nodes: Array
@@ -46,7 +46,7 @@ class Chain:
     scale: float
     force: Array
     corner: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
-    held: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    clamped: Array = field(default_factory=lambda: np.zeros((0, 0)))
     root_axes: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
@@ -55,13 +55,13 @@ class Chain:
 
     @property
     def between(self) -> Array:
-        """(n, 4, 4) rest pose of each node but the first in the frame of the one before."""
-        return self.beams.rest @ sp.inverse(self.corner)
+        """(n, 4, 4) undeformed pose of each node but the first in the frame of the one before."""
+        return self.beams.undeformed @ sp.inverse(self.corner)
 
     @property
     def elements(self) -> int:
         """How many beam elements."""
-        return len(self.beams.rest) - (1 if self.held.size else 0)
+        return len(self.beams.undeformed) - (1 if self.clamped.size else 0)
 
 
 def discretize(
@@ -75,16 +75,16 @@ def discretize(
 
     Args:
         blade: the blade.
-        elements: how many, of equal arc length but for kinks (see ``divide``); or the arc lengths (n+1,) of their ends, every
-            kink among them.
+        elements: how many, of equal arc length apart from kinks (see ``divide``); or the arc lengths (n+1,) of their ends, m,
+            including every kink.
         mass: ``consistent`` keeps the mass where it is (fourth order); ``half_end`` lumps each element's halves at its
             ends, as Park et al. 2010 do (second order).
-        stiffness: strain measure, see ``elements``.
+        stiffness: strain measure, see ``measures``.
         load: (m, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them; linear between
             the stations.
 
     Raises:
-        ValueError: if there is not at least one element, or the load is not one row of three a station.
+        ValueError: if there is not at least one element, or the load is not one row of three per station.
     """
     if isinstance(elements, np.ndarray):
         s = elements
@@ -101,14 +101,14 @@ def discretize(
     at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
     nodes, ends = sections.frames(blade, s), sections.frames(blade, s[1:], before=True)
-    rest = sp.inverse(nodes[:-1]) @ ends
+    undeformed = sp.inverse(nodes[:-1]) @ ends
     corner = np.tile(np.eye(4), (elements, 1, 1))
     kinked = np.isin(s[1:], blade.kinks)
     corner[kinked] = sp.inverse(nodes[1:][kinked]) @ ends[kinked]
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
-        inside = bm.riding(rest, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
+        inside = bm.riding(undeformed, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
         if load is not None:
             inside = replace(inside, force=seg.weight[:, None] * _at(blade, load, seg.s))
         inside = bm.alike(inside, elements)
@@ -122,13 +122,13 @@ def discretize(
         nodes=nodes,
         lumps=lumps,
         beams=Beams(
-            law=Law(stiffness, rest, seg.shortening, seg.mean, seg.slope),
-            stiffness=bm.end_stiffness(stiffness, rest, np.linalg.inv(seg.flexibility)),
+            law=StrainLaw(stiffness, undeformed, seg.shortening, seg.mean, seg.slope),
+            stiffness=bm.end_stiffness(stiffness, undeformed, np.linalg.inv(seg.flexibility)),
             points=inside,
             preload=np.zeros((elements, 6)),
             inner_preload=np.zeros((elements, 6)),
         ),
-        samples=_samples(blade, seg, at, nodes, rest),
+        samples=_samples(blade, seg, at, nodes, undeformed),
         scale=blade.length,
         force=force,
         corner=corner,
@@ -136,21 +136,21 @@ def discretize(
     return chain if clamped(blade) else _on_joint(chain, blade)
 
 
-LEAST = 16
-"""Elements that are shared out among the pieces between kinks; more are these, halved."""
+MIN_SHARED = 16
+"""Least number of elements to distribute among the pieces between kinks; finer meshes halve these elements."""
 
 
 def divide(blade: Blade, elements: int) -> Array:
     """Arc lengths (n+1,) of the nodes: every kink is one, and the pieces between have elements in proportion to their lengths.
 
     At least one each, so there may be more than asked for. Twice as many elements are the same ones halved (from twice
-    ``LEAST`` on), so that refinement converges regularly.
+    ``MIN_SHARED`` on), so that refinement converges regularly.
     """
     if not blade.kinks:
         return np.linspace(0.0, blade.length, elements + 1)
     ends = np.array([0.0, *blade.kinks, blade.length])
     halved = 1
-    while elements % (2 * halved) == 0 and elements >= 2 * LEAST * halved:
+    while elements % (2 * halved) == 0 and elements >= 2 * MIN_SHARED * halved:
         halved *= 2
     number = halved * _shared_out(elements // halved, np.diff(ends))
     inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], number, strict=True)]
@@ -158,7 +158,7 @@ def divide(blade: Blade, elements: int) -> Array:
 
 
 def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
-    """How many elements each piece has: one, and each further one goes where elements are longest."""
+    """Number of elements of each piece (p,): one each, and every further one goes to the piece with the longest elements."""
     number = np.ones(len(lengths), dtype=np.intp)
     for _ in range(elements - len(lengths)):
         number[np.argmax(lengths / number)] += 1
@@ -168,7 +168,7 @@ def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
 def _on_joint(chain: Chain, blade: Blade) -> Chain:
     """The chain with the root's joint before its first element."""
     turn = np.kron(np.eye(2), sp.rotation(0, blade.twist[0]).T)  # from the root's axes to the first section's
-    holds = np.isinf(blade.root)
+    fixed = np.isinf(blade.root)
     b = chain.beams
 
     def before(new: Array, old: Array) -> Array:
@@ -178,9 +178,12 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
     inside = b.points
     if b.inner:  # one point without mass, for ``alike``
         e = before(np.zeros(1, dtype=np.intp), inside.element + 1)
-        rows = (before(none[:, 0], inside.rest), *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)))
-        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.rest) + 1)
-    spring = turn @ np.diag(np.where(holds, 0.0, blade.root)) @ turn.T
+        rows = (
+            before(none[:, 0], inside.zeta0),
+            *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)),
+        )
+        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.undeformed) + 1)
+    spring = turn @ np.diag(np.where(fixed, 0.0, blade.root)) @ turn.T
     beams = replace(
         b,
         law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
@@ -197,7 +200,7 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
         beams=beams,
         corner=before(np.eye(4)[None], chain.corner),
         samples=replace(chain.samples, element=chain.samples.element + 1),
-        held=turn @ np.diag(holds.astype(float)) @ turn.T,
+        clamped=turn @ np.diag(fixed.astype(float)) @ turn.T,
         root_axes=turn[:3, :3],
     )
 
@@ -216,12 +219,12 @@ def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
 
 
 def _half_end(blade: Blade, nodes: Array) -> Array:
-    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
+    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, transformed to it along the span."""
     node, s, weight = _halves(blade, nodes)
     turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
     turn[:, :3, 3] = 0.0
     lumps = np.zeros((len(nodes), 6, 6))
-    np.add.at(lumps, node, weight[:, None, None] * moved(mass_at(blade, s), turn))
+    np.add.at(lumps, node, weight[:, None, None] * transformed(mass_at(blade, s), turn))
     return lumps
 
 
@@ -233,7 +236,7 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
     return node.ravel(), points.s.ravel(), points.weight.ravel()
 
 
-def _samples(blade: Blade, seg: Segments, at: Array, nodes: Array, rest: Array) -> Points:
+def _samples(blade: Blade, seg: StaticSolution, at: Array, nodes: Array, undeformed: Array) -> Points:
     e = seg.at_element
     pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
-    return bm.riding(rest, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))
+    return bm.riding(undeformed, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))

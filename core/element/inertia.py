@@ -1,4 +1,4 @@
-"""Inertial wrench of bodies carried steadily by a rotating frame, and its linearisation.
+"""Inertial wrench of bodies in steady rotation, and its linearisation.
 
 With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y; letting the body move by a small
 twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
@@ -6,7 +6,7 @@ twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
     δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − cross(MV)  (Coriolis, skew),
                              K = −V×ᵀ M V× − cross(MV) V×   (centrifugal),
 
-components taken along with the body (Featherstone 2008, eq. 2.72, varied once).
+in components that follow the body (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, eq. 2.72, linearised).
 """
 
 import numpy as np
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..compiled import apply, compiled, product
 from ..space import rigid
-from ..space import spatial as sp
 
 Array = NDArray[np.float64]
 
@@ -26,17 +25,17 @@ def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Arra
     ``turn`` is the ``ad`` of ``frame``, and ``fall`` (6,) the acceleration of free fall as a twist (zero angular part), turning
     with the frame. All may be given in any axes and about any origin, if all are in the same.
     """
-    mt, rest, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    mt, transport, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     apply(mass, frame, momentum)
-    rigid.cross(momentum, rest)
+    rigid.cross(momentum, transport)
     product(mass, turn, mt)
     for i in range(6):
         g[i] = 0.0
         for j in range(6):
             g[i] -= turn[j, i] * momentum[j] + mass[i, j] * fall[j]
-            rest[i, j] += mt[j, i]
-            C[i, j] = mt[i, j] - rest[i, j]
-    product(rest, turn, K)
+            transport[i, j] += mt[j, i]
+            C[i, j] = mt[i, j] - transport[i, j]
+    product(transport, turn, K)
     for i in range(6):
         for j in range(6):
             K[i, j] = -K[i, j]
@@ -48,10 +47,10 @@ def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Arra
 
 @compiled
 def hold_components(g: Array, push: Array, follow: bool, K: Array) -> None:
-    """Take steady forces ``push`` (3,) at the body's origin, fixed in the rotating frame, into g and K, in the body's axes.
+    """Add steady forces ``push`` (3,), N, at the body's origin and fixed in the rotating frame, to g and K in the body's axes.
 
-    Without ``follow`` the components of all of g are held in the frame, not taken along as the body turns: what a model without
-    geometric stiffness does.
+    Without ``follow`` all components of g stay fixed in the frame instead of turning with the body: an analysis without
+    geometric stiffness.
     """
     for i in range(3):
         g[i] -= push[i]
@@ -76,9 +75,3 @@ def carried(mass: Array, frame: Array, fall: Array, push: Array, follow: bool, g
         rigid.ad(frame[k], turn)
         carry(mass[k], frame[k], turn, fall[k], g[k], C[k], K[k])
         hold_components(g[k], push[k], follow, K[k])
-
-
-def moved(mass: Array, x: Array) -> Array:
-    """Inertias (n, 6, 6) given in frames ``x`` (n, 4, 4), expressed in the frame the poses are given in."""
-    a = sp.adjoint(sp.inverse(x))
-    return np.swapaxes(a, -1, -2) @ mass @ a

@@ -1,20 +1,20 @@
-"""Elastic elements between two frames a and b: a strain measure of their relative pose, and its energy ½ εᵀKε.
+"""Strain measures of elastic elements between two frames a and b, with the energy ½ εᵀKε.
 
-Variations are twists seen from a snapshot of frame a: with ``X = X_a⁻¹ X_b`` and ``dX = ρ^ X``, ρ = ξ_b − ξ_a, the energy
-gives the wrench ``w = Eᵀ s`` on b (and −w on a), where ``E = ∂ε/∂ρ`` and ``s = K ε + preload``; its derivative with respect
-to ρ is ``Eᵀ K E + ∂(Eᵀ s)/∂ρ``: material and geometric stiffness, both analytic.
+Variations are twists in the axes of frame a at that instant: with ``X = X_a⁻¹ X_b`` and ``dX = ρ^ X``, ρ = ξ_b − ξ_a, the
+energy gives the wrench ``w = Eᵀ s`` on b (and −w on a), where ``E = ∂ε/∂ρ`` and ``s = K ε + preload``. The derivative of w
+with respect to ρ is ``Eᵀ K E + ∂(Eᵀ s)/∂ρ``: the material and the geometric stiffness, both analytic.
 
 Two measures:
 
 * ``corotational``: δ = log X − log X₀ is the helicoidal strain of a frame moving from a to b (Sonneville, Cardona, Brüls 2014,
-  sec. 4), which is the strain where that does not vary along the element: bending into an arc stretches nothing by itself.
-  Where it does vary, by the static shape that belongs to δ and by the internal coordinates β, two terms are added. Magnus'
-  expansion of X′ = X ξ gives log X = ∫ξ + (1/12) ad(∫ξ) ξ′L², so the strain solves ``ε + (1/12) ad(A δ) B (ε, β) = δ``, A and
-  B taking its integral and its slope from it: a stretched element is longer for its bending too. And the axial strain gains
-  δᵀGδ, the shortening by what the static shape deviates from the helicoid, which makes the tension's stiffening that of the
-  cubic beam element. Both are of the square of the element's length; with them it is of fourth order about any steady state;
-* ``parent``: displacement and Cardan angles (x, y, z) of b from its rest pose, in axes fixed in a. Linear in the parent's
-  body frame, as Park et al. 2010 have it: no geometric stiffness inside the element.
+  sec. 4). It is exact where the strain is constant along the element: bending into an arc does not stretch the element.
+  Two terms account for a strain that varies with the static shape of δ and the internal coordinates β. Magnus' expansion of
+  X′ = X ξ gives log X = ∫ξ + (1/12) ad(∫ξ) ξ′L², so the strain solves ``ε + (1/12) ad(A δ) B (ε, β) = δ``, where A and B give
+  the integral and the slope of the strain. The axial strain also contains δᵀGδ, the shortening due to the deviation of the
+  static shape from the helicoid; it gives the tension stiffening of the cubic beam element. Both terms are quadratic in the
+  element length; with them the element is of fourth order about any steady state;
+* ``body_fixed``: displacement and Cardan angles (x, y, z) of b from its undeformed pose, in axes fixed in a. Linear in the
+  parent body's frame (Park et al. 2010): an element has no geometric stiffness.
 """
 
 from collections.abc import Sequence
@@ -28,64 +28,64 @@ from ..compiled import clear, compiled, product
 from ..space import rigid
 from ..space import spatial as sp
 from . import body_fixed, corotational
-from .corotational import LawArrays
+from .corotational import StrainLawArrays
 
 Array = NDArray[np.float64]
-Measure = Literal["corotational", "parent"]
+Measure = Literal["corotational", "body_fixed"]
 
 
 @dataclass(frozen=True)
-class Law:
+class StrainLaw:
     """How n elements measure strain.
 
     Attributes:
         measure: see the module.
-        rest: (n, 4, 4) relative poses without strain.
+        undeformed: (n, 4, 4) relative poses without strain.
         shortening: (n, 6, 6) G, see ``sections``; of the corotational measure, as what follows.
         mean: (n, 6, 6) A: A δ is the strain's integral over the element, of the static shape that δ belongs to.
         slope: (n, 6, 12) B: B (δ, β) is its slope along the element, times the length squared.
-        eta: (n, 6) logarithm of ``rest``.
+        eta: (n, 6) logarithm of ``undeformed``.
     """
 
     measure: Measure
-    rest: Array
+    undeformed: Array
     shortening: Array
     mean: Array
     slope: Array
     eta: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "eta", sp.log(self.rest))
+        object.__setattr__(self, "eta", sp.log(self.undeformed))
 
 
-def even(measure: Measure, rest: Array) -> Law:
-    """Elements whose strain is the same all along: bushings, and elements known by their ends only."""
-    n = len(rest)
-    return Law(measure, rest, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
+def even(measure: Measure, undeformed: Array) -> StrainLaw:
+    """Law (n elements) of a strain that is constant along the element: bushings, and elements known by their ends only."""
+    n = len(undeformed)
+    return StrainLaw(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
 
 
-def joined(laws: Sequence[Law]) -> Law:
-    """One law for the elements of several, all of one measure."""
-    return Law(laws[0].measure, *(np.concatenate([getattr(law, name) for law in laws]) for name in _ARRAYS))
+def joined(laws: Sequence[StrainLaw]) -> StrainLaw:
+    """Concatenate laws of one measure."""
+    return StrainLaw(laws[0].measure, *(np.concatenate([getattr(law, name) for law in laws]) for name in _ARRAYS))
 
 
-def part(law: Law, at: slice) -> Law:
-    """The law of some of the elements."""
-    return Law(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
+def part(law: StrainLaw, at: slice) -> StrainLaw:
+    """Law of a slice of the elements."""
+    return StrainLaw(law.measure, *(getattr(law, name)[at] for name in _ARRAYS))
 
 
-_ARRAYS = ("rest", "shortening", "mean", "slope")
+_ARRAYS = ("undeformed", "shortening", "mean", "slope")
 
 
 @dataclass(frozen=True)
 class Response:
-    """What an element's relative pose, and its internal coordinates β, give.
+    """Strain of n elements at given relative poses and internal coordinates β, and its derivatives.
 
     Attributes:
         strain: (n, 6) ε.
         rate: (n, 6, 12) E = ∂ε/∂(ρ, β).
-        curvature: (n, 12, 12) from a force s conjugate to ε, and one conjugate to η = log X, the derivative with respect to
-            (ρ, β) of what they make on them, both held: the geometric stiffness.
+        curvature: (n, 12, 12) geometric stiffness: derivative with respect to (ρ, β) of the generalised forces on (ρ, β) due to
+            constant forces conjugate to ε and to η = log X.
     """
 
     strain: Array
@@ -93,7 +93,7 @@ class Response:
     curvature: Array
 
 
-def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
+def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
     """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6; or 0), and its derivatives; forces (n, 6), none: zero."""
     n = len(x)
     beta, force, conjugate = (
@@ -104,15 +104,15 @@ def response(law: Law, x: Array, beta: Array, s: Array | None = None, on_eta: Ar
     return out
 
 
-def arrays(law: Law) -> LawArrays:
-    """The law for compiled code."""
+def arrays(law: StrainLaw) -> StrainLawArrays:
+    """The law as contiguous arrays for compiled code."""
     parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
-    return LawArrays(law.measure == "corotational", *parts)
+    return StrainLawArrays(law.measure == "corotational", *parts)
 
 
 @compiled
 def _respond(
-    law: LawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
+    law: StrainLawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
 ) -> None:
     eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
     for k in range(len(x)):
@@ -125,7 +125,7 @@ def _respond(
 
 @compiled
 def strains(
-    law: LawArrays,
+    law: StrainLawArrays,
     k: int,
     x: Array,
     eta: Array,
@@ -147,12 +147,12 @@ def strains(
             for j in range(6, 12):
                 rate[i, j] = J[i, j]
     else:
-        body_fixed.strains(law.rest[k], x, strain, rate)
+        body_fixed.strains(law.undeformed[k], x, strain, rate)
 
 
 @compiled
 def add_curvature(
-    law: LawArrays,
+    law: StrainLawArrays,
     k: int,
     eta: Array,
     back: Array,
@@ -168,4 +168,4 @@ def add_curvature(
     if law.corotational:
         corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
     else:
-        body_fixed.add_curvature(law.rest[k], eta, back, rate, strain, s, on_eta, out)
+        body_fixed.add_curvature(law.undeformed[k], eta, back, rate, strain, s, on_eta, out)

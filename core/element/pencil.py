@@ -1,26 +1,26 @@
-"""The pencils of ``beams``, element by element, compiled."""
+"""Residual, M, C and K of beam elements, compiled: see ``beams`` for the theory."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, clear, compiled, congruence, product, turned_apply
+from ..compiled import apply, clear, compiled, congruence, product, transposed_apply
 from ..space import rigid
 from . import inertia, measures
-from .corotational import LawArrays
+from .corotational import StrainLawArrays
 
 Array = NDArray[np.float64]
 
 
 class BeamArrays(NamedTuple):
-    """``Beams`` for compiled code; ``pushed``: whether there are loads on the points."""
+    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed`` tells whether the points carry loads."""
 
-    law: LawArrays
+    law: StrainLawArrays
     stiffness: Array
     preload: Array
     inner_preload: Array
-    rest: Array
+    zeta0: Array
     shape: Array
     bubble: Array
     mass: Array
@@ -50,10 +50,10 @@ def assemble(
     residual: Array,
     M: Array,
     C: Array,
-    rest: Array,
+    remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, rest (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``; arguments as for ``beams.pencil``."""
+    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``."""
     eta, back = np.empty(6), np.empty((6, 6))
     sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
     for k in range(len(x)):
@@ -73,7 +73,7 @@ def assemble(
         _add_elastic(beams, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
         _on_ends(sums.M, M[k])
         _on_ends(sums.C, C[k])
-        _on_ends(sums.K, rest[k])
+        _on_ends(sums.K, remainder[k])
         for i in range(len(residual[k])):
             residual[k, i] = sums.f[i]
         for i in range(6):
@@ -107,7 +107,7 @@ def _add_elastic(
     sums: _Sums,
     spring: Array,
 ) -> None:
-    """The strain's force on (ρ, β), and its material and geometric stiffness; what is between the ends alone to the spring."""
+    """Add the elastic force on (ρ, β) and its material and geometric stiffness; the part on ρ alone goes to ``spring``."""
     strain, s = np.empty(6), np.empty(6)
     rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
     measures.strains(beams.law, k, x, eta, back, beta, strain, rate, J, undo)
@@ -119,7 +119,7 @@ def _add_elastic(
     if geometric:
         measures.add_curvature(beams.law, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
     force = np.empty(12)
-    turned_apply(rate, s, force)
+    transposed_apply(rate, s, force)
     for i in range(12):
         sums.f[6 + i] += force[i]
     _split(K, spring, sums.K)
@@ -146,12 +146,12 @@ def _add_inertia(
     sums: _Sums,
     spring: Array,
 ) -> None:
-    """Add the points' inertia: wrench g at a point whose twist is ξ_a + H (ρ, β) acts on ξ_a, and as Hᵀ g on (ρ, β).
+    """Add the inertia of the points: a wrench g at a point with twist ξ_a + H (ρ, β) acts as g on ξ_a and as Hᵀ g on (ρ, β).
 
-    All of it is in a's axes, at a, where all points of an element are carried at one twist.
+    All wrenches are about a's origin in a's axes, where all points of an element are carried at the same twist.
     """
     per = len(beams.mass) // len(beams.stiffness)
-    change, zeta, g, push, turned = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
+    change, zeta, g, push, on_zeta = np.empty(6), np.empty(6), np.empty(6), np.zeros(3), np.empty(6)
     from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
     T, D = np.empty((6, 6)), np.empty((6, 6))
     M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
@@ -164,7 +164,7 @@ def _add_inertia(
     for p in range(per):
         point, at = per * k + p, slice(6 * p, 6 * p + 6)
         shape, slope = beams.shape[point], slopes[at]
-        ride(beams.rest[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
+        ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
         rigid.inverse(from_point, pose)
         rigid.adjoint(pose, to_point)
@@ -192,10 +192,10 @@ def _add_inertia(
             for i in range(6 * p, 6 * p + 6):
                 for j in range(12):
                     KU[i, 6 + j] -= bent[i, j]
-            turned_apply(T, g, turned)
+            transposed_apply(T, g, on_zeta)
             for i in range(6):
                 for j in range(6):
-                    sums.on_eta[j] += shape[i, j] * turned[i]
+                    sums.on_eta[j] += shape[i, j] * on_zeta[i]
             rigid.tangent_transpose_derivative(zeta, g, D)
             product(D, slope, bent[at])
     np.dot(U.T, MU, sums.M)
@@ -207,7 +207,7 @@ def _add_inertia(
 
 @compiled
 def ride(
-    rest: Array,
+    zeta0: Array,
     shape: Array,
     bubble: Array,
     change: Array,
@@ -218,13 +218,13 @@ def ride(
     T: Array,
     H: Array,
 ) -> None:
-    """Where a point of ``beams.Points`` is in a's frame, and how it moves with (ρ, β).
+    """Position of a point of ``beams.Points`` in a's frame and its derivative: ζ = ζ₀ + L (η − η₀) + bubble β.
 
     From η − η₀ (6,), ``back`` (6, 6) = ``tangent_inverse(η)`` and β (6,): ζ (6,), its slope (6, 12), ``tangent(ζ)`` (6, 6), and
     H (6, 12), the product of these two.
     """
     for i in range(6):
-        zeta[i] = rest[i]
+        zeta[i] = zeta0[i]
         for j in range(6):
             zeta[i] += shape[i, j] * change[j] + bubble[i, j] * beta[j]
             slope[i, 6 + j] = bubble[i, j]
@@ -245,14 +245,14 @@ def _put_twist(H: Array, out: Array) -> None:
 
 
 @compiled
-def _split(k: Array, spring: Array, rest: Array) -> None:
-    """Add a stiffness (12, 12) on (ρ, β): what is between the ends alone to ``spring``, else to ``rest`` (18, 18)."""
+def _split(k: Array, spring: Array, remainder: Array) -> None:
+    """Add a stiffness (12, 12) on (ρ, β): its ρ block to ``spring`` (6, 6), the other blocks to ``remainder`` (18, 18)."""
     for i in range(12):
         for j in range(12):
             if i < 6 and j < 6:
                 spring[i, j] += k[i, j]
             else:
-                rest[6 + i, 6 + j] += k[i, j]
+                remainder[6 + i, 6 + j] += k[i, j]
 
 
 @compiled
@@ -261,9 +261,9 @@ def _hold_components(to_point: Array, pose: Array, push: Array, follow: bool, g:
     from_point = np.empty((6, 6))
     rigid.adjoint(pose, from_point)
     here, more, work, at_a = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    turned_apply(from_point, g, here)
+    transposed_apply(from_point, g, here)
     inertia.hold_components(here, push, follow, more)
-    turned_apply(to_point, here, g)
+    transposed_apply(to_point, here, g)
     congruence(to_point, more, work, at_a)
     for i in range(6):
         for j in range(6):

@@ -1,13 +1,14 @@
-"""From a blade's sections to the elements between its nodes: exact static solution by integrated flexibility.
+"""Exact static solution of the elements between a blade's nodes, by integrating the flexibility of its sections.
 
-Clamp frame a and load frame b by a wrench w (at a's origin, in a's axes): the section at s carries ``Ad(F_s)ᵀ w``, strains by
-its compliance, and turns and moves all beyond it, so the twist of the section at s is
+Clamp frame a and load frame b by a wrench w (at a's origin, in a's axes). The section at s carries ``Ad(F_s)ᵀ w``, and its
+strain moves everything beyond it, so the twist of the section at s is
 
     ρ(s) = f(s) w,   f(s) = ∫ Ad(F) c Ad(F)ᵀ ds   from a to s,
 
-for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. What loads
-between the nodes add to that, six bubbles describe: the element clamped at both ends under uniform loads along its sections'
-axes. They do no work with the shape functions, and make axial, torsional and shear motion as accurate as bending. Gauss
+for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. Six bubble
+functions describe the effect of loads between the nodes: the element clamped at both ends under uniform loads along its
+sections' axes. They are orthogonal to the shape functions in energy and make axial, torsional and shear motion as accurate as
+bending. Gauss
 quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
 """
 
@@ -17,7 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import curve
+from .. import curve, gauss
 from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, stiffness_at, straight, twist_at
 from ..space import spatial as sp
 
@@ -36,9 +37,9 @@ def root(blade: Blade) -> Array:
 
 
 def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
-    """Rest poses (k, 4, 4) of the sections at arc lengths ``s``, in the hub's axes; x tangent, y and z turned by the twist.
+    """Undeformed poses (k, 4, 4) of the sections at ``s`` (m), in the hub's axes: x tangent, y and z rotated by the twist.
 
-    At a kink there are two: of the section just ``before`` it, or of the one just beyond.
+    At a kink the section just ``before`` it and the one just beyond it differ.
     """
     turn = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
@@ -53,7 +54,7 @@ def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
 
 
 def compliance(blade: Blade, s: Array) -> Array:
-    """Section compliance (k, 6, 6); rigid shears have none, rigid axial and torsional strains next to none."""
+    """Section compliance (k, 6, 6): zero for rigid shear, almost zero for rigid axial and torsional strain."""
     k = stiffness_at(blade, s)
     soft = np.flatnonzero(np.isfinite(k).all(axis=(0, 2)))
     out = np.zeros_like(k)
@@ -67,22 +68,21 @@ def compliance(blade: Blade, s: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Segments:
+class StaticSolution:
     """Gauss points of all elements, in order along the blade, and the elements' static solutions.
 
     Attributes:
         element: (q,) which element each point lies in.
         s, weight: (q,) arc length and quadrature weight, m.
-        pose: (q, 4, 4) rest pose in the frame of the element's first node.
+        pose: (q, 4, 4) undeformed pose in the frame of the element's first node.
         flexibility: (n, 6, 6) f(b) of each element.
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
         bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
             moves nothing has a zero column.
         at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the arc lengths asked for.
-        shortening: (n, 6, 6) G: δᵀGδ is how much more the static shape shortens, by ½∫(|y′|² − |Γ|²) of its displacement y
-            across and its shear strain Γ (Reissner's: shear alone shortens nothing), than the logarithmic strain δ of its ends
-            tells.
-        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``elements``.
+        shortening: (n, 6, 6) G: δᵀGδ is the shortening ½∫(|y′|² − |Γ|²) of the static shape, with transverse displacement y and
+            Reissner's shear strain Γ (shear alone does not shorten), beyond that in the logarithmic strain δ of the ends.
+        mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``measures``.
     """
 
     element: Index
@@ -121,13 +121,12 @@ def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadr
     """Gauss points between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
     ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
-    c, b, _ = collocation(GAUSS)
     h = np.diff(ends)
     element = np.searchsorted(nodes, ends[:-1] + 0.5 * h, side="right") - 1
-    return Quadrature(ends[:-1], h, element, ends[:-1, None] + h[:, None] * c, h[:, None] * b)
+    return Quadrature(ends[:-1], h, element, *gauss.between(ends, GAUSS))
 
 
-def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
+def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:
     """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,).
 
     Every kink must be a node: the elements' frames are those of the sections at their ends, of the side the element is on.
@@ -184,7 +183,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
     rate = turn @ stiffness[element][:, None]
     uneven = _uneven(pose, part, length, last[element][:, None], shape.reshape(turn.shape), rate, static, loaded)
     shortening, mean, slope = (whole(v) for v in uneven)
-    return Segments(
+    return StaticSolution(
         element=q,
         s=s.ravel(),
         weight=points.weight.ravel(),
@@ -204,13 +203,13 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> Segments:
 def _uneven(
     pose: Array, part: Array, length: Array, last: Array, shape: Array, rate: Array, static: Array, loaded: Array
 ) -> tuple[Array, Array, Array]:
-    """What G, A and B of ``elements`` integrate, at the Gauss points (i, q, …).
+    """Integrands of G, A and B of ``measures`` at the Gauss points (i, q, …).
 
     Args:
         pose: (i, q, 4, 4) of the points in the element's frame.
         part: (i, q, 1) of the element's length that lies before them.
         length: (i, 1, 1) of the elements, m.
-        last: (i, 1, 6) logarithm of the elements' rest poses.
+        last: (i, 1, 6) logarithm of the undeformed elements.
         shape, rate: (i, q, 6, 6) the points' twists from that of b, and their rates along the arc.
         static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
     """
@@ -228,10 +227,10 @@ def _squared(slope: Array) -> Array:
     return np.swapaxes(slope, -1, -2) @ slope
 
 
-def _across(pose: Array, moved: Array, rate: Array) -> Array:
+def _across(pose: Array, twist: Array, rate: Array) -> Array:
     """(…, 2, 6) slope across the axis of the displaced reference curve, from twists at a and their rates along the arc."""
     p, x = pose[..., :3, 3], pose[..., :3, 0]
-    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ moved[..., 3:, :]
+    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ twist[..., 3:, :]
     return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
 
 
@@ -245,9 +244,8 @@ def _unit_stiffness(work: Array) -> Array:
 @lru_cache
 def collocation(n: int) -> tuple[Array, Array, Array]:
     """Gauss points c and weights b on [0, 1], and the matrix ∫₀^{c_q} ℓ_j of their Lagrange polynomials."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    c = 0.5 * (x + 1.0)
-    return c, 0.5 * w, _up_to(c, c)
+    c, b = gauss.rule(n)
+    return c, b, _up_to(c, c)
 
 
 def partial_weights(n: int, x: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Any mechanism, by hand: bodies, joints, motions and springs by name, then ``solve`` for steady state and modes.
+"""Mechanisms built in Python: bodies, joints, motions and springs by name; ``solve`` finds the steady state and the modes.
 
 A rigid blade of 40 kg on a lag hinge 0.3 m off the rotor's axis, with a damper across the hinge, at 30 rad/s::
 
@@ -17,7 +17,7 @@ A rigid blade of 40 kg on a lag hinge 0.3 m off the rotor's axis, with a damper 
     found.frequencies, found.damping  # 10.14 rad/s, 0.141 of critical
 
 Lengths in m, angles in rad, SI throughout. A joint's axis is the z axis of its frame (see ``at``); its coordinates are named
-``joint.rz`` and so on (see ``joints.SCREWS``). Joints that close loops are found by themselves, or named by ``cut=True``.
+``joint.rz`` and so on (see ``joints.SCREWS``). Joints that close loops are found automatically, or marked with ``cut=True``.
 """
 
 from ..element.beams import bushing

@@ -1,8 +1,7 @@
 """Cartesian equations of a tree and their projection M* v̇ = Q* (Park et al. 2010, eq. 1, 5–11).
 
-All wrenches are on the bodies at the ground's origin, in its axes. What the bodies feel is gathered as a ``Cartesian`` pencil:
-the total wrench g that inertia and forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` along with the bodies,
-block by block, ξ the bodies' small twists.
+All wrenches act on the bodies at the ground's origin, in its axes. ``Cartesian`` collects the total wrench g that inertia and
+forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` with the small twists ξ of the bodies, block by block.
 """
 
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from ..element.beams import Pencil, on_ends
 from ..element.beams import pencil as beam_pencil
 from ..element.measures import response
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from .kinematics import Kinematics
 from .mechanism import Load, MechanismError, Spring
 from .tree import Batch, Tree
@@ -41,7 +41,7 @@ class Cartesian:
 
 
 class _Sum:
-    """Wrenches and 6×6 blocks as they come in."""
+    """Accumulates wrenches and 6×6 blocks."""
 
     def __init__(self, rows: int) -> None:
         self.g = np.zeros((rows, 6))
@@ -60,11 +60,11 @@ class _Sum:
             for j in range(ends.shape[1]):
                 both = acts & (ends[:, j] >= 0)
                 column = slice(6 * j, 6 * j + 6)
-                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.rest))
+                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.remainder))
                 self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
 
     def total(self) -> Cartesian:
-        """All of it, added up."""
+        """The sum as a ``Cartesian``."""
         row, column = (np.concatenate([part[k] for part in self.blocks]) for k in (0, 1))
         six = np.arange(6)
         where = np.broadcast_arrays((6 * row[:, None] + six)[:, :, None], (6 * column[:, None] + six)[:, None, :])
@@ -108,8 +108,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
 
 def inertias(tree: Tree, k: Kinematics) -> Array:
     """(b, 6, 6) inertias of the bodies at the ground's origin, in its axes."""
-    a = sp.adjoint(sp.inverse(k.poses))
-    return np.swapaxes(a, -1, -2) @ tree.inertia @ a
+    return transformed(tree.inertia, k.poses)
 
 
 def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
@@ -159,7 +158,7 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
     across = (np.eye(3) - np.outer(n, n)) / length
     seen = yb - ya
     slip = seen[:3] + np.cross(seen[3:], pb)  # velocity of b's point seen from a
-    tension = s.stiffness * (length - s.rest) + s.damping * float(n @ slip)
+    tension = s.stiffness * (length - s.free_length) + s.damping * float(n @ slip)
     # δ(rate) seen from a = slip·δn + n·δslip, with δslip = velocity ρ̇ + ρ_ω × slip
     tilt = across @ velocity
     rate_k = slip @ tilt
@@ -200,9 +199,9 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     x = sp.inverse(xa) @ xb
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
-    turned = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
-    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ turned)
-    M, C, K = p.M, p.C, p.rest
+    load_axes = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
+    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes)
+    M, C, K = p.M, p.C, p.remainder
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]
         d = np.swapaxes(E, -1, -2) @ batch.damping @ E
@@ -234,7 +233,7 @@ def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> 
 
 
 def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
-    """Equal and opposite reactions, taken along with the bodies; what else they vary by is left to the multipliers."""
+    """Equal and opposite reactions w (6,) of a weld that follow the bodies; their variation is that of the multipliers."""
     out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
 
 
@@ -245,12 +244,12 @@ def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
 
 
 def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> Array:
-    """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would be needed."""
+    """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would balance the tree."""
     # Bᵀ (M (B v̇ + Ḃ v) + Φᶜ_Zᵀ λ − Q), from which Bᵀ Φᴶ_Zᵀ = 0 drops the reactions of the tree's joints (eq. 5)
     out = np.einsum("bin,bi->n", k.B, c.g)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        out[j] += s.stiffness * (q[j] - s.rest) + s.damping * v[j]
+        out[j] += s.stiffness * (q[j] - s.neutral) + s.damping * v[j]
     return out
 
 

@@ -1,4 +1,4 @@
-"""The steady state of a mechanism: loops closed, then balanced by Newton's method, globalised by continuation from rest."""
+"""Steady state of a mechanism: loop closure, then Newton's method on the balance of forces, globalised by continuation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -9,41 +9,24 @@ from numpy.typing import NDArray
 
 from ..rank import TOLERANCE, Ranked, ranked
 from . import dynamics, partition
-from .dynamics import Cartesian
-from .kinematics import Kinematics, kinematics, poses
+from .loops import MAX_STEP, assemble, closed, size_of
 from .mechanism import MechanismError
+from .state import ContradictionError, State, check_rates, given, moving, state_at
 from .tree import Tree
 
 Array = NDArray[Any]
 Index = NDArray[np.intp]
 
-BALANCED = 1e-11
+BALANCE_TOLERANCE = 1e-11
 """A residual below this fraction of the forces it is the sum of is rounding; each coordinate has its own."""
 
-NOISE = 1e-13
+STIFFNESS_ROUNDING = 1e-13
 """A stiffness below this fraction of the forces and stiffnesses it is the sum of is rounding."""
 
-_STEPS = 60
-_FAR = 0.2  # rad, or of the mechanism's length: the longest step of a path, and of loops being closed
-_FIRST, _LEAST = 0.25, 1e-3  # of the path
-_SHORTEST = 1e-3  # of a step
-_NEAR = 0.05  # rad, or of the length: corrections so small need not contract at once
-
-
-@dataclass(frozen=True)
-class State:
-    """A steady state: coordinates, velocities, accelerations (n,), multipliers (w, 6), and what follows from them."""
-
-    q: Array
-    v: Array
-    a: Array
-    multipliers: Array
-    kinematics: Kinematics
-    cartesian: Cartesian
-
-
-class ContradictionError(MechanismError):
-    """Rates that a loop cannot have together."""
+_MAX_STEPS = 60
+_FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # of the path
+_MIN_FRACTION = 1e-3  # of a step
+_SMALL_CORRECTION = 0.05  # rad, or of the length: corrections so small need not contract at once
 
 
 def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
@@ -51,7 +34,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 
     Newton's method from the guess serves while its corrections contract (P. Deuflhard, *Newton Methods for Nonlinear
     Problems*, 2004, sec. 2.1.1). Otherwise the state is followed from rest, where dead forces hold the mechanism at the guess:
-    rates and loads grow while the dead forces fade. Where nothing holds a mechanism at rest, as a pendulum whose weight
+    rates and loads grow while the dead forces fade. Where a mechanism has no equilibrium at rest, as a pendulum whose weight
     comes with the loads, only the dead forces fade. Newton's method with shortened steps is the last resort.
 
     Raises:
@@ -77,7 +60,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
             f"no steady state was found near the guess: Newton's method does not converge from it, continuation got {told}: "
             "give a better guess, or check for a missing spring or joint"
         )
-    _check_rates(tree, found.state)
+    check_rates(tree, found.state)
     _check_balance(tree, found)
     return found.state
 
@@ -95,7 +78,7 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
     Raises:
         MechanismError: if the loops do not close.
     """
-    q, gap, length = _closed(tree, q, follow)
+    q, gap, length = closed(tree, q, follow)
     if np.abs(gap).max(initial=0.0) > 1e-9 * length:
         raise MechanismError("loops: they do not close")
     here = _residual(tree, q, independent=independent)
@@ -103,71 +86,20 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
 
 
 def again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:
-    """The steady state found again, by one of Newton's steps from a place a rounding away: how sure it is.
+    """The steady state found again, by one Newton step from a point a rounding error away: how certain it is.
 
     Raises:
         MechanismError: as ``steady``.
     """
-    free, eps = _free(tree), float(np.finfo(float).eps)
+    free, eps = partition.free_coordinates(tree), float(np.finfo(float).eps)
     q = state.q.copy()
     sign = np.random.default_rng(1921).choice([-1.0, 1.0], len(free))
     turns = tree.screw[free, 3:].any(1)
-    q[free] += eps * sign * np.maximum(np.abs(q[free]), np.where(turns, 1.0, _length(state.kinematics.poses)))
-    here = _residual(tree, _closed(tree, q, free)[0], independent=independent)
+    q[free] += eps * sign * np.maximum(np.abs(q[free]), np.where(turns, 1.0, size_of(state.kinematics.poses)))
+    here = _residual(tree, closed(tree, q, free)[0], independent=independent)
     q = here.state.q.copy()
     q[free] += _tangent(tree, here).step(here)
-    return _residual(tree, _closed(tree, q, free)[0], independent=independent).state
-
-
-# ---------------------------------------------------------------------------------------------------------------- loops
-
-
-def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
-    """Coordinates (n,) that close all loops, near a guess (coordinates not named start at 0 or at their motion's position).
-
-    Raises:
-        MechanismError: if the loops do not close.
-    """
-    q = np.zeros(len(tree.coordinates))
-    for name, value in (guess or {}).items():
-        q[tree.coordinate(name)] = value
-    for m in tree.mechanism.motions:
-        if m.position is not None:
-            q[tree.coordinate(m.coordinate)] = m.position
-    q, gap, length = _closed(tree, q, _free(tree))
-    worst = int(np.argmax(np.abs(gap))) if len(gap) else 0
-    if len(gap) and abs(gap[worst]) > 1e-9 * length:
-        raise MechanismError(
-            f"joint {tree.weld_names[worst // 6]!r}: it does not close its loop (gap {abs(gap[worst]):.3g}); the dimensions "
-            "do not fit, or the guess is too far off: give a better one"
-        )
-    return q
-
-
-def _closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
-    """Levenberg-Marquardt steps on the loops' gaps, damped by their squares: wide of singular configurations, quadratic in
-    the end; with gap and length.
-    """
-    q = q.copy()
-    last = np.inf
-    for _ in range(_STEPS):
-        x, J = poses(tree, q)
-        gap, length = partition.misfit(tree, x), _length(x)
-        size = float(np.abs(gap).max(initial=0.0))
-        if size < 1e-15 * length or (size < 1e-11 * length and size > 0.5 * last):
-            break
-        last = size
-        step = -ranked(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]).solve(gap, float(gap @ gap))
-        q[free] += step * min(1.0, _FAR / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-    return q, gap, length
-
-
-def _free(tree: Tree) -> Index:
-    return np.setdiff1d(np.arange(len(tree.coordinates)), partition.held(tree))
-
-
-def _length(x: Array) -> float:
-    return max(1.0, float(np.abs(x[:, :3, 3]).max(initial=0.0)))
+    return _residual(tree, closed(tree, q, free)[0], independent=independent).state
 
 
 # -------------------------------------------------------------------------------------------------------------- balance
@@ -213,7 +145,7 @@ class _Tangent:
 
     def balanced(self, here: _Residual) -> bool:
         """Whether each independent coordinate is balanced but for rounding."""
-        return bool((np.abs(here.reduced) <= BALANCED * self.rounding).all())
+        return bool((np.abs(here.reduced) <= BALANCE_TOLERANCE * self.rounding).all())
 
 
 @dataclass(frozen=True)
@@ -226,8 +158,8 @@ class _Found:
 
 
 def _residual(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None) -> _Residual:
-    state = _state(tree, q)
-    free = _free(tree)
+    state = state_at(tree, q)
+    free = partition.free_coordinates(tree)
     forces = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free] - dead
     if tree.welds:
         J = partition.jacobian(tree, state.kinematics.B)[:, free]
@@ -242,23 +174,23 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     state, part, k = here.state, here.part, here.state.kinematics
     M, C, K = (a[np.ix_(part.free, part.free)] for a in dynamics.tangent(tree, k, state.cartesian))
     R = part.R
-    moved = K @ R
+    by_independent = K @ R
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
-        rest = ~np.isin(part.free, _given(tree))
-        back = ranked(J[:, rest])
+        following = ~np.isin(part.free, given(tree))
+        back = ranked(J[:, following])
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
-        R1[rest] = -back.solve(J1 @ R)
-        R2[rest] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
-        moved += C @ R1 + M @ R2
+        R1[following] = -back.solve(J1 @ R)
+        R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
+        by_independent += C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
-    units = np.where(turns, 1.0, _length(k.poses))
+    units = np.where(turns, 1.0, size_of(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
     rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
     least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
-    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, moved)), NOISE / TOLERANCE * least)
+    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, by_independent)), STIFFNESS_ROUNDING / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
-    return _Tangent(ranked((R.T @ moved) / root[:, None] / root), root**2, rounding, units)
+    return _Tangent(ranked((R.T @ by_independent) / root[:, None] / root), root**2, rounding, units)
 
 
 def _sizes(tree: Tree, state: State) -> Array:
@@ -266,14 +198,14 @@ def _sizes(tree: Tree, state: State) -> Array:
     out = np.einsum("bin,bi->n", np.abs(state.kinematics.B), state.cartesian.size)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.rest)) + abs(s.damping * state.v[j])
+        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.neutral)) + abs(s.damping * state.v[j])
     return out
 
 
 def _carried(state: State) -> Array:
     """(n,) what the stiffnesses a coordinate carries would give on it at a strain of one: their rounding is in all it feels."""
     k, c = state.kinematics, state.cartesian
-    units = np.tile(np.repeat([_length(k.poses), 1.0], 3), len(k.B))
+    units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(k.B))
     wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
     np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ units[:6])[:, None, :])
     return np.einsum("bin,bi->n", np.abs(k.B), wrench[:-1])
@@ -286,9 +218,9 @@ def _newton(
 
     ``damped``: steps that do not contract are shortened until they do, however little (Deuflhard 2004, sec. 3.3).
     """
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
     start, here = q, _residual(tree, q, dead)
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         tangent = _tangent(tree, here)
         step = tangent.step(here)
         length = _norm(step, tangent)
@@ -301,11 +233,11 @@ def _newton(
             following, contraction = _tried(tree, q, part * step, dead, names, tangent, length)
             if done and contraction > 0.5:  # rounding is all that is left
                 return _Found(here.state, here, tangent)
-            near = max(length, length * contraction) < _NEAR  # of the guess: a first correction may grow
+            near = max(length, length * contraction) < _SMALL_CORRECTION  # of the guess: a first correction may grow
             if contraction <= (1.0 - 0.25 * part if damped else 0.5) or near or length < 1e-9:
                 break
             part *= 0.5
-            if not damped or part < _SHORTEST:
+            if not damped or part < _MIN_FRACTION:
                 return None
         if following is None or _norm((following.state.q - start)[free], tangent) > far:
             return None
@@ -317,10 +249,10 @@ def _tried(
     tree: Tree, q: Array, step: Array, dead: Array | float, names: tuple[str, ...], tangent: _Tangent, length: float
 ) -> tuple[_Residual | None, float]:
     """The residual after a step, and the length of the correction it asks for over that of Newton's step before."""
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
     there = q.copy()
     there[free] += step
-    there, gap, size = _closed(tree, there, free)
+    there, gap, size = closed(tree, there, free)
     if not np.isfinite(length) or np.abs(gap).max(initial=0.0) > 1e-11 * size:
         return None, np.inf
     following = _residual(tree, there, dead, names)
@@ -339,7 +271,7 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
 
     ``grow``: rates and loads grow from nothing meanwhile.
     """
-    free = _free(tree)
+    free = partition.free_coordinates(tree)
 
     def at(part: float) -> Tree:
         return _loaded(tree, part) if grow else tree
@@ -350,19 +282,19 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
         return 0.0, None
     J = partition.jacobian(tree, start.state.kinematics.B)[:, free]
     dead = start.forces - J.T @ ranked(J.T).solve(start.forces)
-    part, stride, slope = 0.0, _FIRST, np.zeros_like(q)
+    part, stride, slope = 0.0, _FIRST_STRIDE, np.zeros_like(q)
     found = None
     while part < 1.0:
         to = min(1.0, part + stride)
-        ahead, gap, size = _closed(tree, q + (to - part) * slope, free)
-        closed = np.abs(gap).max(initial=0.0) <= 1e-11 * size
+        ahead, gap, size = closed(tree, q + (to - part) * slope, free)
+        loops_close = np.abs(gap).max(initial=0.0) <= 1e-11 * size
         try:
-            found = _newton(at(to), ahead, (1.0 - to) * dead, _FAR) if closed else None
+            found = _newton(at(to), ahead, (1.0 - to) * dead, MAX_STEP) if loops_close else None
         except MechanismError:  # the loops are singular there
             found = None
         if found is None or not found.tangent.balanced(found.residual):
             stride *= 0.5
-            if stride < _LEAST:
+            if stride < _MIN_STRIDE:
                 return part, None
             continue
         slope, part, q = (found.state.q - q) / (to - part), to, found.state.q
@@ -378,58 +310,8 @@ def _loaded(tree: Tree, part: float) -> Tree:
     return replace(tree, mechanism=replace(m, motions=motions, gravity=gravity))
 
 
-# --------------------------------------------------------------------------------------------------------------- motion
-
-
-def _given(tree: Tree) -> list[int]:
-    return [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
-
-
-def _state(tree: Tree, q: Array) -> State:
-    """Velocities and accelerations that the motions and, through the loops, all other coordinates have (eq. 18, 20)."""
-    n = len(q)
-    v, a = np.zeros(n), np.zeros(n)
-    given = _given(tree)
-    for m, j in zip(tree.mechanism.motions, given, strict=True):
-        v[j], a[j] = m.rate, m.acceleration
-    k = kinematics(tree, q, v, a)
-    if tree.welds:
-        rest = np.setdiff1d(np.arange(n), given)
-        J = partition.jacobian(tree, k.B)
-        back = ranked(J[:, rest])
-        v[rest] = back.solve(-J @ v)
-        k = kinematics(tree, q, v, a)
-        a[rest] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
-        if np.abs(J @ v).max() > 1e-7 * max(float(np.abs(v).max()), 1e-300) * _length(k.poses):
-            raise ContradictionError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
-        k = kinematics(tree, q, v, a)
-    return State(q, v, a, np.zeros((len(tree.welds), 6)), k, dynamics.cartesian(tree, k))
-
-
-def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
-    """(n,) whether a coordinate moves because its loop does."""
-    out = np.abs(state.v) > 1e-9 * np.abs(state.v).max(initial=0.0)
-    out[_given(tree)] = False
-    return out
-
-
-def _check_rates(tree: Tree, state: State) -> None:
-    """Refuse loops that move while the motions leave open how: rates would be anybody's choice."""
-    if not moving(tree, state).any():
-        return
-    rest = np.setdiff1d(np.arange(len(state.q)), _given(tree))
-    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, rest]).null
-    free = moving(tree, state)[rest] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
-    if free.any():
-        name = tree.coordinates[rest[int(free.argmax())]]
-        raise MechanismError(
-            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too (held = false if "
-            "it is to vibrate)"
-        )
-
-
 def _check_balance(tree: Tree, found: _Found) -> None:
-    """Refuse a coordinate with a force on it that nothing resists."""
+    """Check that no coordinate carries a force without a stiffness."""
     here, tangent = found.residual, found.tangent
     if not tangent.balanced(here):
         worst = int(np.argmax(np.abs(here.reduced) / np.maximum(tangent.rounding, 1e-300)))

@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import dynamics
-from .equilibrium import State
 from .partition import Partition, partition
+from .state import State
 from .tree import Tree
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Linear:
+class Linearization:
     """M̂, Ĉ, K̂ (i, i) over the independent coordinates, and the state they hold about."""
 
     tree: Tree
@@ -34,15 +34,15 @@ class Linear:
         return tuple(self.tree.coordinates[j] for j in self.partition.independent)
 
 
-def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linear:
+def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linearization:
     """Linearise about a given state."""
     M, C, K = dynamics.tangent(tree, state.kinematics, state.cartesian)
     p = partition(tree, state.kinematics, independent)
     pick = np.ix_(p.free, p.free)
     M, C, K = M[pick], C[pick], K[pick]
     if not len(p.dependent):  # R is the unit matrix
-        return Linear(tree, state, p, M, C, K)
-    return Linear(
+        return Linearization(tree, state, p, M, C, K)
+    return Linearization(
         tree,
         state,
         p,

@@ -6,11 +6,13 @@ import numpy as np
 
 from .. import eigen
 from . import periodic
-from .equilibrium import State, assemble, moving, steady, unresisted
+from .equilibrium import steady, unresisted
 from .kinematics import kinematics
-from .linear import Linear, about
+from .linear import Linearization, about
+from .loops import assemble
 from .mechanism import Mechanism, MechanismError, at_time
 from .partition import freedom, partition
+from .state import State, moving
 from .tree import Tree, compile_tree
 
 
@@ -19,7 +21,7 @@ def linearize(
     guess: Mapping[str, float] | None = None,
     independent: tuple[str, ...] | None = None,
     time: float = 0.0,
-) -> Linear:
+) -> Linearization:
     """Find the steady state and linearise about it.
 
     Where a motion follows a law of time, this is a frozen-time linearisation: the coordinates that are free are balanced,
@@ -34,7 +36,7 @@ def linearize(
         time: s, the instant looked at; it matters where motions follow laws.
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is not steady; the message says what.
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is not steady.
     """
     tree = compile_tree(at_time(mechanism, time))
     state = steady(tree, guess)
@@ -46,7 +48,7 @@ def linearize(
 
 
 def _check_regular(tree: Tree, state: State) -> None:
-    """Compare the freedom here with that of an assembled configuration a little way off."""
+    """Check that the number of freedoms is the same in a nearby assembled configuration."""
     if not tree.welds:
         return
     here = partition(tree, state.kinematics)
@@ -62,7 +64,7 @@ def _check_regular(tree: Tree, state: State) -> None:
         )
 
 
-def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Damped:
+def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eigen.Damped:
     """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
 
     Raises:
@@ -90,7 +92,7 @@ def modes(linear: Linear, count: int | None = None) -> eigen.Eigen | eigen.Dampe
     return eigen.damped(M, C, K, count, rigid)
 
 
-def _conservative(linear: Linear) -> bool:
+def _conservative(linear: Linearization) -> bool:
     """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
     mechanism = linear.tree.mechanism
     dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]

@@ -1,6 +1,6 @@
-"""A mechanism: bodies, joints (tree and cut), prescribed motion, force elements, gravity. Any of them, not only a blade.
+"""A mechanism: bodies, joints (tree and cut), prescribed motions, force elements and gravity.
 
-Poses, twists and inertias follow ``core.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
+Poses, twists and inertias follow ``core.space.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
 through the tree and once through a massless copy beyond the cut joint, and the two are welded. One kind of constraint (six
 equations Φᶜ, the joint's own coordinates kept) then serves a cut joint of every kind (Park et al. 2010, eq. 2).
 """
@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..blade_checks import body_fault
 from ..element.beams import Beams
 from ..space import spatial as sp
+from ..space.inertia import transformed
 from .joints import SCREWS, Joint
-from .motion import Law, Motion, instant
+from .motion import Motion, MotionLaw, instant
 
 Array = NDArray[np.float64]
 
@@ -22,7 +23,7 @@ GROUND = "ground"
 
 
 class MechanismError(ValueError):
-    """A mechanism that cannot be: the message names the element, the value, the likely cause and the remedy."""
+    """An invalid mechanism: the message names the element, the value, the likely cause and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -46,23 +47,22 @@ def inertia(mass: float, moments: ArrayLike = 0.0, centre: ArrayLike = (0.0, 0.0
     out = np.zeros((6, 6))
     out[:3, :3] = mass * np.eye(3)
     out[3:, 3:] = tensor
-    shift = sp.adjoint(sp.inverse(sp.pose(np.eye(3), np.asarray(centre, float))))
-    return shift.T @ out @ shift
+    return transformed(out, sp.pose(np.eye(3), np.asarray(centre, float)))
 
 
 @dataclass(frozen=True)
 class CoordinateSpring:
-    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − rest) + damping q̇``."""
+    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − neutral) + damping q̇``."""
 
     coordinate: str
     stiffness: float = 0.0
     damping: float = 0.0
-    rest: float = 0.0
+    neutral: float = 0.0
 
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring and damper between points of two bodies: tension ``stiffness (length − rest) + damping × its rate``."""
+    """A spring and damper between points of two bodies: tension ``stiffness (length − free_length) + damping × its rate``."""
 
     body_a: str
     body_b: str
@@ -70,7 +70,7 @@ class Spring:
     point_b: Array
     stiffness: float = 0.0
     damping: float = 0.0
-    rest: float = 0.0
+    free_length: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Beam:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """What a mechanism is made of; ``tree.compile_tree`` makes it ready to solve."""
+    """The parts of a mechanism; ``tree.compile_tree`` compiles it to arrays."""
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
@@ -127,7 +127,7 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
     for m in mechanism.motions:
         if m.law is None:
             continue
-        if not isinstance(m.law, Law):
+        if not isinstance(m.law, MotionLaw):
             raise MechanismError(
                 f"motion {m.coordinate!r}: its law {m.law!r} has no derivatives: give a numpy Polynomial, a Harmonic, or "
                 "an object with deriv()"
@@ -137,7 +137,7 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
     return replace(mechanism, motions=tuple(instant(m, time) for m in mechanism.motions))
 
 
-def turned_at(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
+def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
     """The mechanism with the motion of one coordinate, its rotor's, at another rate (rad/s or m/s).
 
     Raises:
@@ -151,10 +151,10 @@ def turned_at(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
 
 
 def check(m: Mechanism) -> None:
-    """Refuse what cannot be.
+    """Validate a mechanism.
 
     Raises:
-        MechanismError: names used twice or unknown, an inertia that is not one, a motion given twice.
+        MechanismError: names used twice or unknown, an impossible inertia, a motion given twice.
     """
     names = [b.name for b in m.bodies]
     for what, given in (("body", names), ("joint", [j.name for j in m.joints])):
@@ -171,9 +171,9 @@ def check(m: Mechanism) -> None:
     for what, name in used:
         if name not in known:
             raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
-    held = [x.coordinate for x in m.motions]
-    if len(set(held)) < len(held):
-        raise MechanismError(f"motion {max(held, key=held.count)!r}: given twice; one coordinate moves one way")
+    moving = [x.coordinate for x in m.motions]
+    if len(set(moving)) < len(moving):
+        raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; one coordinate moves one way")
     for x in m.motions:
         if x.law is not None:
             raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: take at_time(mechanism, time)")

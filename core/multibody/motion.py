@@ -10,7 +10,7 @@ from typing import Any, Protocol, runtime_checkable
 
 
 @runtime_checkable
-class Law(Protocol):
+class MotionLaw(Protocol):
     """A smooth function of time that knows its derivatives."""
 
     def __call__(self, time: Any, /) -> Any:
@@ -46,7 +46,7 @@ class Harmonic:
 class Sum:
     """Laws added up."""
 
-    laws: tuple[Law, ...]
+    laws: tuple[MotionLaw, ...]
 
     def __call__(self, time: float, /) -> float:
         """The value at a time, s."""
@@ -59,17 +59,17 @@ class Sum:
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of one coordinate: position, rate and acceleration at the instant looked at, or the law they follow.
+    """Motion of one coordinate: position, rate and acceleration at one instant, or a law of time.
 
-    A ``held`` coordinate is prescribed (Φᴹ): it takes no part in vibration. One that is not held has this rate in the
-    steady state but moves freely about it: a rotor whose speed nobody governs, a spinning top.
+    A ``prescribed`` coordinate (Φᴹ) takes no part in vibration. One that is not prescribed has this rate in the
+    steady state but moves freely about it: a rotor without speed control, a spinning top.
 
     Attributes:
         coordinate: its name, ``joint.rz``.
         position: m or rad; None leaves it to the guess, or 0.
         rate: m/s or rad/s.
         acceleration: m/s² or rad/s².
-        held: whether it is prescribed.
+        prescribed: whether it is prescribed.
         law: a function of time instead of the three numbers.
     """
 
@@ -77,8 +77,8 @@ class Motion:
     position: float | None = None
     rate: float = 0.0
     acceleration: float = 0.0
-    held: bool = True
-    law: Law | None = None
+    prescribed: bool = True
+    law: MotionLaw | None = None
 
 
 def instant(motion: Motion, time: float) -> Motion:

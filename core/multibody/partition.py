@@ -45,7 +45,7 @@ class Partition:
         independent: (i,) indices of q_I.
         dependent: indices of q_D.
         R, R1, R2: (f, i) and its first and second rates; rows as ``free``.
-        redundant: constraint equations that say nothing new, as ``joint: component``.
+        redundant: redundant constraint equations, as ``joint: component``.
     """
 
     free: Index
@@ -57,9 +57,16 @@ class Partition:
     redundant: tuple[str, ...]
 
 
-def held(tree: Tree) -> Index:
+def prescribed(tree: Tree) -> Index:
     """Coordinates whose motion is prescribed."""
-    return np.array(sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held), dtype=np.intp)
+    return np.array(
+        sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.prescribed), dtype=np.intp
+    )
+
+
+def free_coordinates(tree: Tree) -> Index:
+    """(f,) coordinates whose motion is not prescribed."""
+    return np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
 
 
 def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = None) -> Partition:
@@ -73,7 +80,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     Raises:
         MechanismError: names that cannot serve as independent coordinates.
     """
-    free = np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))
+    free = free_coordinates(tree)
     J = jacobian(tree, k.B)[:, free]
     dependent, chosen = pivots(J)
     rank = len(dependent)
@@ -83,8 +90,8 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
         if len(chosen) != len(free) - rank or ranked(J[:, dependent]).rank < rank:
             raise MechanismError(
-                f"independent: {', '.join(independent)} do not determine the rest: {len(free) - rank} are needed, free and not "
-                "tied to each other by a loop; or leave the choice to the solver"
+                f"independent: {', '.join(independent)} do not determine the others: {len(free) - rank} are needed, free and"
+                " not tied to each other by a loop; or leave the choice to the solver"
             )
     R = np.zeros((len(free), len(chosen)))
     R[chosen, np.arange(len(chosen))] = 1.0
@@ -101,7 +108,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
 
 def freedom(tree: Tree, B: Array) -> int:
     """How many ways the free coordinates can move at a configuration with velocity transformation B."""
-    J = jacobian(tree, B)[:, np.setdiff1d(np.arange(len(tree.coordinates)), held(tree))]
+    J = jacobian(tree, B)[:, free_coordinates(tree)]
     return J.shape[1] - ranked(J).rank
 
 

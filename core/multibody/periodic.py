@@ -1,4 +1,4 @@
-"""Whether the equations stay what they are as the motion goes on, or are periodic, so that no steady modes exist."""
+"""Check that M̂, Ĉ, K̂ stay constant along the motion; periodic equations have no steady modes."""
 
 from dataclasses import replace
 
@@ -6,24 +6,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import equilibrium
-from .linear import Linear, about
+from .linear import Linearization, about
 from .mechanism import MechanismError
 from .motion import Motion
 
 Array = NDArray[np.float64]
 
-TURNS = (0.7, 1.9, 3.3, 5.1)
-"""How far (rad or m) each moving coordinate goes; no two are related by the symmetry of a rotor."""
+ADVANCES = (0.7, 1.9, 3.3, 5.1)
+"""Distances (rad or m) that each moving coordinate advances; no two are related by the symmetry of a rotor."""
 
-CONSTANT = 1e-8
+MAX_CHANGE = 1e-8
 """Largest change, relative to each coordinate's own size, that counts as none."""
 
 
-def check(linear: Linear) -> None:
+def check(linear: Linearization) -> None:
     """Compare M̂, Ĉ, K̂ and the balance with those at later instants of the same motion.
 
-    All coordinates that the motions move go on together, for each of them to every one of ``TURNS``; the coordinates that are
-    free stay where they are, and dependent ones follow. The coordinate to blame is the one whose motion alone changes most.
+    All prescribed motions advance together, so that each in turn covers every distance in ``ADVANCES``; free coordinates stay
+    where they are and dependent ones follow. The message names the coordinate whose motion alone causes the largest change.
 
     Raises:
         MechanismError: if any of them changes.
@@ -31,9 +31,9 @@ def check(linear: Linear) -> None:
     moving = [m for m in linear.tree.mechanism.motions if m.rate or m.acceleration]
     if not len(linear.M) or not moving:
         return
-    times = [turn / (abs(m.rate) + np.sqrt(abs(m.acceleration))) for m in moving for turn in TURNS]
+    times = [turn / (abs(m.rate) + np.sqrt(abs(m.acceleration))) for m in moving for turn in ADVANCES]
     change, what = max((_change(linear, moving, t) for t in times), key=lambda found: found[0])
-    if change <= CONSTANT:
+    if change <= MAX_CHANGE:
         return
     alone = [max(_change(linear, [m], t)[0] for t in times) for m in moving]
     name = moving[int(np.argmax(alone))].coordinate
@@ -44,7 +44,7 @@ def check(linear: Linear) -> None:
     )
 
 
-def _change(linear: Linear, moving: list[Motion], time: float) -> tuple[float, str]:
+def _change(linear: Linearization, moving: list[Motion], time: float) -> tuple[float, str]:
     """The largest relative change when these motions alone have gone on for a time (s), and of what."""
     tree, here = linear.tree, linear.state
     later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}

@@ -1,7 +1,7 @@
 """The paper's reduction in its own order and symbols: from M Ẏ + Φ_Zᵀ λ = Q to M̂ v̇_I = Q̂ (Park et al. 2010, eq. 1–25).
 
-At any state, not only a steady one. ``equilibrium`` seeks the state where Q̂ vanishes, and ``linearize`` varies M̂ v̇_I = Q̂
-about it; here the terms can be looked at one by one, and the accelerations and reactions that they give.
+Valid at any state, not only a steady one. ``equilibrium`` finds the state where Q̂ vanishes, and ``linearize`` varies
+M̂ v̇_I = Q̂ about it; this module gives each term, the accelerations and the reactions.
 """
 
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ def reduced(tree: Tree, q: Array, v_I: Array, independent: tuple[str, ...] | Non
     n = len(q)
     still = np.zeros(n)
     at_rest = kinematics(tree, q, still, still)
-    given = {tree.coordinate(m.coordinate): m for m in tree.mechanism.motions if m.held}
+    given = {tree.coordinate(m.coordinate): m for m in tree.mechanism.motions if m.prescribed}
     prescribed = np.eye(n)[sorted(given)]  # Φᴹ_q = Φᴹ_Z B: a unit row for each prescribed coordinate (eq. 7)
     Phi_q = np.concatenate([pt.jacobian(tree, at_rest.B), prescribed])  # of Φ = [Φᶜ; Φᴹ] (eq. 9)
     I = pt.partition(tree, at_rest, independent).independent

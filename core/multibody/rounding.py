@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from .. import eigen
 from . import dynamics
 from .equilibrium import again
-from .linear import Linear, about
+from .linear import Linearization, about
 from .mechanism import MechanismError
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ _SAFETY = 3.0
 _TOGETHER = 1e-6  # relative distance of eigenvalues that rounding may mix
 
 
-def rounding(linear: Linear, found: eigen.Eigen | eigen.Damped) -> Array:
+def rounding(linear: Linearization, found: eigen.Eigen | eigen.Damped) -> Array:
     """(m,) relative error of the eigenvalues: of the frequencies, and as much, absolute, of the damping ratios.
 
     Infinite where nothing can be said; 0 for rigid modes, which are exact.
@@ -78,7 +78,7 @@ def _vectors(Q: Complex, count: int) -> tuple[Complex, Complex]:
     return vh[-count:].conj().T, u[:, -count:]
 
 
-def _sizes(linear: Linear) -> tuple[Array, Array, Array]:
+def _sizes(linear: Linearization) -> tuple[Array, Array, Array]:
     """|M̂|, |Ĉ|, |K̂| (i, i) with the terms that they are sums of added up by size."""
     p = linear.partition
     M, C, K = (

@@ -11,7 +11,7 @@ from ..blade import uniform_blade
 from ..eigen import Damped
 from ..element.beams import Beams
 from ..element.discretize import discretize
-from .linearize import Linear, linearize, modes
+from .linearize import Linearization, linearize, modes
 from .mechanism import Mechanism
 from .rounding import rounding
 
@@ -30,7 +30,7 @@ class Solution:
         coordinates: names of the n coordinates.
         steady: their values in the steady state, m or rad, by name.
         independent: the coordinates chosen to vibrate about it; the others follow.
-        redundant: constraint equations that say nothing new, as ``joint: component``.
+        redundant: redundant constraint equations, as ``joint: component``.
         linear: M̂, Ĉ, K̂ over the independent coordinates, and all that led to them.
     """
 
@@ -41,11 +41,11 @@ class Solution:
     steady: dict[str, float]
     independent: tuple[str, ...]
     redundant: tuple[str, ...]
-    linear: Linear
+    linear: Linearization
 
     @property
     def frequencies(self) -> Array:
-        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its size."""
+        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its modulus."""
         return np.abs(self.values)
 
     @property
@@ -76,11 +76,11 @@ def solve(
         mechanism: the mechanism.
         guess: coordinates to start from, by name; others start at 0.
         count: how many modes, from the lowest; all by default.
-        independent: coordinates to vibrate; chosen numerically if not given.
+        independent: independent coordinates; chosen numerically if not given.
         time: s, where motions follow laws of time: the instant frozen (see ``linearize``).
 
     Raises:
-        MechanismError: for whatever cannot be assembled, balanced or partitioned, or is periodic; the message says what.
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is periodic; the message gives the cause.
         EigenError: if the eigenvalue solver fails.
     """
     linear = linearize(mechanism, guess, independent, time)
@@ -106,7 +106,7 @@ def solve(
 def straight_beam(length: float, **section: Any) -> Beams:
     """One uniform beam element along x, for a ``Beam``; ``section`` as for ``blade.uniform_blade``: EA, GJ, EI_y, EI_z, mass …
 
-    Its mass is inside it, consistent: its ends must then turn together in the steady state. Without ``mass`` it has none.
+    Its mass is inside it, consistent: its ends must then rotate together in the steady state. Without ``mass`` it is massless.
     """
     massless = not section.get("mass")
     section["mass"] = section.get("mass") or 1.0

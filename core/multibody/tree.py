@@ -96,10 +96,10 @@ class Tree:
 
 
 def compile_tree(mechanism: Mechanism) -> Tree:
-    """Choose a spanning tree from the ground outwards, in the order the joints are given; the rest become cut joints.
+    """Choose a spanning tree from the ground outwards, in the order the joints are given; the others become cut joints.
 
     Raises:
-        MechanismError: names used twice or unknown, a body no joint reaches, an inertia that is not one.
+        MechanismError: names used twice or unknown, a body that no joint reaches, an impossible inertia.
     """
     check(mechanism)
     names = [b.name for b in mechanism.bodies]
@@ -195,7 +195,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
 
 def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
     """Loads turn with axes whose motion is given: those of a body that vibrates would make the load a follower force."""
-    given = {m.coordinate for m in mechanism.motions if m.held}
+    given = {m.coordinate for m in mechanism.motions if m.prescribed}
     axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
     for name in sorted(axes):
         free = [c for c in moved_by.get(name, []) if c not in given]
@@ -241,7 +241,7 @@ def _together(some: list[Beams]) -> Beams:
     parts = [b.points for b in some]
     points = Points(
         element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
-        rest=np.concatenate([p.rest for p in parts]),
+        zeta0=np.concatenate([p.zeta0 for p in parts]),
         shape=np.concatenate([p.shape for p in parts]),
         bubble=np.concatenate([p.bubble for p in parts]),
         mass=np.concatenate([p.mass for p in parts]),

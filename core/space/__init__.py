@@ -1,5 +1,24 @@
-"""Rigid-body motions: poses (SE(3)), twists and wrenches.
+"""Rigid-body motions: poses (SE(3)), twists, wrenches and inertias.
 
-``rigid`` holds the compiled loops for one motion at a time, ``spatial`` applies them to batches of arrays. Everything above
-takes poses (4, 4) and twists (6,) from here; nothing here knows of bodies or beams.
+Poses (..., 4, 4), twists and wrenches (..., 6) and inertias (..., 6, 6) come in and go out, in batches. ``rigid`` has the same
+formulae for one motion at a time, for compiled loops. Nothing here knows of bodies or beams.
 """
+
+from .inertia import about_centre, transformed
+from .spatial import ad, adjoint, cross, exp, inverse, log, pose, rotation, skew, tangent, tangent_inverse
+
+__all__ = [
+    "about_centre",
+    "ad",
+    "adjoint",
+    "cross",
+    "exp",
+    "inverse",
+    "log",
+    "pose",
+    "rotation",
+    "skew",
+    "tangent",
+    "tangent_inverse",
+    "transformed",
+]

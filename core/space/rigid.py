@@ -172,8 +172,8 @@ def log(pose: Array, out: Array) -> None:
     beta, _, _ = _sums(_INVERSE[1], z)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        turned = w[j] * pose[k, 3] - w[k] * pose[j, 3]
-        v[i] = pose[i, 3] + alpha * turned + beta * (s * w[i] - z * pose[i, 3])
+        w_cross_p = w[j] * pose[k, 3] - w[k] * pose[j, 3]
+        v[i] = pose[i, 3] + alpha * w_cross_p + beta * (s * w[i] - z * pose[i, 3])
 
 
 @compiled
@@ -210,13 +210,13 @@ def _function(table: Array, twist: Array, out: Array) -> None:
 
 @compiled
 def tangent_transpose_derivative(twist: Array, wrench: Array, out: Array) -> None:
-    """(6, 6) derivative of ``tangent(ζ)ᵀ f`` with respect to ζ, f held."""
+    """(6, 6) derivative of ``tangent(ζ)ᵀ f`` with respect to ζ at constant f."""
     _transpose_derivative(_TANGENT, twist, wrench, out)
 
 
 @compiled
 def tangent_inverse_transpose_derivative(twist: Array, wrench: Array, out: Array) -> None:
-    """(6, 6) derivative of ``tangent_inverse(ζ)ᵀ f`` with respect to ζ, f held."""
+    """(6, 6) derivative of ``tangent_inverse(ζ)ᵀ f`` with respect to ζ at constant f."""
     _transpose_derivative(_INVERSE, twist, wrench, out)
 
 

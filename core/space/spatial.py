@@ -1,10 +1,8 @@
-"""Rigid motions in space: poses (SE(3)), twists and wrenches, always in batches.
+"""Rigid-body motions in batches: poses (SE(3)), twists and wrenches; ``rigid`` has the compiled formulae.
 
-A pose is a (..., 4, 4) homogeneous matrix; a twist is (..., 6), linear part first: the velocity of the body's point at the
-frame's origin, then the angular velocity; a wrench is (..., 6), force first, then moment about the frame's origin.
-The exponential's tangent and its inverse are functions of ``ad``, whose minimal polynomial is
-``ad (ad² + φ²)² = 0`` (φ: angle of rotation), so each is a quartic in ``ad`` with coefficients that are power series
-in φ² (Selig, *Geometric Fundamentals of Robotics*, 2005, ch. 7; Sonneville, Cardona, Brüls 2014, app. A).
+A pose is a (..., 4, 4) homogeneous matrix. A twist is (..., 6), linear part first: the velocity (m/s) of the body's point at
+the frame's origin, then the angular velocity (rad/s). A wrench is (..., 6): the force (N), then the moment (N m) about the
+frame's origin. (J. M. Selig, *Geometric Fundamentals of Robotics*, 2005, ch. 4 and 7.)
 """
 
 from collections.abc import Callable
@@ -20,14 +18,7 @@ Array = NDArray[np.float64]
 
 def skew(a: Array) -> Array:
     """Cross-product matrices (..., 3, 3) of vectors (..., 3)."""
-    out = np.zeros((*a.shape, 3))
-    out[..., 2, 1] = a[..., 0]
-    out[..., 1, 2] = -a[..., 0]
-    out[..., 0, 2] = a[..., 1]
-    out[..., 2, 0] = -a[..., 1]
-    out[..., 1, 0] = a[..., 2]
-    out[..., 0, 1] = -a[..., 2]
-    return out
+    return _each(_skew, (3, 3), a, (3,))
 
 
 def pose(rotation: Array, position: Array) -> Array:
@@ -41,39 +32,23 @@ def pose(rotation: Array, position: Array) -> Array:
 
 
 def inverse(x: Array) -> Array:
-    """Inverse poses."""
-    rt = np.swapaxes(x[..., :3, :3], -1, -2)
-    return pose(rt, -(rt @ x[..., :3, 3:])[..., 0])
+    """Inverse poses (..., 4, 4)."""
+    return _each(_inverse, (4, 4), x, (4, 4))
 
 
 def adjoint(x: Array) -> Array:
     """(..., 6, 6): a twist in the pose's own frame to the frame it is given in; its transpose brings wrenches back."""
-    r = x[..., :3, :3]
-    out = np.zeros((*x.shape[:-2], 6, 6))
-    out[..., :3, :3] = r
-    out[..., 3:, 3:] = r
-    out[..., :3, 3:] = skew(x[..., :3, 3]) @ r
-    return out
+    return _each(_adjoint, (6, 6), x, (4, 4))
 
 
 def ad(twist: Array) -> Array:
     """(..., 6, 6) with ``ad(a) b = a × b`` for twists; ``a ×* f = −ad(a)ᵀ f`` for wrenches."""
-    out = np.zeros((*twist.shape, 6))
-    w = skew(twist[..., 3:])
-    out[..., :3, :3] = w
-    out[..., 3:, 3:] = w
-    out[..., :3, 3:] = skew(twist[..., :3])
-    return out
+    return _each(_ad, (6, 6), twist)
 
 
 def cross(wrench: Array) -> Array:
-    """(..., 6, 6) symmetric-in-role partner of ``ad``: ``ad(a)ᵀ f = cross(f) a``."""
-    out = np.zeros((*wrench.shape, 6))
-    f = skew(wrench[..., :3])
-    out[..., :3, 3:] = f
-    out[..., 3:, :3] = f
-    out[..., 3:, 3:] = skew(wrench[..., 3:])
-    return out
+    """(..., 6, 6) with ``ad(a)ᵀ f = cross(f) a``."""
+    return _each(_cross, (6, 6), wrench)
 
 
 def rotation(axis: int, angle: Array) -> Array:
@@ -88,13 +63,13 @@ def rotation(axis: int, angle: Array) -> Array:
 
 
 def exp(twist: Array) -> Array:
-    """Poses reached by moving along constant twists for unit time."""
+    """Poses (..., 4, 4) reached by moving along constant twists (..., 6) for unit time."""
     return _each(_exp, (4, 4), twist)
 
 
 def log(x: Array) -> Array:
-    """Twists (..., 6) whose exponential is the pose; rotations of at most half a turn."""
-    return _each(_log, (6,), x)
+    """Twists (..., 6) whose exponentials are the poses (..., 4, 4); rotations of at most half a turn."""
+    return _each(_log, (6,), x, (4, 4))
 
 
 def tangent(twist: Array) -> Array:
@@ -103,16 +78,47 @@ def tangent(twist: Array) -> Array:
 
 
 def tangent_inverse(twist: Array) -> Array:
-    """Inverse of the left tangent."""
+    """Inverse of the left tangent (..., 6, 6)."""
     return _each(_tangent_inverse, (6, 6), twist)
 
 
-def _each(loop: Callable[[Array, Array], None], shape: tuple[int, ...], given: Array) -> Array:
-    """What ``loop`` puts into (k, *shape) from the k items of ``given``, as many leading axes as they have."""
-    item = (4, 4) if given.shape[-1] == 4 else (6,)
+def _each(
+    loop: Callable[[Array, Array], None], shape: tuple[int, ...], given: Array, item: tuple[int, ...] = (6,)
+) -> Array:
+    """(..., *shape) from ``given`` (..., *item), by a compiled loop over one leading axis."""
     out = np.empty((*given.shape[: given.ndim - len(item)], *shape))
     loop(np.ascontiguousarray(given, dtype=float).reshape(-1, *item), out.reshape(-1, *shape))
     return out
+
+
+@compiled
+def _skew(vectors: Array, out: Array) -> None:
+    for k in range(len(vectors)):
+        rigid.put_skew(vectors[k, 0], vectors[k, 1], vectors[k, 2], 0, 0, out[k])
+
+
+@compiled
+def _inverse(poses: Array, out: Array) -> None:
+    for k in range(len(poses)):
+        rigid.inverse(poses[k], out[k])
+
+
+@compiled
+def _adjoint(poses: Array, out: Array) -> None:
+    for k in range(len(poses)):
+        rigid.adjoint(poses[k], out[k])
+
+
+@compiled
+def _ad(twists: Array, out: Array) -> None:
+    for k in range(len(twists)):
+        rigid.ad(twists[k], out[k])
+
+
+@compiled
+def _cross(wrenches: Array, out: Array) -> None:
+    for k in range(len(wrenches)):
+        rigid.cross(wrenches[k], out[k])
 
 
 @compiled

@@ -19,7 +19,7 @@ from scipy import sparse
 from scipy.interpolate import CubicHermiteSpline
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..protocol.quadratic import gyroscopic_modes
@@ -42,7 +42,7 @@ class ExudynAncf:
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "ANCF cable", "references.exudyn_ancf")
     motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
-    model = Model(rotary_inertia=False)
+    effects = Effects(rotary_inertia=False)
     levels = (10, 20, 40)
     order = 4
     hint = ex.HINT

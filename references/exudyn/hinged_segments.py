@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from ...core import gauss
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped, mass_at, stiffness_at
 from ...core.space.spatial import skew
 from ..theories.reference_line import line, root_axes
@@ -29,7 +30,7 @@ SLIDE, TURN = (AXIAL, SHEAR_Y, SHEAR_Z), (TORSION, BEND_Z, BEND_Y)
 
 
 @dataclass(frozen=True)
-class Tree:
+class HingedSegments:
     """The links after the hub, a joint each, in order; the frames of a joint at rest differ by an offset, then a turn.
 
     Attributes:
@@ -54,7 +55,7 @@ class Tree:
     reach: Array
 
 
-def plant(blade: Blade, elements: int) -> Tree:
+def plant(blade: Blade, elements: int) -> HingedSegments:
     """A blade as a tree of ``elements`` equal elements, behind the joint at its root if that is not clamped."""
     ends = np.linspace(0.0, blade.length, elements + 1)
     hinges = _hinges(blade, ends)
@@ -81,7 +82,7 @@ def plant(blade: Blade, elements: int) -> Tree:
     mass, centre, inertia = _segments(blade, hinges, place, axes)
     full: Array = np.asarray(block_diag(*stiffness), float)
     own = np.diagonal(full)
-    return Tree(
+    return HingedSegments(
         strain=np.concatenate(joints),
         stiffness=own,
         coupling=full - np.diag(own),
@@ -103,7 +104,7 @@ def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
 
 def _hinges(blade: Blade, ends: Array) -> Array:
     """(e,) where each element's bending compliance has its centroid."""
-    s, weight = _gauss(np.union1d(ends, blade.stations))
+    s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
     bend = weight * (1.0 / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]]).sum(1)
     element, total = np.searchsorted(ends, s) - 1, np.zeros((2, len(ends) - 1))
     np.add.at(total[0], element, bend)
@@ -116,7 +117,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 
     A strain's two joints add up to it, and by what they differ they bear its own stiffness.
     """
-    s, weight = _gauss(np.union1d(ends, blade.stations))
+    s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
     element = np.searchsorted(ends, s) - 1
     strains = np.unique(hinge)
     section = np.linalg.inv(stiffness_at(blade, s)[:, strains[:, None], strains])
@@ -138,7 +139,8 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 
 def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[Array, Array, Array]:
     """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of what each hinge carries up to the next, or the tip."""
-    s, weight = _gauss(np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]]))
+    ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
+    s, weight = (part.ravel() for part in gauss.between(ends, 3))
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1
@@ -154,10 +156,3 @@ def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[A
     mass, first, second = sums
     centre = first / mass[:, None, None]
     return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
-
-
-def _gauss(ends: Array) -> tuple[Array, Array]:
-    """Points and weights of three-point Gauss quadrature on each interval between ``ends``."""
-    x, w = np.polynomial.legendre.leggauss(3)
-    half = 0.5 * np.diff(ends)[:, None]
-    return (ends[:-1, None] + half * (x + 1.0)).ravel(), (half * w).ravel()

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ...core.multibody.joints import SCREWS
 from ...core.multibody.tree import Tree
 from ...core.space import spatial as sp
+from ...core.space.inertia import about_centre
 from . import system as ex
 
 Array = NDArray[np.float64]
@@ -125,17 +126,13 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
         if 0 <= link < n:
             a = sp.adjoint(sp.inverse(sp.inverse(turned[link]) @ pose))
             inertia[link] += a.T @ mass @ a
-    mass = inertia[:, 0, 0]
-    first = inertia[:, 3:, :3]  # m c ×
-    weight = np.where(mass > 0, mass, 1.0)[:, None]
-    centre = np.stack([first[:, 2, 1], first[:, 0, 2], first[:, 1, 0]], axis=-1) / weight
-    arm = sp.skew(centre)
-    spring, damper, rest = np.zeros(n), np.zeros(n), np.zeros(n)
+    mass, centre, moments = about_centre(inertia)
+    spring, damper, neutral = np.zeros(n), np.zeros(n), np.zeros(n)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
-        load = spring[j] * rest[j] + s.stiffness * s.rest
+        load = spring[j] * neutral[j] + s.stiffness * s.neutral
         spring[j], damper[j] = spring[j] + s.stiffness, damper[j] + s.damping
-        rest[j] = load / spring[j] if spring[j] else 0.0
+        neutral[j] = load / spring[j] if spring[j] else 0.0
     node = mbs.AddNode(
         items.NodeGenericODE2(
             numberOfODE2Coordinates=n,
@@ -154,10 +151,10 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
             jointOffsets=exu.Vector3DList([x[:3, 3] for x in steps]),
             linkMasses=mass,
             linkCOMs=exu.Vector3DList(list(centre)),
-            linkInertiasCOM=exu.Matrix3DList(list(inertia[:, 3:, 3:] + mass[:, None, None] * arm @ arm)),
+            linkInertiasCOM=exu.Matrix3DList(list(moments)),
             jointPControlVector=spring,
             jointDControlVector=damper,
-            jointPositionOffsetVector=rest,
+            jointPositionOffsetVector=neutral,
             jointVelocityOffsetVector=np.zeros(n),
         )
     )
@@ -187,5 +184,7 @@ def _close(exu: Any, mbs: Any, tree: Tree, item: Any, turned: list[Array]) -> No
     for s in mechanism.springs:
         ends = [marker(b, sp.pose(np.eye(3), p)) for b, p in ((s.body_a, s.point_a), (s.body_b, s.point_b))]
         mbs.AddObject(
-            items.SpringDamper(markerNumbers=ends, referenceLength=s.rest, stiffness=s.stiffness, damping=s.damping)
+            items.SpringDamper(
+                markerNumbers=ends, referenceLength=s.free_length, stiffness=s.stiffness, damping=s.damping
+            )
         )

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.multibody.mechanism import Mechanism
 from ...core.multibody.tree import Tree, compile_tree
 from ...core.rank import ranked
@@ -72,7 +72,7 @@ class ExudynMechanism:
     name = "exudyn-loops"
     title = "Exudyn, kinematic tree with loop joints"
     shares: Shares = "mechanical model"
-    model = FULL
+    effects = ALL_EFFECTS
     hint = ex.HINT
 
     def version(self) -> str | None:
@@ -152,8 +152,8 @@ def stages(tree: Tree, made: System, q: Array) -> Stages:
         CodeError: loops that move in the steady state.
     """
     v = velocity(tree)
-    held = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.held]
-    free = np.setdiff1d(np.arange(len(q)), held)
+    prescribed = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.prescribed]
+    free = np.setdiff1d(np.arange(len(q)), prescribed)
     force, _, J = made.balance(q)
     if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
         raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")

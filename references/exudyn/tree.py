@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
-from .hinged_segments import SLIDE, TURN, Tree, plant
+from .hinged_segments import SLIDE, TURN, HingedSegments, plant
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class ExudynTree:
     title = "Exudyn, kinematic tree"
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (24, 48, 96)
     order = 2
     hint = ex.HINT
@@ -73,7 +73,7 @@ class ExudynTree:
         return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
 
 
-def linearize(tree: Tree, omega: float) -> tuple[Array, Array, Array, Array]:
+def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
     """M, C, K (n, n) about the steady state at ``omega``, and the joints' coordinates (n,) there.
 
     The hub is a turning link whose angle is held and whose rate is given; being prescribed, it has no row.
@@ -142,7 +142,7 @@ def _settle(exu: Any, mbs: Any, omega: float, n: int) -> None:
                 raise
 
 
-def jacobian(tree: Tree, q: Array, point: Array) -> Array:
+def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
     """(e, 6, n): velocity of each segment's ``point`` (e, 3), m in its axes, and its angular velocity, per joint rate.
 
     In the axes of the first link's parent, with the joints at ``q`` (n,).
@@ -169,7 +169,7 @@ def jacobian(tree: Tree, q: Array, point: Array) -> Array:
     return out
 
 
-def _shapes(blade: Blade, tree: Tree, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _shapes(blade: Blade, tree: HingedSegments, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) at the common stations: a spline through the elements' ends, level at a clamped root across the blade."""
     moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
     cone = rotation(1, np.array(-blade.precone))

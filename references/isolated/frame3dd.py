@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
@@ -36,7 +36,7 @@ STIFF = 1e4
 POINTS = 4
 """Of Gauss in an element."""
 
-MOST = 120
+MAX_ELEMENTS = 120
 """Elements: the time grows as their cube, and is a quarter of a minute at this many."""
 
 TIMEOUT = 300.0
@@ -52,7 +52,7 @@ class Frame3DD:
     shares: Shares = "nothing"
     independence = Independence("Frame3DD", "frame elements", "references.frame3dd_frame", eigensolver="Frame3DD")
     motions: tuple[Motion, ...] = ("chordwise", "flapwise")
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
     digits = 8  # it iterates, on equations that ``STIFF`` makes ill-conditioned
@@ -73,7 +73,7 @@ class Frame3DD:
         if np.diagonal(blade.tip_mass)[3:].any() or (blade.tip_mass - np.diag(np.diagonal(blade.tip_mass))).any():
             return "tip_mass: a body with inertia or offset; nodes here have mass alone"
         if (parts := len(intervals(blade)) - 1) > SECTIONS:
-            return f"{parts} intervals between stations: uniform elements converge on more than {MOST}, where the time ends"
+            return f"{parts} intervals between stations: uniform elements need more than the {MAX_ELEMENTS} allowed"
         if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
             return "mass differs with direction: a node has one"
         at = sample(blade, blade.stations)
@@ -95,8 +95,8 @@ class Frame3DD:
         begun = time.perf_counter()
         ends = element_ends(blade, elements, elements)
         n = len(ends) - 1
-        if n > MOST:
-            raise CodeError(f"elements: {n}: the time grows as their cube; at most {MOST}")
+        if n > MAX_ELEMENTS:
+            raise CodeError(f"elements: {n}: the time grows as their cube; at most {MAX_ELEMENTS}")
         answer = ask(FRAME3DD, request(blade, omega, ends, count), TIMEOUT)
         squares, shapes = np.array(answer["frequencies"]) ** 2 - omega**2, np.array(answer["shapes"])
         if not (np.isfinite(squares).all() and (squares > 0).all()):

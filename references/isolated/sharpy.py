@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, mass_at, stiffness_at
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
@@ -42,7 +42,7 @@ INTERVALS = 12
 JUMP = 1e-4
 """Of the length: stations closer than this are the two sides of a jump, and no element lies between."""
 
-MOST = 200
+MAX_ELEMENTS = 200
 """Elements: dense matrices of 12 rows each."""
 
 TIMEOUT = 120.0
@@ -55,7 +55,7 @@ class Sharpy:
     title = "SHARPy, geometrically exact beam"
     shares: Shares = "nothing"
     independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=CORE)
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
     digits = 8  # its steady state is iterated to a tolerance
@@ -87,8 +87,8 @@ class Sharpy:
         begun = time.perf_counter()
         spans = _spans(blade, elements)
         n = len(spans)
-        if n > MOST:
-            raise CodeError(f"elements: {n}: dense matrices; at most {MOST}")
+        if n > MAX_ELEMENTS:
+            raise CodeError(f"elements: {n}: dense matrices; at most {MAX_ELEMENTS}")
         s = nodes(spans)
         answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
         q = _unpacked(answer["q"])

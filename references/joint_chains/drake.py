@@ -7,59 +7,22 @@ take its place, on links without mass.
 """
 
 from dataclasses import dataclass
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade
-from ...core.effects import FULL
 from ...core.element.discretize import Chain
-from ...core.modes import Modes
-from ..protocol import install
-from ..protocol.interface import CORE, Independence, Shares
-from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
+from .joint_chain import JointChain, bodies, check, places, rigid
 
 Array = NDArray[np.float64]
 
-MOST = 80
+MAX_ELEMENTS = 80
 """Elements: every number in the recursion over 6·elements joints carries 12·elements derivatives."""
 
-SYMMETRIC = 1e-9
+SYMMETRY_TOLERANCE = 1e-9
 """Relative departure from symmetry of Drake's derivatives that counts as rounding."""
-
-
-class DrakeChain:
-    """See the module; every blade that core can discretise, coupled and curved ones too."""
-
-    name = "drake"
-    title = "Drake, chain of joints"
-    shares: Shares = "discretisation"
-    independence = Independence("Drake", CORE, "Drake", sections=CORE)
-    model = FULL
-    levels = (10, 20, 40)
-    order = 2
-    hint = install.extra("more-codes")
-
-    def version(self) -> str | None:
-        """Version of Drake, without importing it."""
-        try:
-            return metadata.version("drake")
-        except metadata.PackageNotFoundError:
-            return None
-
-    def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
-        return refusal(blade)
-
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
-
-        Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
-        """
-        return chain_modes(blade, omega, elements, count, MOST, plant)
 
 
 @dataclass(frozen=True)
@@ -94,7 +57,7 @@ class Bodies:
         none = _drake("multibody.tree").MultibodyForces_[ad.AutoDiffXd](self.auto)
         force = self.auto.CalcInverseDynamics(self.auto_context, still, none)[self.velocity].reshape(-1, 1)
         stiffness, gyroscopic = np.split(ad.ExtractGradient(force), 2, axis=1)
-        check(stiffness, gyroscopic, SYMMETRIC, "Drake")
+        check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Drake")
         return ad.ExtractValue(force).ravel(), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
@@ -163,4 +126,12 @@ def _inertia(lump: Array) -> Any:
     return tree.SpatialInertia(mass, centre, tree.UnitInertia(xx, yy, zz, xy, xz, yz), skip_validity_check=True)
 
 
-CODE = DrakeChain()
+CODE = JointChain(
+    name="drake",
+    title="Drake, chain of joints",
+    hint="pip install 'southwell[more-codes]'",
+    engine="Drake",
+    distribution="drake",
+    max_elements=MAX_ELEMENTS,
+    plant=plant,
+)

@@ -9,6 +9,8 @@ the model is right.
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import metadata
 from typing import Protocol, cast
 
 import numpy as np
@@ -17,11 +19,12 @@ from scipy.linalg import block_diag
 
 from ...core import curve
 from ...core.blade import Blade, clamped
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Chain, discretize, divide
-from ...core.element.inertia import moved
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
-from ..protocol.interface import CodeError
+from ...core.space.inertia import about_centre, transformed
+from ..protocol.interface import CORE, CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 
 Array = NDArray[np.float64]
@@ -31,10 +34,10 @@ STEPS, SMALLEST_RAMP = 40, 2.0**-8
 
 EPS = float(np.finfo(float).eps)
 
-STALLED, NOTHING = 10.0, 1e-4
+STALL_FACTOR, CONVERGED_FACTOR = 10.0, 1e-4
 """Times a bound of rounding's energy: Newton's steps may stop shrinking at the first, and go on to the second at most."""
 
-SHRINKING = 1e-2
+MIN_REDUCTION = 1e-2
 """Least factor between the energies of steps that converge."""
 
 RIGID = 1e-9
@@ -74,31 +77,74 @@ def refusal(blade: Blade) -> str | None:
     return None
 
 
-def chain_modes(
-    blade: Blade, omega: float, elements: int, count: int, most: int, plant: Callable[[Chain], Plant]
-) -> Modes:
-    """The lowest modes; see ``interface.Code``.
+@dataclass(frozen=True)
+class JointChain:
+    """A code that solves core's lumped discretisation as a chain of joints; see ``interface.Code``.
 
-    Raises:
-        CodeError: an unsupported blade, more than ``most`` elements, or no stable steady state at this speed.
+
+    It takes every blade that core can discretise, coupled and curved ones too, if the root is clamped.
+
+    Attributes:
+        name, title, hint: see ``interface.Code``.
+        engine: the code's name in its declaration of independence.
+        distribution: the installed package whose version counts.
+        max_elements: more take too much of the code's time or memory.
+        plant: makes the chain in the code.
     """
-    if reason := refusal(blade):
-        raise CodeError(f"{blade.name}: {reason}")
-    if elements > most:
-        raise CodeError(f"elements: {elements}: the code's time or memory grows as their cube; at most {most}")
-    begun = time.perf_counter()
-    chain = discretize(blade, elements, "half_end", "parent")
-    body = plant(chain)
-    elastic = cast(Array, block_diag(*chain.beams.stiffness))
-    q, before = steady(body, elastic, omega, chain)
-    _, stiffness, gyroscopic = body.inertial(q, omega)
-    mass = body.mass(q)
-    frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
-    noise = rounding(mass, elastic, stiffness, before, frequencies, vectors)
-    at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
-    shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
-    seconds = time.perf_counter() - begun
-    return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=noise, seconds=seconds)
+
+    name: str
+    title: str
+    hint: str
+    engine: str
+    distribution: str
+    max_elements: int
+    plant: Callable[[Chain], Plant]
+    shares: Shares = "discretisation"
+    effects: Effects = ALL_EFFECTS
+    levels: tuple[int, ...] = (10, 20, 40)
+    order: int = 2
+
+    @property
+    def independence(self) -> Independence:
+        """Equations of motion by the code, everything else by core."""
+        return Independence(self.engine, CORE, self.engine, sections=CORE)
+
+    def version(self) -> str | None:
+        """Version of the code, without importing it."""
+        try:
+            return metadata.version(self.distribution)
+        except metadata.PackageNotFoundError:
+            return None
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
+        return refusal(blade)
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``.
+
+        Raises:
+            CodeError: an unsupported blade, more than ``max_elements`` elements, or no stable steady state at this speed.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        if elements > self.max_elements:
+            raise CodeError(
+                f"elements: {elements}: the code's time or memory grows as their cube; at most {self.max_elements}"
+            )
+        begun = time.perf_counter()
+        chain = discretize(blade, elements, "half_end", "body_fixed")
+        body = self.plant(chain)
+        elastic = cast(Array, block_diag(*chain.beams.stiffness))
+        q, before = steady(body, elastic, omega, chain)
+        _, stiffness, gyroscopic = body.inertial(q, omega)
+        mass = body.mass(q)
+        frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
+        error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
+        at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
+        shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
+        seconds = time.perf_counter() - begun
+        return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error, seconds=seconds)
 
 
 def rounding(
@@ -117,18 +163,18 @@ def rounding(
 
 
 def places(chain: Chain) -> Array:
-    """(e, 4, 4) rest pose of each body in the frame of the one before, the first's in the hub's.
+    """(e, 4, 4) undeformed pose of each body in the frame of the one before, the first's in the hub's.
 
     A body's frame is that of the end of the element before it, along which its joints lie; at a kink the next element
     begins turned from it.
     """
     before = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
-    return before @ chain.beams.rest
+    return before @ chain.beams.undeformed
 
 
 def bodies(chain: Chain) -> Array:
     """(e, 6, 6) inertia of each body, in the frame that ``places`` gives it."""
-    return moved(chain.lumps[1:], sp.inverse(chain.corner))
+    return transformed(chain.lumps[1:], sp.inverse(chain.corner))
 
 
 def _from_rigid(inertia: Array) -> float:
@@ -144,7 +190,8 @@ def _from_rigid(inertia: Array) -> float:
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:
     """Mass, centre (3,) and moments of inertia about the node (3, 3) of a rigid body's inertia (6, 6)."""
-    return float(lump[0, 0]), lump[[1, 2, 0], [5, 3, 4]] / lump[0, 0], lump[3:, 3:]
+    mass, centre, _ = about_centre(lump)
+    return float(mass), centre, lump[3:, 3:]
 
 
 def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:
@@ -207,9 +254,9 @@ def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) 
             return None
         q = q + step
         unsure = EPS * (np.abs(force / lever).max() * lever + np.abs(elastic) @ np.abs(q))
-        energy, noise = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
-        stalled = energy > SHRINKING * before  # else the bound is not reached yet: rounding may be much less
-        if energy <= NOTHING * noise or (stalled and energy <= STALLED * noise):
+        energy, rounding = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
+        stalled = energy > MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        if energy <= CONVERGED_FACTOR * rounding or (stalled and energy <= STALL_FACTOR * rounding):
             return q, stiffness
         before = energy
     return None

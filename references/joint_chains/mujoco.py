@@ -6,63 +6,26 @@ these has no error; by coordinates it is extrapolated (Richardson), with steps s
 """
 
 from dataclasses import dataclass
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade
-from ...core.effects import FULL
 from ...core.element.discretize import Chain
-from ...core.modes import Modes
-from ..protocol import install
-from ..protocol.interface import CORE, Independence, Shares
-from .joint_chain import bodies, chain_modes, check, places, refusal, rigid
+from .joint_chain import JointChain, bodies, check, places, rigid
 
 Array = NDArray[np.float64]
 
-MOST = 80
+MAX_ELEMENTS = 80
 """Elements: differences take time that grows as their square, the eigenproblem as their cube."""
 
 STEP = 2e-3
 """Of a coordinate, rad or elements' lengths, in a central difference; the truncation left is of fourth order in it."""
 
 
-SYMMETRIC = 1e-8
+SYMMETRY_TOLERANCE = 1e-8
 """Relative departure from symmetry of the differences that counts as rounding."""
-
-
-class MujocoChain:
-    """See the module; every blade that core can discretise, coupled and curved ones too."""
-
-    name = "mujoco"
-    title = "MuJoCo, chain of joints"
-    shares: Shares = "discretisation"
-    independence = Independence("MuJoCo", CORE, "MuJoCo", sections=CORE)
-    model = FULL
-    levels = (10, 20, 40)
-    order = 2
-    hint = install.extra("more-codes")
-
-    def version(self) -> str | None:
-        """Version of MuJoCo, without importing it."""
-        try:
-            return metadata.version("mujoco")
-        except metadata.PackageNotFoundError:
-            return None
-
-    def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
-        return refusal(blade)
-
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
-
-        Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
-        """
-        return chain_modes(blade, omega, elements, count, MOST, plant)
 
 
 @dataclass(frozen=True)
@@ -94,7 +57,7 @@ class Bodies:
         for k in range(n):
             change = np.append(0.0, rate * unit[k])
             gyroscopic[:, k] = (self._of_rates(turning + change) - self._of_rates(turning - change)) / (2 * rate)
-        check(stiffness, gyroscopic, SYMMETRIC, "MuJoCo")
+        check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "MuJoCo")
         return self._of_rates(turning), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
@@ -166,9 +129,17 @@ def plant(chain: Chain) -> Bodies:
     model.body_simple[:] = 0
     model.body_sameframe[:] = 0
     model.body_subtreemass[:] = np.append(model.body_mass[1:].sum(), np.cumsum(model.body_mass[:0:-1])[::-1])
-    lengths = np.linalg.norm(chain.beams.rest[:, :3, 3], axis=1)
+    lengths = np.linalg.norm(chain.beams.undeformed[:, :3, 3], axis=1)
     step = STEP * np.concatenate([np.repeat([length, 1.0], 3) for length in lengths])
     return Bodies(model, mujoco.MjData(model), step)
 
 
-CODE = MujocoChain()
+CODE = JointChain(
+    name="mujoco",
+    title="MuJoCo, chain of joints",
+    hint="pip install 'southwell[more-codes]'",
+    engine="MuJoCo",
+    distribution="mujoco",
+    max_elements=MAX_ELEMENTS,
+    plant=plant,
+)

@@ -6,63 +6,25 @@ translates and rotates; hence four joints a body, and the symmetries are checked
 """
 
 from dataclasses import dataclass
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade
-from ...core.effects import FULL
 from ...core.element.discretize import Chain
-from ...core.modes import Modes
-from ..protocol import install
-from ..protocol.interface import CORE, Independence, Shares
-from .joint_chain import bodies, chain_modes, check, places, refusal
+from .joint_chain import JointChain, bodies, check, places
 
 Array = NDArray[np.float64]
 
-MOST = 60
+MAX_ELEMENTS = 60
 """Elements: Pinocchio's workspace holds four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
 
-SYMMETRIC = 1e-9
+SYMMETRY_TOLERANCE = 1e-9
 """Relative departure from symmetry of Pinocchio's derivatives that counts as rounding."""
 
 
-class PinocchioChain:
-    """See the module; every blade that core can discretise, coupled and curved ones too."""
-
-    name = "pinocchio"
-    title = "Pinocchio, chain of joints"
-    shares: Shares = "discretisation"
-    independence = Independence("Pinocchio", CORE, "Pinocchio", sections=CORE)
-    model = FULL
-    levels = (10, 20, 40)
-    order = 2
-    hint = install.extra("codes")
-
-    def version(self) -> str | None:
-        """Version of Pinocchio, without importing it."""
-        try:
-            return metadata.version("pin")
-        except metadata.PackageNotFoundError:
-            return None
-
-    def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
-        return refusal(blade)
-
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
-
-        Raises:
-            CodeError: an unsupported blade, more than ``MOST`` elements, or no stable steady state at this speed.
-        """
-        return chain_modes(blade, omega, elements, count, MOST, tree)
-
-
 @dataclass(frozen=True)
-class Tree:
+class PinocchioTree:
     """Pinocchio's model and workspace; see ``joint_chain.Plant``."""
 
     model: Any
@@ -86,10 +48,10 @@ class Tree:
         return np.array([pin.getJointJacobian(self.model, self.data, k, axes)[:4, 1:] for k in last])
 
 
-def tree(chain: Chain) -> Tree:
+def tree(chain: Chain) -> PinocchioTree:
     """The chain in Pinocchio."""
     model = plant(chain)
-    return Tree(model, model.createData(), chain.elements)
+    return PinocchioTree(model, model.createData(), chain.elements)
 
 
 def _pinocchio() -> Any:
@@ -129,8 +91,16 @@ def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Arra
     q, v = np.append(0.0, q), np.append(omega, np.zeros_like(q))
     pin.computeRNEADerivatives(model, data, q, v, np.zeros_like(v))
     force, stiffness, gyroscopic = data.tau[1:].copy(), data.dtau_dq[1:, 1:].copy(), data.dtau_dv[1:, 1:].copy()
-    check(stiffness, gyroscopic, SYMMETRIC, "Pinocchio")
+    check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Pinocchio")
     return force, stiffness, gyroscopic
 
 
-CODE = PinocchioChain()
+CODE = JointChain(
+    name="pinocchio",
+    title="Pinocchio, chain of joints",
+    hint="pip install 'southwell[codes]'",
+    engine="Pinocchio",
+    distribution="pin",
+    max_elements=MAX_ELEMENTS,
+    plant=tree,
+)

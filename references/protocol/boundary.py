@@ -48,7 +48,7 @@ class Failed(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Effects(Struct, frozen=True, forbid_unknown_fields=True):
-    """As ``core.effects.Model``."""
+    """As ``core.effects.Effects``."""
 
     prestretch: bool
     coriolis: bool
@@ -72,7 +72,7 @@ class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     name: Name
     title: Line
     shares: Shares
-    model: Effects
+    effects: Effects
     hint: Line
     blades: bool
     mechanisms: bool

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
 from .child import Reply, blunder, failed, serve
@@ -39,7 +39,7 @@ class Description:
 
     Attributes:
         asked: the name or import path it was asked for, by which ``worker.answers`` finds it.
-        name, title, shares, model, hint, levels, order, motions, digits, bracket, independence: as declared.
+        name, title, shares, effects, hint, levels, order, motions, digits, bracket, independence: as declared.
         blades, mechanisms: whether it solves them.
         version: None if it is not installed.
         refused: for each blade that was shown to it, why it does not take it; None if it does, or gave no reason that is one
@@ -53,7 +53,7 @@ class Description:
     name: str
     title: str = ""
     shares: Shares | str = ""
-    model: Model = FULL
+    effects: Effects = ALL_EFFECTS
     hint: str = ""
     levels: tuple[int, ...] = ()
     order: int = 0
@@ -135,13 +135,13 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
         if (said.independence)
         else None
     )
-    effects = Model(**{f: getattr(said.model, f) for f in said.model.__struct_fields__})
+    effects = Effects(**{f: getattr(said.effects, f) for f in said.effects.__struct_fields__})
     known = Description(
         asked,
         **{
             **facts,
             "independence": origin,
-            "model": effects,
+            "effects": effects,
             "refused": tuple(why and one_line(why) for why in refused),
         },
     )
@@ -155,9 +155,9 @@ def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
         "name": code.name,
         "title": getattr(code, "title", ""),
         "shares": getattr(code, "shares", "nothing"),
-        "model": {f: getattr(code.model, f) for f in Model.__dataclass_fields__}
-        if type(code.model) is Model
-        else code.model,
+        "effects": {f: getattr(code.effects, f) for f in Effects.__dataclass_fields__}
+        if type(code.effects) is Effects
+        else code.effects,
         "hint": getattr(code, "hint", ""),
         "blades": solves,
         "mechanisms": takes_mechanisms(code),

@@ -3,7 +3,7 @@
 Laws every code keeps:
 
 * it solves the blade it is given, all of it, or says in ``unsupported`` why it cannot: no property silently dropped;
-* effects it lacks by construction are declared in ``model``, so that core can leave out the same;
+* effects it lacks by construction are declared in ``effects``, so that core can leave out the same;
 * frames and units are converted inside the adapter; what comes back is in the axes of ``core.blade``, SI;
 * ``solve`` is a pure function of its arguments: the same call gives the same answer in any order, in any process.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol, get_args
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import Modes
 
 Shares = Literal["nothing", "mechanical model", "discretisation"]
@@ -65,7 +65,7 @@ class Code(Protocol):
         name: short and stable, as typed on the command line: ``exudyn-ancf``.
         title: as printed in a table: ``Exudyn, ANCF cable``.
         shares: what it shares with core; two codes that share their mechanical model are one witness, not two.
-        model: the physical effects it keeps.
+        effects: the physical effects it keeps.
         levels: refinements to use, coarse to fine (elements, or terms); each at least 1.4 times the one before.
         order: the theoretical order of convergence of its frequencies (0: spectral).
         hint: how to install what it needs.
@@ -83,7 +83,7 @@ class Code(Protocol):
     name: str
     title: str
     shares: Shares
-    model: Model
+    effects: Effects
     levels: tuple[int, ...]
     order: int
     hint: str

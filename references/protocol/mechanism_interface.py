@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.effects import Model
+from ...core.effects import Effects
 from .interface import Shares
 
 if TYPE_CHECKING:
@@ -46,13 +46,13 @@ class MechanismCode(Protocol):
     """One source of a mechanism's modes; laws as for ``interface.Code``.
 
     Attributes:
-        name, title, shares, model, hint: as for ``interface.Code``.
+        name, title, shares, effects, hint: as for ``interface.Code``.
     """
 
     name: str
     title: str
     shares: Shares
-    model: Model
+    effects: Effects
     hint: str
 
     def version(self) -> str | None:

@@ -16,7 +16,7 @@ from .process import Failure, one_line, raised
 
 GROUP = "southwell.codes"
 
-BLADE_CODE = ("name", "model", "levels", "order", "version", "unsupported", "solve")
+BLADE_CODE = ("name", "effects", "levels", "order", "version", "unsupported", "solve")
 """What a code that takes blades must have."""
 
 OURS = {

@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from ...core.effects import Model
+from ...core.effects import Effects
 
 COARSEST = 0.02
 """Largest relative target that a table may be given: twenty times the paper's 0.1 %."""
@@ -90,9 +90,9 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
         return bool(self.height_taper or self.breadth_taper)
 
     @property
-    def model(self) -> Model:
+    def effects(self) -> Effects:
         """The physical effects that the authors' model keeps."""
-        return Model(**dict.fromkeys(self.lacks, False))
+        return Effects(**dict.fromkeys(self.lacks, False))
 
 
 class Table(Struct, frozen=True, forbid_unknown_fields=True):

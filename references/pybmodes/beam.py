@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ...core.blade import Blade, clamped, coupled, sample, straight
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Motion, Shares
@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 SECTIONS = 20
 """Intervals between stations that the coarsest level can follow without more elements."""
 
-NOTHING = 1e-9
+ZERO_SHAPE = 1e-9
 """Largest lateral motion, of a vector of norm one, that counts as none: an axial mode, of which pyBModes shows nothing."""
 
 MAIN = """==== pyBModes main input file ====
@@ -88,7 +88,7 @@ class PyBModes:
     shares: Shares = "nothing"
     independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
     motions: tuple[Motion, ...] = ("chordwise", "flapwise", "torsion")
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
     hint = install.extra("codes")
@@ -216,7 +216,7 @@ def _moving(rotor: Any, blade: Blade, count: int, most: int) -> tuple[Array, NDA
 
 
 def _moves(shape: Any) -> bool:
-    return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > NOTHING
+    return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > ZERO_SHAPE
 
 
 def _shape(shape: Any, blade: Blade) -> Array:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import dia_array
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
@@ -43,7 +43,7 @@ class ScikitFemBeam:
     title = "scikit-fem, prestressed beam"
     shares: Shares = "nothing"
     independence = Independence("scikit-fem", "references.scikit_fem_forms", "references.scikit_fem_forms")
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
     hint = install.extra("codes")
@@ -208,7 +208,7 @@ def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     for _ in range(NEWTON):
         K, f = torsion, -torsion @ turn
         for p in parts:
-            J_yy, J_zz, J_yz = forms.turned(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+            J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
             K = K - omega**2 * bedding.assemble(p.steady, k=J_yy - J_zz)
             f = f + omega**2 * load.assemble(p.steady, k=J_yz)
         step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
@@ -223,18 +223,18 @@ def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
     fem = _skfem()
     parts, at = _parts(blade, basis), _sections(blade, basis)[1]
     stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
-    U, turned = (parts[0].steady.interpolate(field) for field in (stretch, turn))
+    U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, turn))
     if not (U.grad[0] > -1).all():
         raise CodeError(
             f"omega: {omega:g} rad/s: no steady stretch, the centrifugal force outgrows EA; lower the speed"
         )
-    EI_yy, EI_zz, EI_yz = forms.turned(at.EI_y, at.EI_z, parts[0].angle + turned)
+    EI_yy, EI_zz, EI_yz = forms.rotated(at.EI_y, at.EI_z, parts[0].angle + rotation)
     stiffness = {"EA": at.EA, "GJ": at.GJ, "EI_yy": EI_yy, "EI_zz": EI_zz, "EI_yz": EI_yz}
-    steady = {"g": 1 + U.grad[0], "g_s": U.hess[0, 0], "tension": at.EA * U.grad[0], "torque": at.GJ * turned.grad[0]}
+    steady = {"g": 1 + U.grad[0], "g_s": U.hess[0, 0], "tension": at.EA * U.grad[0], "torque": at.GJ * rotation.grad[0]}
     K = fem.BilinearForm(forms.elastic).assemble(basis, **stiffness, **steady)
     M = C = 0 * K
     for p in parts:
-        J_yy, J_zz, J_yz = forms.turned(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+        J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
         inertia = {"mass": p.mass, "J_xx": p.I_x, "J_yy": J_yy, "J_zz": J_zz, "J_yz": J_yz}
         inertia["g"] = 1 + p.steady.interpolate(stretch).grad[0]
         M = M + fem.BilinearForm(forms.inertia).assemble(p.basis, **inertia)

@@ -2,7 +2,7 @@
 
 The beam is extensible and shear-free, its material linear in the stretch and curvatures per unit of unstrained length:
 ``N = EA e``, ``M = EI κ``, ``M₁ = GJ κ₁`` (S. S. Antman, *Nonlinear Problems of Elasticity*, 2005, ch. 8). The steady state
-is straight: stretched by ``g = 1 + U'``, and its sections turned about x by their propeller moment. Let a small motion
+is straight: stretched by ``g = 1 + U'``, and its sections rotated about x by their propeller moment. Let a small motion
 move the line by u, v, w along x, y, z and turn the sections by p about it. With ``α = v'/g`` and ``β = w'/g`` the smallest
 rotation that brings x on to the moved tangent is ``(0, −β, α)``; in axes so rotated, to second order,
 
@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def turned(about_y: Array, about_z: Array, angle: Array) -> tuple[Array, Array, Array]:
-    """Entries yy, zz, yz of a diagonal 2×2 matrix whose axes are turned by ``angle`` about x."""
+def rotated(about_y: Array, about_z: Array, angle: Array) -> tuple[Array, Array, Array]:
+    """Entries yy, zz, yz of a diagonal 2×2 matrix whose axes are rotated by ``angle`` about x."""
     c, s = np.cos(angle), np.sin(angle)
     return about_y * c**2 + about_z * s**2, about_y * s**2 + about_z * c**2, (about_y - about_z) * s * c
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import linalg as spla
 
 from ...core.blade import Blade
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
@@ -47,7 +47,7 @@ class ScikitFemReissner:
     independence = Independence(
         "scikit-fem", "references.scikit_fem.reissner_forms", "references.scikit_fem.reissner_forms"
     )
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4
     hint = "pip install 'southwell[codes]'"

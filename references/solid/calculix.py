@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from ...core.condense.exported import model
 from ...core.condense.matrix_files import stored
 from ...core.condense.ties import FiniteElements
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError
-from .mesh import TWENTY, Bricks, Clamp, Material, held_by, mean_motions
+from .mesh import TWENTY, Bricks, Clamp, Material, fixed_by, mean_motions
 
 FACE = TWENTY[[0, 3, 7, 4, 11, 19, 15, 16]][:, 1:]
 """Of these, the 8 nodes of the face towards the root, by their places across: corners, then edges between them."""
@@ -36,7 +36,7 @@ Index = NDArray[np.intp]
 
 HINT = "apt-get install calculix-ccx"
 
-MODEL = Model(coriolis=False)
+EFFECTS = Effects(coriolis=False)
 """The effects it keeps."""
 
 TIMEOUT = 600.0
@@ -79,11 +79,11 @@ def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count:
     places, nodes = numbered(bricks)
     share = (nodes[:, 0] - nodes[:, 0].min()) / np.ptp(nodes[:, 0])
     at_stations = np.flatnonzero(np.abs(share[:, None] - STATIONS).min(axis=1) < 1e-9)
-    held = [f"{node + 1},{d + 1},{d + 1}" for node, d in np.argwhere(held_by(clamp, nodes))]
-    steps = ["*BOUNDARY", *held, "*STEP"]
+    fixed = [f"{node + 1},{d + 1},{d + 1}" for node, d in np.argwhere(fixed_by(clamp, nodes))]
+    steps = ["*BOUNDARY", *fixed, "*STEP"]
     if omega:
         load = f"ALL,CENTRIF,{omega**2:.12g},0.,0.,0.,0.,0.,1."
-        steps = ["*BOUNDARY", *held, "*STEP,NLGEOM", "*STATIC", "*DLOAD", load, "*END STEP", "*STEP,PERTURBATION"]
+        steps = ["*BOUNDARY", *fixed, "*STEP,NLGEOM", "*STATIC", "*DLOAD", load, "*END STEP", "*STEP,PERTURBATION"]
     steps += ["*FREQUENCY", str(count), "*NODE PRINT,NSET=STATIONS", "U", "*END STEP"]
     sets = ["*NSET,NSET=STATIONS", *(str(k + 1) for k in at_stations)]
     with run([*deck(places, nodes, material), *sets, *steps]) as folder:
@@ -95,7 +95,7 @@ def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count:
 def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") -> FiniteElements:
     """A block as CalculiX assembles it, to condense: ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, all nodes kept.
 
-    Its ``*SUBSTRUCTURE GENERATE`` (see ``core.matrix_files``) is no way to get a condensed one: as of 2.20 it holds the nodes
+    Its ``*SUBSTRUCTURE GENERATE`` cannot give a condensed one: as of 2.20 it holds the nodes
     that are not retained instead of eliminating them, and is caught by ``segments.between``.
 
     Raises:

@@ -49,7 +49,7 @@ class Calculix:
     shares: Shares = "nothing"
     independence = Independence("CalculiX", "solid elements", "CalculiX", eigensolver="CalculiX")
     motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
-    model = calculix.MODEL
+    effects = calculix.EFFECTS
     levels = (10, 20, 40)
     order = 4
     digits = 5  # seven are printed; equations of slender solids are ill-conditioned, and cost two

@@ -23,7 +23,7 @@ from ...core.modes import Modes
 from ..protocol import install
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
-from .mesh import Bools, Bricks, Clamp, Material, held_by, mean_motions
+from .mesh import Bools, Bricks, Clamp, Material, fixed_by, mean_motions
 
 Array = NDArray[np.float64]
 
@@ -154,14 +154,14 @@ def lumped_by_part(bricks: Bricks, material: Material, cuts: NDArray[np.intp]) -
     return out.reshape(len(cuts) - 1, -1)
 
 
-def steady(s: Solid, omega: float, held: Bools) -> tuple[Array, Any]:
+def steady(s: Solid, omega: float, fixed: Bools) -> tuple[Array, Any]:
     """Displacements (3n,) at which the solid turns steadily, and the stiffness there, spin softening included; by Newton.
 
     Raises:
         CodeError: if there is no such state.
     """
     across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
-    place, free = s.nodes.T.ravel(), ~held.T.ravel()
+    place, free = s.nodes.T.ravel(), ~fixed.T.ravel()
     u = np.zeros_like(place)
     for _ in range(NEWTON):
         K = ss.csc_array(tangent(s, u) - across)
@@ -187,7 +187,7 @@ def modes(
         material: what it is made of.
         omega: rotor speed, rad/s.
         count: how many modes.
-        clamp: which displacements are held, see ``solid_mesh``.
+        clamp: which displacements are fixed, see ``mesh``.
         coriolis: whether Coriolis forces act.
 
     Raises:
@@ -195,9 +195,9 @@ def modes(
     """
     begun = time.perf_counter()
     s = solid(bricks, material)
-    held = held_by(clamp, s.nodes)
-    free = ~held.T.ravel()
-    _, K = steady(s, omega, held)
+    fixed = fixed_by(clamp, s.nodes)
+    free = ~fixed.T.ravel()
+    _, K = steady(s, omega, fixed)
     m = mass(s)
     B = ss.csr_array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     M = ss.kron(ss.eye_array(3), m, format="csc")

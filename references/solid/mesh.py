@@ -103,40 +103,40 @@ def blade(
 
 
 Clamp = Callable[[Array], Bools]
-"""Which displacements (n, 3) are held, of nodes at (n, 3)."""
+"""Which displacements (n, 3) are fixed, of nodes at (n, 3)."""
 
 
 def clamped(at: float) -> Clamp:
-    """All of the section at ``x = at`` is held."""
+    """All of the section at ``x = at`` is fixed."""
 
-    def held(nodes: Array) -> Bools:
+    def fixed(nodes: Array) -> Bools:
         return np.repeat(_near(nodes[:, :1], at), 3, axis=1)
 
-    return held
+    return fixed
 
 
 def clamped_free_to_contract(at: float) -> Clamp:
-    """The section at ``x = at`` stays plane and in place, but may change its width: held along x; y, z on the centre lines.
+    """The section at ``x = at`` stays plane and in place, but may change its width: fixed along x; y, z on the centre lines.
 
     A full clamp restrains the Poisson contraction of bending, which a beam's clamp knows nothing of.
     """
 
-    def held(nodes: Array) -> Bools:
+    def fixed(nodes: Array) -> Bools:
         return _near(nodes[:, :1], at) & np.column_stack([np.ones(len(nodes), bool), _near(nodes[:, 1:], 0.0)])
 
-    return held
+    return fixed
 
 
-def held_by(clamp: Clamp, nodes: Array) -> Bools:
+def fixed_by(clamp: Clamp, nodes: Array) -> Bools:
     """(n, 3) which displacements a clamp holds.
 
     Raises:
         CodeError: if it leaves the blade loose.
     """
-    held = clamp(nodes)
-    if not held.any(axis=0).all():
-        raise CodeError(f"clamp: holds {held.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
-    return held
+    fixed = clamp(nodes)
+    if not fixed.any(axis=0).all():
+        raise CodeError(f"clamp: holds {fixed.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
+    return fixed
 
 
 def _near(values: Array, target: float) -> Bools:

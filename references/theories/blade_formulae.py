@@ -6,7 +6,6 @@ Second-order Lagrangians, written out by hand. About the hinge at radius e: S = 
 
 import time
 from collections.abc import Callable, Mapping
-from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,8 +112,3 @@ def solve(formula: str, omega: float, parameters: Mapping[str, float]) -> Mechan
     names, M, C, K = FORMULAE[formula](omega, **parameters)
     values, x = damped_modes(M, C, K)
     return MechanismModes(names, np.zeros(len(names)), values, x.T, time.perf_counter() - begun)
-
-
-def code_version() -> str:
-    """They come with this package."""
-    return version("southwell")

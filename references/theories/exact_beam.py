@@ -29,7 +29,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ...core.blade import TORSION, Blade
-from ...core.effects import FULL
+from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import Code, CodeError, Independence, Shares
 from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
@@ -145,7 +145,7 @@ def out_of_plane(beam: Beam, torsion: bool) -> Problem:
 
 
 class ExactBeam:
-    """The full beam: every effect of ``core.model``. Bending in both planes, stretching and torsional modes.
+    """The full beam: every effect of ``core.effects``. Bending in both planes, stretching and torsional modes.
 
     Straight, untwisted, uncoupled and shear-rigid blades, uniform or varying along the span. Torsional modes are there if
     the sections have a polar moment of inertia and finite G J.
@@ -155,7 +155,7 @@ class ExactBeam:
     title = "Exact extensible beam, spectral"
     shares: Shares = "nothing"
     independence = Independence("references.ritz", "Kirchhoff rod", "references.exact_beam")
-    model = FULL
+    effects = ALL_EFFECTS
     levels = LEVELS
     order = 0
     hint = ""

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 
 def element_ends(blade: Blade, elements: int, most: int) -> Array:
-    """Arc lengths (n+1,) of the ends of ``elements`` elements at least.
+    """Arc lengths (n+1,) of the ends of ``measures`` elements at least.
 
     Every interval between kinks is divided into the same number of elements, so that properties are smooth within each and
     an order of convergence survives. Of a blade with more than ``most`` intervals there are more elements in proportion, so

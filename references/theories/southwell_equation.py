@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import Modes
 from ..protocol.interface import Code, Independence, Motion, Shares
 from .assumed_modes import Bending, bendings
@@ -64,7 +64,7 @@ class SouthwellEquation:
     shares: Shares = "nothing"
     independence = Independence("references.ritz", "Putter and Manor 1978", "references.assumed_modes")
     motions: tuple[Motion, ...] = ("chordwise", "flapwise")
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = LEVELS
     order = 0
     bracket = True

@@ -12,6 +12,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
+from ...core.gauss import between
 
 Array = NDArray[np.float64]
 
@@ -31,9 +32,8 @@ def intervals(blade: Blade) -> Array:
 
 def gauss(ends: Array, count: int) -> tuple[Array, Array]:
     """Gauss points and weights (k·count,) with ``count`` in each of the intervals between ``ends`` (k+1,)."""
-    x, w = legendre.leggauss(count)
-    half = np.diff(ends)[:, None] / 2
-    return (ends[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
+    s, weight = between(ends, count)
+    return s.ravel(), weight.ravel()
 
 
 def clamped(ends: Array, terms: int, s: Array) -> Array:

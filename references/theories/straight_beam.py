@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 LEVELS: tuple[int, ...] = (8, 16, 32)
 """Terms in each interval. A uniform beam, each plane: 8 give mode 3 to 1e-6, 16 mode 5 to 1e-10, 32 mode 10 to rounding."""
 
-MANY = 8
+MAX_INTERVALS = 8
 """Intervals beyond which each is so short that fewer terms do: the fewest but five, twice as many at the finest."""
 
 EXTRA = 8
@@ -47,7 +47,7 @@ class Line:
 
 def terms(blade: Blade, level: int) -> int:
     """Polynomials in each interval at a level of refinement: as many as the level says, or fewer of a blade of many kinks."""
-    if len(intervals(blade)) - 1 <= MANY:
+    if len(intervals(blade)) - 1 <= MAX_INTERVALS:
         return level
     return round(5.0 * np.sqrt(level / LEVELS[0]))
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.effects import Model
+from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import Code, Independence, Motion, Shares
 from .assumed_modes import bendings
@@ -59,7 +59,7 @@ class YooShin:
     shares: Shares = "nothing"
     independence = Independence("references.ritz", "Yoo and Shin 1998", "references.assumed_modes")
     motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
-    model = Model(prestretch=False, rotary_inertia=False)
+    effects = Effects(prestretch=False, rotary_inertia=False)
     levels = LEVELS
     order = 0
     hint = ""

@@ -85,7 +85,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     told = config.getoption("--southwell-target")
     try:
         yours = Yours(*mark.args, **{**mark.kwargs, **({"target": told} if told else {})})
-        yours.model  # noqa: B018  (the names of effects are looked at here, once)
+        yours.effects  # noqa: B018  (the names of effects are looked at here, once)
     except TypeError as error:
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
     wanted = config.getoption("--southwell-cases")

@@ -71,7 +71,7 @@ def codes(*, pages: Path | None = None) -> int:
             known.title,
             Text(f"✘ {known.failure.reason}" if known.failure else found),
             known.shares,
-            ", ".join(known.model.lacks()) or "nothing",
+            ", ".join(known.effects.lacks()) or "nothing",
         )
     console.output().print(table)
     return PASSED

@@ -11,7 +11,7 @@ from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
 from ...cases.input import library
 from ...cases.input.changes import parse
 from ...cases.input.schema import speed_range
-from ...core.velocity_transformation import MOST_ELEMENTS
+from ...core.velocity_transformation import MAX_ELEMENTS
 from ..campbell import changes as changes_table
 from ..campbell import tables
 from ..shared import not_used
@@ -74,9 +74,9 @@ def modes(
     against
         Another blade; prints the change of every frequency.
     """
-    if method != "chain" and (elements or 0) > MOST_ELEMENTS:
+    if method != "chain" and (elements or 0) > MAX_ELEMENTS:
         raise UsageError(
-            f"--elements {elements}: --method {method} uses dense matrices: give at most {MOST_ELEMENTS}, or use --method chain"
+            f"--elements {elements}: --method {method} uses dense matrices: give at most {MAX_ELEMENTS}, or use --method chain"
         )
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []

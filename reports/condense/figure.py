@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...core.condense.segments import Segment
+from ...core.space.inertia import about_centre
 from ...references.solid.mesh import Bricks
 from ..shared.style import COLOURS, INK, MUTED, house
 
@@ -41,7 +42,7 @@ def stages(bricks: Bricks, cuts: NDArray[np.intp], segments: Sequence[Segment], 
     """
     frames = [root]
     for s in segments:
-        frames.append(frames[-1] @ s.rest)
+        frames.append(frames[-1] @ s.undeformed)
     n = len(segments)
     titles = (
         f"Finite element model: {np.prod(bricks.counts)} hexahedra, {freedoms} freedoms",
@@ -90,7 +91,7 @@ def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], 
         box = _box(segments[k].inertia) @ frames[k][:3, :3].T + frames[k][:3, 3]
         _faces(axes, box[SIDES], ORANGE, 0.5)
     for k, s in enumerate(segments):
-        coil = _coil(s.rest[:3, 3]) @ frames[k][:3, :3].T + frames[k][:3, 3]
+        coil = _coil(s.undeformed[:3, 3]) @ frames[k][:3, :3].T + frames[k][:3, 3]
         axes.plot(*_project(coil)[0].T, color=INK, lw=0.9, zorder=3)
     for frame in frames:
         axes.plot(*_project(frame[:3, 3])[0], "o", ms=3.4, mfc="white", mec=INK, mew=0.9, zorder=4)
@@ -98,13 +99,10 @@ def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], 
 
 def _box(inertia: Array) -> Array:
     """(8, 3) corners, in the frame of ``inertia``, of the cuboid that has it: a² = 6 (I_b + I_c − I_a)/m, and so on."""
-    mass = inertia[0, 0]
-    lever = inertia[3:, :3] / mass
-    about_centre = inertia[3:, 3:] - mass * lever @ lever.T
-    moments, axes = np.linalg.eigh(about_centre)
+    mass, centre, tensor = about_centre(inertia)
+    moments, axes = np.linalg.eigh(tensor)
     sides = np.sqrt(6.0 * np.maximum(moments.sum() - 2.0 * moments, 0.0) / mass)
     sides[np.abs(axes[0]).argmax()] *= SHORTENED
-    centre = np.array([lever[2, 1], lever[0, 2], lever[1, 0]])
     return centre + (CUBE * sides) @ axes.T
 
 

@@ -116,7 +116,7 @@ def own(
     """A user's own blade: what was read, the segments, the modes."""
     n = len(blade.segments)
     total = sum(body(s)[0] for s in blade.segments)
-    length = sum(np.linalg.norm(s.rest[:3, 3]) for s in blade.segments)
+    length = sum(np.linalg.norm(s.undeformed[:3, 3]) for s in blade.segments)
     text = f"# {blade.name}: {n} rigid bodies and complex stiffness elements\n\n"
     if told:
         lines = [told.told.title, f"Source: {told.told.source}." if told.told.source else ""]
@@ -183,7 +183,7 @@ def _segment(k: int, blade: Condensed) -> dict[str, str]:
     mass, centre, _ = body(s)
     size = np.sqrt(np.diagonal(s.stiffness))
     lowest = np.linalg.eigvalsh(s.stiffness / np.outer(size, size))[0]
-    row = {"segment": f"{k + 1}", "length, m": f"{np.linalg.norm(s.rest[:3, 3]):.5g}", "mass, kg": f"{mass:.5g}"}
+    row = {"segment": f"{k + 1}", "length, m": f"{np.linalg.norm(s.undeformed[:3, 3]):.5g}", "mass, kg": f"{mass:.5g}"}
     row["centre, m"] = ", ".join(f"{v:.4g}" for v in np.where(np.abs(centre) < 1e-9, 0.0, centre))
     row |= {name: f"{v:.4g}" for name, v in zip(FORCES, np.diagonal(s.stiffness), strict=True)}
     return row | {"lowest eigenvalue, unit diagonal": f"{lowest:.1e}"}

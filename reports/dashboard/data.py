@@ -233,7 +233,7 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
 def _known(name: str) -> dict[str, str]:
     """What the adapter says of itself; nothing of a code that is not known here, as in another's results."""
     code = _described().get(name)
-    return {"title": code.title, "lacks": ", ".join(code.model.lacks()), "hint": code.hint} if code else {}
+    return {"title": code.title, "lacks": ", ".join(code.effects.lacks()), "hint": code.hint} if code else {}
 
 
 @lru_cache

@@ -19,7 +19,7 @@ from ...cases.judge.results import Run
 from ...cases.verify import matrix
 from ...core import solve
 from ...core.blade import Blade
-from ...core.effects import FULL, Model
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...references.protocol import registry
@@ -82,7 +82,7 @@ def modes(
     accuracy: float = 1e-6,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
-    model: Model = FULL,
+    effects: Effects = ALL_EFFECTS,
     gravity: Array = solve.NO_GRAVITY,
     load: Array | None = None,
     allow_large_strain: bool = False,
@@ -97,7 +97,7 @@ def modes(
         accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given.
         mass: ``consistent``, or ``half_end`` (lumped, Park et al. 2010).
         stiffness: ``corotational``, or ``parent`` (Park et al. 2010).
-        model: physical effects kept.
+        effects: physical effects kept.
         gravity: (3,) m/s², in hub axes.
         load: (n, 3) steady force per length at the blade's stations, N/m, in hub axes.
         allow_large_strain: accept steady strains above 20 %.
@@ -113,7 +113,7 @@ def modes(
         accuracy=accuracy,
         mass=mass,
         stiffness=stiffness,
-        model=model,
+        effects=effects,
         gravity=gravity,
         load=load,
         allow_large_strain=allow_large_strain,

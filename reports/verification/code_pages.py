@@ -84,7 +84,7 @@ def page(run: Run, code: Description) -> str:
         title=code.title,
         version=version(run, code),
         shares=code.shares,
-        lacks=", ".join(code.model.lacks()) or "nothing",
+        lacks=", ".join(code.effects.lacks()) or "nothing",
         levels=f"from {levels} elements or terms on, of order {code.order or 'spectral'}" if levels else "",
         how=code.page.replace("``", "`"),
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
@@ -141,7 +141,7 @@ def properties(code: Description) -> str:
     rows = []
     for p, why in zip(PROPERTIES, code.refused, strict=True):
         answer = f"refused: {plain(why)}" if why else "taken"
-        if not why and p.name in code.model.lacks():
+        if not why and p.name in code.effects.lacks():
             answer = "left out, as declared"
         rows.append({"property": plain(p.name), "answer": answer})
     return table(rows)

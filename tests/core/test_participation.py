@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from southwell.cases.input import library
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
-from southwell.core.participation import DOMINANT, families, numbered, participation, spoken
+from southwell.core.participation import DOMINANT_FRACTION, families, numbered, participation, spoken
 from southwell.core.solve import modes as solve
 from southwell.core.space import spatial as sp
 
@@ -142,7 +142,7 @@ def test_axial_motion_is_told() -> None:
 
 
 def test_a_mode_without_a_dominant_motion_is_mixed_and_its_shares_are_given() -> None:
-    shares = np.array([[0.55, 0.42, 0.03, 0.0], [DOMINANT, 1 - DOMINANT, 0, 0], [0.02, 0.9, 0.08, 0]])
+    shares = np.array([[0.55, 0.42, 0.03, 0.0], [DOMINANT_FRACTION, 1 - DOMINANT_FRACTION, 0, 0], [0.02, 0.9, 0.08, 0]])
     assert numbered(families(shares)) == ("mixed 1", "flap 1", "edge 1")
     assert spoken(shares[0]) == "55 % flap, 42 % edge"
     assert spoken(shares[2]) == "90 % edge, 8 % torsion"

@@ -8,7 +8,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.verify.published_tables import UNITS
 from southwell.core.blade import Blade, uniform_blade
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.solve import modes as core_modes
 from southwell.references import published
 from southwell.references.published import Datum, Series, TableError
@@ -52,9 +52,9 @@ def computed(name: str, series: Series, datum: Datum) -> float:
         return float(tapered_beams.exact(series.height_taper, series.breadth_taper, datum.speed)[datum.mode - 1])
     blade = blade_of(name, series)
     if (name, series.name) == ("park2010", "present"):
-        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="parent", model=series.model)
+        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="body_fixed", effects=series.effects)
     else:
-        code = {c.model: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.model]
+        code = {c.effects: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.effects]
         found = code.solve(blade, datum.speed, 32, 10)
     return float(family(found, COLUMN[datum.family])[datum.mode - 1])
 
@@ -64,7 +64,7 @@ def test_a_datum_of_a_coarse_method_is_within_what_it_is_held_to(name: str, seri
     case, _, _ = series.blade.partition("/")
     blade = next(v.blade for v in library.load(case).variants if v.name == series.blade)
     unit, speed = UNITS[published.load(name).unit]
-    found = core_modes(blade, datum.speed * speed, 120, 8, model=series.model)
+    found = core_modes(blade, datum.speed * speed, 120, 8, effects=series.effects)
     value = family(found, COLUMN[datum.family])[datum.mode - 1] / unit
     assert abs(datum.value / value - 1.0) < (series.target or 0.0)
 
@@ -85,7 +85,7 @@ def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Dat
 def test_core_prints_what_hodges_and_rutkowski_print() -> None:
     """Core is independent of what judges the digits: to one unit of the last, sections linear between 1601 stations."""
     (series,) = published.load("hodges_rutkowski1981").series
-    found = core_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, model=series.model)
+    found = core_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
     printed = [datum.value for datum in series.data if datum.speed == 12]
     np.testing.assert_allclose(family(found, Z)[:3], printed, rtol=0, atol=1e-4)
 
@@ -93,8 +93,8 @@ def test_core_prints_what_hodges_and_rutkowski_print() -> None:
 @pytest.mark.parametrize(("height", "breadth"), [(0.4, 0.4), (0.8, 0.8), (0.0, 0.8)])
 def test_core_and_the_series_agree_on_double_tapers(height: float, breadth: float) -> None:
     """Also on the one that is misprinted as 38.4920."""
-    model = Model(prestretch=False, coriolis=False, rotary_inertia=False)
-    found = family(core_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, model=model), Z)[:3]
+    effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
+    found = family(core_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
     np.testing.assert_allclose(found, tapered_beams.exact(height, breadth, 0.0)[:3], rtol=2e-6)
 
 
@@ -126,8 +126,8 @@ def test_rounding_is_half_a_unit_of_the_last_digit(printed: str, value: float, h
 
 def test_a_series_says_what_its_model_lacks() -> None:
     park2010 = published.load("park2010")
-    assert park2010.series[1].model == Model(prestretch=False, rotary_inertia=False)
-    assert replace(park2010.series[0].model, rotary_inertia=True) == FULL
+    assert park2010.series[1].effects == Effects(prestretch=False, rotary_inertia=False)
+    assert replace(park2010.series[0].effects, rotary_inertia=True) == ALL_EFFECTS
 
 
 GOOD = """

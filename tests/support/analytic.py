@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import root_scalar
 
 from southwell.core.blade import Blade, sample
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import modes as core_modes
 from southwell.references.protocol.interface import Shares
@@ -44,7 +44,7 @@ class Analytic:
     installed: bool = True
     title: str = "Closed form"
     shares: Shares = "nothing"
-    model: Model = FULL
+    effects: Effects = ALL_EFFECTS
     hint: str = "pip install nothing"
     motions: tuple[str, ...] = ("axial", "chordwise", "flapwise", "torsion")
 
@@ -75,7 +75,7 @@ class Twin(Analytic):
     levels: tuple[int, ...] = (10,)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="parent", model=self.model)
+        modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed", effects=self.effects)
         return Modes(omega, modes.frequencies * self.factor, modes.shapes, elements)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from southwell.core.blade import Blade
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
 from southwell.core.solve import modes
 from southwell.references.protocol.interface import Shares
@@ -18,7 +18,7 @@ class Counted:
     name: str
     title: str = "Counted"
     shares: Shares = "nothing"
-    model: Model = FULL
+    effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (10, 20)
     order: int = 4
     hint: str = ""

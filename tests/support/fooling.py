@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from southwell.core.blade import Blade
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.modes import Modes
 from southwell.references.protocol.interface import Shares
 from southwell.references.theories.exact_beam import CODE as EXACT
@@ -24,7 +24,7 @@ class Fooling:
     order: int = EXACT.order
     title: str = "Exact beam, altered"
     shares: Shares = "nothing"
-    model: Model = EXACT.model
+    effects: Effects = EXACT.effects
     hint: str = ""
 
     def version(self) -> str | None:

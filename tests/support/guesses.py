@@ -34,7 +34,7 @@ def same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen:
 
     Compared by the stiffness about it, which knows nothing of a top's azimuth; of one that drifts, by its shape.
     """
-    held = {m.coordinate for m in tree.mechanism.motions if m.held}
+    held = {m.coordinate for m in tree.mechanism.motions if m.prescribed}
     names = [c for c in tree.coordinates if c not in held]
     linear = about(tree, expected)
     drifts = equilibrium.unresisted(tree, expected, linear.names)[0].shape[1] > 0

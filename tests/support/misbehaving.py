@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from southwell.core.blade import Blade
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
 from southwell.references.protocol.interface import CodeError, Shares
 
@@ -61,7 +61,7 @@ class Misbehaving:
     name: str = "misbehaving"
     title: str = "Misbehaving"
     shares: Shares = "nothing"
-    model: Model = FULL
+    effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (1, 2, 4)
     order: int = 2
     hint: str = "pip install manners"

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from southwell.core.effects import FULL
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes
 
 When = Literal["import", "version", "unsupported", "solve"]
@@ -40,7 +40,7 @@ class Base:
     name = "misdeed"
     title = "Misdeed"
     shares = "nothing"
-    model = FULL
+    effects = ALL_EFFECTS
     levels = (10, 20)
     order = 2
     hint = "pip install manners"
@@ -186,8 +186,8 @@ DECLARATIONS = {
     "title = None": "title: None",
     "title = 'a\\nb'": "title: ",
     "shares = 'everything'": "shares: 'everything'",
-    "model = None": "model: None",
-    "model = {'prestretch': 1}": "model: ",
+    "effects = None": "effects: None",
+    "effects = {'prestretch': 1}": "effects: ",
     "levels = ()": "levels: ()",
     "levels = 'many'": "levels: 'many'",
     "levels = (20, 10)": "not ascending",

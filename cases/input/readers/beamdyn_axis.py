@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ....core import gauss
 from ....core.space.spatial import skew
 
 Array = NDArray[np.float64]
@@ -55,9 +56,9 @@ def _speed(spline: CubicSpline, z: Array) -> Array:
 
 
 def _piece(spline: CubicSpline, a: float, b: float) -> float:
-    x, w = np.polynomial.legendre.leggauss(12)
+    x, w = gauss.rule(12)
     # 1 apart, so that a straight curve keeps every digit
-    return (b - a) + float((b - a) / 2 * w @ (_speed(spline, a + (b - a) * (x + 1) / 2) - 1))
+    return (b - a) + float((b - a) * w @ (_speed(spline, a + (b - a) * x) - 1))
 
 
 def _arc(axis: Axis, z: Array) -> Array:

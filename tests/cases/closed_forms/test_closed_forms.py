@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import root_scalar
 
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.solve import modes as core_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.theories import assumed_modes, exact_beam, southwell_equation, straight_beam, yoo_shin
@@ -216,8 +216,8 @@ def test_southwells_bracket_of_a_twisted_blade(omega: float) -> None:
 # --------------------------------------------------------------------------------------------------------------- in-house
 
 
-def extrapolated(blade: Blade, omega: float, count: int, order: int, model: Model) -> np.ndarray:
-    coarse, fine = (core_modes(blade, omega, n, count, model=model).frequencies for n in (100, 200))
+def extrapolated(blade: Blade, omega: float, count: int, order: int, model: Effects) -> np.ndarray:
+    coarse, fine = (core_modes(blade, omega, n, count, effects=model).frequencies for n in (100, 200))
     return fine + (fine - coarse) / (2.0**order - 1)
 
 
@@ -227,7 +227,7 @@ def test_exact_beam_is_what_the_solver_tends_to(tip: float) -> None:
     blade = kinked(tip=tip)
     expected = EXACT.solve(blade, 5.0, FINE, 8)
     assert {int(c) for c in np.abs(expected.shapes).max(1).argmax(1)} == {X, Y, Z, TURN}
-    np.testing.assert_allclose(extrapolated(blade, 5.0, 8, 2, Model()), expected.frequencies, rtol=2e-8)
+    np.testing.assert_allclose(extrapolated(blade, 5.0, 8, 2, Effects()), expected.frequencies, rtol=2e-8)
 
 
 @pytest.mark.parametrize(("twist", "pitch"), [(0.0, 0.0), (0.8, 0.0), (0.8, -0.3)])
@@ -235,7 +235,7 @@ def test_assumed_modes_are_what_the_solver_tends_to_without_the_same_effects(twi
     """Bending alone, for which the solver's elements are of fourth order; the solver's fourth mode here is a stretch."""
     blade = replace(kinked(twist, 0.0), pitch=pitch)
     found = ASSUMED.solve(blade, 6.0, FINE, 3).frequencies
-    np.testing.assert_allclose(extrapolated(blade, 6.0, 3, 4, ASSUMED.model), found, rtol=1e-7)
+    np.testing.assert_allclose(extrapolated(blade, 6.0, 3, 4, ASSUMED.effects), found, rtol=1e-7)
 
 
 def test_yoo_shin_is_what_the_solver_tends_to_without_the_same_effects() -> None:
@@ -243,7 +243,7 @@ def test_yoo_shin_is_what_the_solver_tends_to_without_the_same_effects() -> None
     blade = kinked(inertia=0.0)
     found = YOO_SHIN.solve(blade, 6.0, FINE, 6)
     assert X in np.abs(found.shapes).max(1).argmax(1)
-    np.testing.assert_allclose(extrapolated(blade, 6.0, 6, 2, YOO_SHIN.model), found.frequencies, rtol=2e-8)
+    np.testing.assert_allclose(extrapolated(blade, 6.0, 6, 2, YOO_SHIN.effects), found.frequencies, rtol=2e-8)
 
 
 def test_gyroscopic_lag_has_the_solvers_sign() -> None:

@@ -12,7 +12,7 @@ from southwell.cases.conformance.blades import PROPERTIES
 from southwell.cases.conformance.suite import CHECKS, Check, judge
 from southwell.core import solve
 from southwell.core.blade import Blade
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import DIGITS, CodeError, Shares
@@ -40,11 +40,11 @@ class Core:
     returned: Callable[[Modes], Modes] = lambda modes: modes
     refused: Callable[[Blade], str | None] = lambda _: None
     solved: Callable[[Blade], str | None] = lambda _: None
-    kept: Model = FULL
+    kept: Effects = ALL_EFFECTS
     name: str = "core"
     title: str = "Core"
     shares: Shares = "discretisation"
-    model: Model = FULL
+    effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (8, 12, 18)
     order: int = 4
     hint: str = ""
@@ -60,7 +60,7 @@ class Core:
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         if reason := self.solved(blade):
             raise CodeError(reason)
-        return self.returned(solve.modes(self.given(blade), omega, elements, count, model=self.kept))
+        return self.returned(solve.modes(self.given(blade), omega, elements, count, effects=self.kept))
 
 
 def failures(code: Any, *, among: str = "") -> dict[str, str]:
@@ -170,12 +170,12 @@ MISTAKES: dict[str, tuple[Core, set[str]]] = {
     "shear dropped": (Core(given=rigid_in_shear), {"shear", "keeps shear flexibility"}),
     "rotary inertia dropped": (
         Core(given=masses(lambda m: m * np.diag([1, 1, 1, 0, 0, 0]))),
-        {"keeps rotary inertia", "model"},
+        {"keeps rotary inertia", "effects"},
     ),
-    "no Coriolis, unsaid": (Core(kept=Model(coriolis=False)), {"model"}),
-    "no prestretch, unsaid": (Core(kept=Model(prestretch=False)), {"model"}),
-    "Coriolis, though said to lack it": (Core(model=Model(coriolis=False)), {"model"}),
-    "no geometric stiffness": (Core(kept=Model(geometric=False)), {"turning beam"}),
+    "no Coriolis, unsaid": (Core(kept=Effects(coriolis=False)), {"effects"}),
+    "no prestretch, unsaid": (Core(kept=Effects(prestretch=False)), {"effects"}),
+    "Coriolis, though said to lack it": (Core(effects=Effects(coriolis=False)), {"effects"}),
+    "no geometric stiffness": (Core(kept=Effects(geometric=False)), {"turning beam"}),
     "an order too high": (Core(order=8), {"order"}),
     "levels too close": (Core(levels=(8, 9, 10)), {"declarations"}),
     "a name with a blank": (Core(name="my code"), {"declarations"}),

@@ -84,7 +84,7 @@ at_parent = { point = [1.0, 0.0, 0.0] }
 lift.z = { polynomial = [0.1, 0.0, 0.25], harmonics = [{ amplitude = 0.2, frequency = 3.0, phase = 0.5, mean = 0.1 }] }
 
 [coordinate_springs]
-leg.rz = { stiffness = 100.0, damping = 2.0, rest = 0.1 }
+leg.rz = { stiffness = 100.0, damping = 2.0, neutral = 0.1 }
 
 [[springs]]
 body_a = "ground"
@@ -93,7 +93,7 @@ point_a = [0.0, 0.0, 2.0]
 point_b = [0.3, 0.0, 0.0]
 stiffness = 20.0
 damping = 0.5
-rest = 1.0
+free_length = 1.0
 
 [[bushings]]
 body_a = "leg"
@@ -145,13 +145,19 @@ def test_every_table_arrives_where_it_belongs(tmp_path: Path) -> None:
     assert motion.law(2.0) == pytest.approx(0.1 + 0.25 * 4 + 0.1 + 0.2 * np.sin(6.5))
     assert m.coordinate_springs == (mb.CoordinateSpring("leg.rz", 100.0, 2.0, 0.1),)
     (spring,) = m.springs
-    assert (spring.stiffness, spring.damping, spring.rest, spring.point_a[2], spring.point_b[0]) == (20, 0.5, 1, 2, 0.3)
+    assert (spring.stiffness, spring.damping, spring.free_length, spring.point_a[2], spring.point_b[0]) == (
+        20,
+        0.5,
+        1,
+        2,
+        0.3,
+    )
     bushing, beam = m.beams
     assert isinstance(bushing, Beam)
     np.testing.assert_allclose(np.diagonal(bushing.beams.stiffness[0]), [1e4, 2e4, 3e4, 100, 200, 300])
     np.testing.assert_allclose(np.diagonal(bushing.damping), [1, 2, 3, 0.1, 0.2, 0.3])
     np.testing.assert_allclose(bushing.beams.preload[0], [1, 0, 0, 0, 0, 0.5])
-    assert beam.beams.rest[0, 0, 3] == 0.5
+    assert beam.beams.undeformed[0, 0, 3] == 0.5
     assert beam.beams.stiffness[0, 0, 0] == pytest.approx(1e6 / 0.5)
     assert beam.at_a[0, 3] == 0.5
     assert (m.gravity, read.guess, read.text.independent) == ((0, 0, -9.81), {"leg.rz": 0.2}, ("leg.rz",))
@@ -195,8 +201,8 @@ BAD = [
     ("polynomial = [0.1, 0.0, 0.25]", "rate = 1.0", ["motions.lift.z: both numbers"]),
     ("amplitude = 0.2, ", "", ["motions.lift.z.harmonics[0].amplitude: missing"]),
     ("leg.rz = { stiffness", "leg.ry = { stiffness", ["coordinate_springs: 'leg.ry'", "did you mean leg.rz?"]),
-    ("rest = 0.1 }", "length = 0.1 }", ["coordinate_springs.leg.rz.length: unknown key"]),
-    ("rest = 1.0", "rest = -1.0", ["springs[0].rest: -1.0"]),
+    ("neutral = 0.1 }", "length = 0.1 }", ["coordinate_springs.leg.rz.length: unknown key"]),
+    ("free_length = 1.0", "free_length = -1.0", ["springs[0].free_length: -1.0"]),
     ('body_a = "ground"', 'body_a = "sky"', ["spring: body 'sky' is unknown"]),
     ("stiffness = [1e4, 2e4,", "stiffness = [1e4,", ["bushings[0].stiffness", "neither 6 numbers nor 6 rows of 6"]),
     ("preload = [1.0,", "preload = [", ["bushings[0].preload: 5 numbers: give 6"]),
@@ -224,7 +230,7 @@ def test_bad_input_ends_in_one_line(tmp_path: Path, old: str, new: str, told: li
 
 def test_what_only_solving_shows_names_the_file_too(tmp_path: Path) -> None:
     path = write(tmp_path, WHOLE.replace('independent = ["leg.rz"]', 'independent = ["leg.rz", "lift.z"]'))
-    with pytest.raises(CaseError, match=r"m\.toml: independent: leg\.rz, lift\.z do not determine the rest"):
+    with pytest.raises(CaseError, match=r"m\.toml: independent: leg\.rz, lift\.z do not determine the others"):
         mechanisms.read(path).solve()
     with pytest.raises(CaseError, match=r"time: nan: give a finite instant"):
         mechanisms.read(path).solve(time=float("nan"))

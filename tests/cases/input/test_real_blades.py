@@ -9,7 +9,7 @@ from scipy.integrate import trapezoid
 from southwell.cases.input import library
 from southwell.cases.input.blades import STEP, offset, stepped
 from southwell.core.blade import Blade, BladeError, section_mass
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
 
@@ -35,7 +35,8 @@ def test_bmodes_printed_frequencies_belong_to_its_sampling() -> None:
     """Its own blade within 0.7 %, the blade of the table 1.5 to 4.5 % higher: the sampling, not the elements, makes that."""
     printed = np.array([1.7517, 1.9444, 4.1912, 6.3492, 8.2913])
     own, table = (
-        modes(blade(f"windpact-1.5/{name}"), 2 * np.pi, 100, 5, model=Model(coriolis=False)).frequencies / (2 * np.pi)
+        modes(blade(f"windpact-1.5/{name}"), 2 * np.pi, 100, 5, effects=Effects(coriolis=False)).frequencies
+        / (2 * np.pi)
         for name in ("bmodes", "offset")
     )
     np.testing.assert_allclose(own, printed, rtol=7e-3)

@@ -37,7 +37,7 @@ modes = 3
 [discretisation]
 elements = 50
 mass = "half_end"
-stiffness = "parent"
+stiffness = "body_fixed"
 """
 
 TABLE = """# comment

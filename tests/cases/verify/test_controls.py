@@ -8,7 +8,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.verify import controls, mistakes
 from southwell.core.blade import Blade
-from southwell.core.effects import FULL
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes
 from southwell.references.theories import exact_beam
 
@@ -23,7 +23,7 @@ def first(modes: Modes, column: int = Y) -> float:
 
 
 def made(solve: mistakes.Solve, omega: float = OMEGA, blade: Blade | None = None) -> Modes:
-    return solve(blade or park(), omega, 15, 10, FULL)
+    return solve(blade or park(), omega, 15, 10, ALL_EFFECTS)
 
 
 def exact(blade: Blade, omega: float = OMEGA) -> Modes:
@@ -57,7 +57,7 @@ def test_softening_is_that_of_points() -> None:
 
     blade = park()
     body = discretize(blade, 4, "half_end")
-    own = mistakes.spin_softening(body, pencil.rest(body), OMEGA)
+    own = mistakes.spin_softening(body, pencil.undeformed(body), OMEGA)
     mass = np.diagonal(body.lumps, axis1=1, axis2=2)[1:, 0]
     expected = -(OMEGA**2) * mass[:, None] * [1.0, 1.0, 0.0]
     np.testing.assert_allclose(np.diagonal(own.diagonal, axis1=1, axis2=2)[:, :3], expected, rtol=1e-12, atol=1e-12)

@@ -33,7 +33,7 @@ modes = 4
 [discretisation]
 elements = 10
 mass = "half_end"
-stiffness = "parent"
+stiffness = "body_fixed"
 """
 
 

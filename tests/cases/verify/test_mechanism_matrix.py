@@ -14,7 +14,7 @@ from southwell.cases.verify import mechanism_case, mechanism_columns
 from southwell.cases.verify.cells import Head
 from southwell.cases.verify.columns import columns as blade_columns
 from southwell.cases.verify.mechanism_columns import cells
-from southwell.core.effects import FULL
+from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import boundary, mechanism_worker, registry, wire
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.mechanism_interface import MechanismModes
@@ -30,7 +30,7 @@ def rows(name: str, column: str) -> list:
     case = mechanism_case.case(library.mechanism(name))
     known = describe(tuple(registry.FOR_MECHANISMS))
     (turning,) = case.variants
-    core = mechanism_columns.references(turning)[FULL]
+    core = mechanism_columns.references(turning)[ALL_EFFECTS]
     (one,) = (c for c in mechanism_columns.columns(case, known, Limits(60.0)) if c.name == column)
     return one(turning.speeds.tolist(), core)[0]
 
@@ -53,7 +53,7 @@ def test_every_code_at_every_speed(name: str, column: str) -> None:
 
 def reference():
     (turning,) = mechanism_case.case(library.mechanism("hinged-blade")).variants
-    return mechanism_columns.references(turning)[FULL][2]
+    return mechanism_columns.references(turning)[ALL_EFFECTS][2]
 
 
 def told(change) -> list:
@@ -144,7 +144,7 @@ class Wild:
     """A code that raises what it likes."""
 
     name = title = "wild"
-    shares, model, hint = "nothing", FULL, "pip install wild"
+    shares, model, hint = "nothing", ALL_EFFECTS, "pip install wild"
 
     def version(self) -> str:
         return "1"

@@ -38,7 +38,7 @@ def test_products_and_solutions_are_those_of_the_dense_matrix(n: int, d: int, ve
     np.testing.assert_array_equal(blocks.dense(t), full)
     x = np.random.default_rng(1).normal(size=(vectors, n * d))
     product = np.empty_like(x)
-    blocks.times(blocks.turned(t), x, product)
+    blocks.times(blocks.transposed(t), x, product)
     np.testing.assert_allclose(product, x @ full.T, rtol=1e-12, atol=1e-12)
     blocks.solve(blocks.factor(t), product)
     np.testing.assert_allclose(product, x, rtol=1e-10, atol=1e-12)

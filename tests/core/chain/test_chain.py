@@ -7,7 +7,7 @@ from southwell.core import eigen
 from southwell.core.blade import without_rotary_inertia
 from southwell.core.chain import blocks, steady
 from southwell.core.chain.as_mechanism import mechanism
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.element.discretize import discretize
 from southwell.core.multibody import linearize as lz
 from southwell.core.solve import balance, modes, sweep
@@ -25,7 +25,9 @@ def planes(blade, omega, elements, count=6, **options) -> tuple[np.ndarray, np.n
 
 def test_the_papers_table_digit_for_digit() -> None:
     """Park et al. 2010, Table 1, Present: 50 elements, point masses, stiffness linear in the parent's frame."""
-    found = planes(PARK, 10.0, 50, mass="half_end", stiffness="parent", model=Model(rotary_inertia=False))[0][:3]
+    found = planes(PARK, 10.0, 50, mass="half_end", stiffness="body_fixed", effects=Effects(rotary_inertia=False))[0][
+        :3
+    ]
     assert [f"{f:.4f}" for f in found] == ["11.7058", "70.3722", "189.6735"]
     assert [f"{f:.4g}" for f in found] == ["11.71", "70.37", "189.7"]
 
@@ -64,7 +66,7 @@ def test_exact_values_follow_the_fourth_order_too() -> None:
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
 
 
-@pytest.mark.parametrize("measure", ["corotational", "parent"])
+@pytest.mark.parametrize("measure", ["corotational", "body_fixed"])
 @pytest.mark.parametrize("mass", ["consistent", "half_end"])
 @pytest.mark.parametrize(
     ("blade", "omega", "elements"),
@@ -91,9 +93,9 @@ def test_many_elements_lose_no_digits() -> None:
 @pytest.mark.parametrize("count", [10, 40, 80])
 def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
     """A basis of hundreds of vectors in a semi-definite product must not drift: Lanczos against LAPACK."""
-    body = discretize(yoo_shin(0.0), 40, "half_end", "parent")
+    body = discretize(yoo_shin(0.0), 40, "half_end", "body_fixed")
     dense = lz.modes(lz.linearize(mechanism(body, 2.0)), count).frequencies
-    found = modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="parent").frequencies
+    found = modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="body_fixed").frequencies
     np.testing.assert_allclose(found, dense, rtol=1e-9)
 
 
@@ -101,7 +103,7 @@ def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
     body, n = discretize(curved(), 5), 5
     state = steady.steady(body, 1.5, np.zeros(3))
-    shape, cartesian = state.shape, state.linear
+    shape, cartesian = state.shape, state.pencil
     dense = lz.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
@@ -131,18 +133,18 @@ def test_degenerate_pairs_at_rest_are_both_found() -> None:
 
 def test_without_geometric_stiffness_the_first_chordwise_mode_collapses() -> None:
     """What a program without stress stiffening prints: √(ω₀² − Ω²), the paper's warning."""
-    first = planes(PARK, 10.0, 50, model=Model(geometric=False))[0][0]
+    first = planes(PARK, 10.0, 50, effects=Effects(geometric=False))[0][0]
     assert first == pytest.approx(np.sqrt(10.548911**2 - 100.0), rel=1e-3)
 
 
 def test_linear_theory_without_prestretch_is_yoo_and_shins() -> None:
     """α = 70, δ = 0, γ = 10: 4.9700, 32.0456, 73.9131 printed (Yoo and Shin 1998; the last digit of the third truncated)."""
-    found = planes(yoo_shin(0.0), 10.0, 60, model=Model(prestretch=False))[0]
+    found = planes(yoo_shin(0.0), 10.0, 60, effects=Effects(prestretch=False))[0]
     np.testing.assert_allclose(found[:3], [4.9700, 32.0456, 73.9131], atol=1e-4)
 
 
 def test_no_coriolis_in_the_flapwise_plane_but_much_chordwise() -> None:
-    full, without = (planes(yoo_shin(0.0), 10.0, 40, model=Model(coriolis=c)) for c in (True, False))
+    full, without = (planes(yoo_shin(0.0), 10.0, 40, effects=Effects(coriolis=c)) for c in (True, False))
     np.testing.assert_allclose(full[1], without[1], rtol=1e-9)
     assert without[0][0] / full[0][0] - 1 > 0.01
 
@@ -173,10 +175,10 @@ def test_gravity_prestresses_by_azimuth() -> None:
 
 def test_unprestressed_chain_needs_no_newton() -> None:
     body = discretize(PARK, 4)
-    state = balance(body, 10.0, np.zeros(3), Model(prestretch=False))
+    state = balance(body, 10.0, np.zeros(3), Effects(prestretch=False))
     np.testing.assert_array_equal(state.shape.nodes, body.nodes)
     tension = steady.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
-    assert np.abs(state.linear.residual).max() < 1e-8 * tension
+    assert np.abs(state.pencil.residual).max() < 1e-8 * tension
 
 
 @pytest.mark.parametrize(

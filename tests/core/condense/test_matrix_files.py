@@ -190,7 +190,7 @@ def test_mass_is_matched_by_freedom_and_summed_by_direction() -> None:
     model = exported.model(stiffness, {1: (0, 0, 0), 2: (1, 2, 3)}, mass)
     np.testing.assert_array_equal(model.mass, [5, 7, 7, 9])
     np.testing.assert_array_equal(model.points[:, 2], [0, 0, 3, 3])
-    with pytest.raises(MatrixFileError, match="node 2 has no place"):
+    with pytest.raises(MatrixFileError, match="node 2 has no coordinates"):
         exported.model(stiffness, {1: (0, 0, 0)})
     with pytest.raises(MatrixFileError, match="freedoms are not those of K"):
         exported.model(

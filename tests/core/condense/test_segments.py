@@ -32,30 +32,30 @@ Array = np.ndarray
 def beam_segment(length: float, blade=PARK) -> tuple[Array, Array, Array]:
     """12×12 of a uniform beam, its 6×6 and the pose of b seen from a."""
     part = replace(blade, stations=np.array([0.0, length]), curve=np.zeros((0, 3)))
-    rest = at(length)
+    undeformed = at(length)
     k = np.linalg.inv(sections.integrate(part, part.stations).flexibility[0])
-    D = np.concatenate([-np.eye(6), sp.adjoint(rest)], axis=1)
-    return D.T @ k @ D, k, rest
+    D = np.concatenate([-np.eye(6), sp.adjoint(undeformed)], axis=1)
+    return D.T @ k @ D, k, undeformed
 
 
 def test_the_textbook_beam_is_its_complex_stiffness() -> None:
     """Przemieniecki 1968, table 5.2: 12 E I/l³, −6 E I/l², 4 E I/l, 2 E I/l, E A/l, G J/l."""
     length, EA, EI, GJ = 0.5, 7e10 * 4e-4, 7e10 * 2e-7, 7e10 / 2.6 * 4e-7
-    k12, k, rest = beam_segment(length)
+    k12, k, undeformed = beam_segment(length)
     y = [1, 5, 7, 11]
     bending = EI / length**3 * np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], float)
     unit = np.diag([1, length, 1, length])
     np.testing.assert_allclose(k12[np.ix_(y, y)], unit @ bending @ unit, rtol=1e-9)
     np.testing.assert_allclose([k12[0, 6], k12[3, 9]], [-EA / length, -GJ / length], rtol=1e-9)
-    np.testing.assert_allclose(between(k12, rest, "beam"), k, rtol=1e-9, atol=1e-9 * np.abs(k).max())
+    np.testing.assert_allclose(between(k12, undeformed, "beam"), k, rtol=1e-9, atol=1e-9 * np.abs(k).max())
 
 
 def test_the_body_of_a_uniform_beam_rides_as_its_cubic_does() -> None:
     """Mean of w = v (3t² − 2t³) + θ l (t³ − t²): displacement v/2 − θ l/12, rotation 6 v/5 l − θ/10 (by least squares)."""
     length = 0.5
-    k12, _, rest = beam_segment(length)
-    ride = segment_from_matrix(k12, rest, np.eye(6)).ride
-    b = sp.adjoint(sp.inverse(rest))  # ρ is seen at a's origin; the cubic's v and θ are at b
+    k12, _, undeformed = beam_segment(length)
+    ride = segment_from_matrix(k12, undeformed, np.eye(6)).ride
+    b = sp.adjoint(sp.inverse(undeformed))  # ρ is seen at a's origin; the cubic's v and θ are at b
     ride = ride @ np.linalg.inv(b)
     centre = at(-0.5 * length)
     ride = sp.adjoint(centre) @ ride  # at the middle
@@ -65,11 +65,11 @@ def test_the_body_of_a_uniform_beam_rides_as_its_cubic_does() -> None:
 
 def uniform_segments(n: int) -> list[Segment]:
     length = PARK.length / n
-    k12, _, rest = beam_segment(length)
+    k12, _, undeformed = beam_segment(length)
     mass = 1.2 * length
     polar, cross = 1.2 * length * 1e-3, mass * (5e-4 + length**2 / 12)
     body = inertia(mass, [polar, cross, cross], [length / 2, 0, 0])
-    return [segment_from_matrix(k12, rest, body)] * n
+    return [segment_from_matrix(k12, undeformed, body)] * n
 
 
 def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
@@ -79,7 +79,7 @@ def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
 def test_two_joined_segments_are_one_of_twice_the_length() -> None:
     """The ride differs by the section's own inertia, which ``segment_from_matrix`` leaves out of it."""
     for found, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
-        for field, within in (("rest", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("ride", 5e-3)):
+        for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("ride", 5e-3)):
             wanted = getattr(expected, field)
             np.testing.assert_allclose(getattr(found, field), wanted, atol=within * np.abs(wanted).max())
     assert len(joined(uniform_segments(7))) == 4
@@ -116,9 +116,11 @@ def test_torsion_is_that_of_masses_in_the_middle() -> None:
     """A shaft of n segments whose discs move as the mean of their ends: ω = (2/l) √(GJ/I_x) tan(β l/2), β = (k − ½)π/L."""
     n = 20
     length = PARK.length / n
-    k12, _, rest = beam_segment(length)
+    k12, _, undeformed = beam_segment(length)
     body = inertia(1.2 * length, [1e2 * length, 60.0, 60.0], [length / 2, 0, 0])
-    found = chain_modes(chain_from_segments([segment_from_matrix(k12, rest, body)] * n, np.eye(4)), 0.0, 20).frequencies
+    found = chain_modes(
+        chain_from_segments([segment_from_matrix(k12, undeformed, body)] * n, np.eye(4)), 0.0, 20
+    ).frequencies
     beta = (np.arange(1, 4) - 0.5) * np.pi / PARK.length
     exact = 2 / length * np.sqrt(7e10 / 2.6 * 4e-7 / 1e2) * np.tan(beta * length / 2)
     nearest = np.abs(found[:, None] / exact - 1).min(0)
@@ -175,8 +177,8 @@ def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
     body = inertia(
         mass, mass / 12 * np.array([2 * side**2, side**2 + length**2, side**2 + length**2]), [length / 2, 0, 0]
     )
-    k12, _, rest = beam_segment(length)
-    pieces = [segment_from_matrix(k12, rest, body)] * 4
+    k12, _, undeformed = beam_segment(length)
+    pieces = [segment_from_matrix(k12, undeformed, body)] * 4
     bricks = blade(np.linspace(1.0, 3.0, 9), side, side, across=(3, 2))
     figure = stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999)
     mesh, cut, compressed = (
@@ -205,8 +207,8 @@ def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
 
 
 def bad(change) -> tuple[Array, Array]:
-    k, _, rest = beam_segment(0.5)
-    return change(k.copy()), rest
+    k, _, undeformed = beam_segment(0.5)
+    return change(k.copy()), undeformed
 
 
 def put(k: Array, entry: tuple[int, int], value: float) -> Array:
@@ -241,8 +243,8 @@ def test_a_matrix_that_is_no_segments_is_refused(change, match: str) -> None:
 
 def test_a_matrix_of_another_place_is_refused() -> None:
     """In millimetres where metres were meant: rotations no longer fit translations."""
-    k, _, rest = beam_segment(0.5)
-    wrong = rest.copy()
+    k, _, undeformed = beam_segment(0.5)
+    wrong = undeformed.copy()
     wrong[0, 3] *= 1e3
     with pytest.raises(CondensationError, match=r"as a rigid body is resisted .*units"):
         between(k, wrong, "segment")
@@ -250,14 +252,14 @@ def test_a_matrix_of_another_place_is_refused() -> None:
 
 def test_a_mechanism_between_sections_is_refused() -> None:
     """Turning about x and y by as much each way meets no force; and turning about x alone."""
-    rest = at(0.5)
-    D = np.concatenate([-np.eye(6), sp.adjoint(rest)], axis=1)
+    undeformed = at(0.5)
+    D = np.concatenate([-np.eye(6), sp.adjoint(undeformed)], axis=1)
     free = np.eye(6)
     free[3, 4] = free[4, 3] = 1.0
     with pytest.raises(CondensationError, match="'segment': more than six motions without force"):
-        between(D.T @ free @ D, rest, "segment")
+        between(D.T @ free @ D, undeformed, "segment")
     with pytest.raises(CondensationError, match="nothing resists the rotation about x of frame a"):
-        between(D.T @ np.diag([1.0, 1, 1, 0, 1, 1]) @ D, rest, "segment")
+        between(D.T @ np.diag([1.0, 1, 1, 0, 1, 1]) @ D, undeformed, "segment")
 
 
 def test_coinciding_frames_are_refused() -> None:

@@ -57,7 +57,7 @@ def with_all() -> Blade:
     return replace(smooth, curve=np.concatenate([r[:1], r[0] + np.cumsum(steps, axis=0)]), kinks=(s[2], s[3]))
 
 
-@pytest.mark.parametrize(("mass", "stiffness"), [("consistent", "corotational"), ("half_end", "parent")])
+@pytest.mark.parametrize(("mass", "stiffness"), [("consistent", "corotational"), ("half_end", "body_fixed")])
 def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) -> None:
     """Two straight beams, each divided on its own, fixed to each other at an angle in a general mechanism."""
     s = np.array([0.0, 1.0])
@@ -71,9 +71,9 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
     corner = mb.Joint(
         "corner", "fixed", "body 8", "tip 0", at_parent=sp.pose(sp.rotation(2, np.array(-ANGLE)), np.zeros(3))
     )
-    rest = second.beams.rest
+    undeformed = second.beams.undeformed
     joints = tuple(
-        mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=rest[k]) for k in range(2)
+        mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=undeformed[k]) for k in range(2)
     )
     beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", one(second.beams, k)) for k in range(2))
     whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))
@@ -140,7 +140,7 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
     code = registry.code(name)
     if code.version() is None:
         pytest.skip(f"{name} is not installed")
-    ours = modes(blade, 1.0, 12, 6, mass="half_end", stiffness="parent")
+    ours = modes(blade, 1.0, 12, 6, mass="half_end", stiffness="body_fixed")
     theirs = code.solve(blade, 1.0, 12, 6)
     np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=1e-8 if name == "pinocchio" else 1e-6)
     np.testing.assert_allclose(
@@ -152,7 +152,7 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
 
 
 def test_bodies_of_the_joint_chain_keep_their_place() -> None:
-    chain = discretize(with_all(), 9, "half_end", "parent")
+    chain = discretize(with_all(), 9, "half_end", "body_fixed")
     here = np.eye(4)
     for k, place in enumerate(joint_chain.places(chain), 1):
         here = here @ place

@@ -93,7 +93,7 @@ def test_a_double_pendulum_in_full_swing() -> None:
     assert not r.gamma_bar.any()
 
 
-def slider_crank(rate: float, acceleration: float, held: bool) -> Mechanism:
+def slider_crank(rate: float, acceleration: float, prescribed: bool) -> Mechanism:
     """Crank of 0.3 m, massless rod of 1 m, slider of 2 kg along x; the loop is closed at the slider's pin."""
     return Mechanism(
         (Body("crank"), Body("rod"), Body("slider", inertia(2.0))),
@@ -103,7 +103,7 @@ def slider_crank(rate: float, acceleration: float, held: bool) -> Mechanism:
             Joint("guide", "prismatic", "ground", "slider", at(axis="x")),
             Joint("pin", "revolute", "rod", "slider", at(x=1.0), at(), cut=True),
         ),
-        (Motion("crank.rz", 0.7, rate, acceleration),) if held else (),
+        (Motion("crank.rz", 0.7, rate, acceleration),) if prescribed else (),
     )
 
 
@@ -127,7 +127,7 @@ def closed(tree, theta: float) -> np.ndarray:
 def test_a_slider_crank_follows_its_crank() -> None:
     """A prescribed crank leaves nothing free: γ̄ is the whole acceleration, and λ of Φᴹ the torque it takes (reversed)."""
     rate, acceleration = 5.0, -2.0
-    tree = compile_tree(slider_crank(rate, acceleration, held=True))
+    tree = compile_tree(slider_crank(rate, acceleration, prescribed=True))
     r = reduced(tree, closed(tree, 0.7), np.zeros(0))
     _, v, a = slider(0.7, rate, acceleration)
     at_guide = tree.coordinates.index("guide.z")
@@ -141,7 +141,7 @@ def test_a_slider_crank_follows_its_crank() -> None:
 
 def test_a_free_slider_crank_keeps_its_energy() -> None:
     """½ m ẋ² stays: m ẍ ẋ = 0, so the acceleration of the crank makes ẍ = 0."""
-    tree = compile_tree(slider_crank(0.0, 0.0, held=False))
+    tree = compile_tree(slider_crank(0.0, 0.0, prescribed=False))
     r = reduced(tree, closed(tree, 0.7), np.array([5.0]), ("crank.rz",))
     dv, _ = accelerations(r)
     at_crank, at_guide = (tree.coordinates.index(name) for name in ("crank.rz", "guide.z"))
@@ -158,7 +158,7 @@ def test_nothing_is_left_of_Q_hat_where_a_mechanism_is_steady() -> None:
         (Body("hub"), Body("mass", inertia(1.0))),
         (Joint("shaft", "revolute", "ground", "hub"), Joint("slot", "prismatic", "hub", "mass", at(axis="x"))),
         (Motion("shaft.rz", 0.0, 1.0),),
-        (CoordinateSpring("slot.z", stiffness=4.0, rest=1.0),),
+        (CoordinateSpring("slot.z", stiffness=4.0, neutral=1.0),),
     )
     linear = lz.linearize(swung)
     here = reduced(linear.tree, linear.state.q, np.zeros(1))

@@ -53,7 +53,7 @@ def five_bar(cut: str = "C", drive: float = 2.0) -> mb.Mechanism:
         (
             mb.Motion("turn.rz", 0.2, 1.5),
             mb.Motion("A.rz", law=Polynomial([2.0, drive])),
-            mb.Motion("E.rz", None, -1.0, 0.3, held=False),
+            mb.Motion("E.rz", None, -1.0, 0.3, prescribed=False),
         ),
         coordinate_springs=(
             mb.CoordinateSpring("E.rz", 60.0, 2.0, 0.6),
@@ -69,7 +69,7 @@ def five_bar(cut: str = "C", drive: float = 2.0) -> mb.Mechanism:
 GUESS = {"A.rz": 2.0, "B.rz": -1.5, "E.rz": 0.8, "D.rx": 0.1, "D.ry": 0.5}
 
 
-def reduced_residual(linear: lz.Linear, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
+def reduced_residual(linear: lz.Linearization, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
     """Rᵀτ of the exact equations with the independent coordinates moved: loops closed anew, rates and accelerations too."""
     tree, state, part = linear.tree, linear.state, linear.partition
     q, v, a = state.q.copy(), state.v.copy(), state.a.copy()
@@ -184,11 +184,11 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
     """A bushing with a full 6×6 damping between bodies that turn about each other."""
     rng = np.random.default_rng(4)
     damping = np.cov(rng.normal(size=(6, 30)))
-    rest = sp.exp(0.2 * rng.normal(size=6))
+    undeformed = sp.exp(0.2 * rng.normal(size=6))
     m = mb.Mechanism(
         (mb.Body("a", mb.inertia(1.0, 0.3)), mb.Body("b", mb.inertia(2.0, 0.2, (0.1, 0.3, 0)))),
         (mb.Joint("p", "spherical", "ground", "a", mb.at(0.2)), mb.Joint("q", "free", "a", "b", mb.at(0.5, 0.1, 0.3))),
-        beams=(mb.Beam("a", "b", mb.bushing(rest, np.zeros((6, 6))), damping, mb.at(0.1), mb.at(y=0.2)),),
+        beams=(mb.Beam("a", "b", mb.bushing(undeformed, np.zeros((6, 6))), damping, mb.at(0.1), mb.at(y=0.2)),),
     )
     tree = compile_tree(m)
     bare = compile_tree(replace(m, beams=()))
@@ -201,7 +201,7 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
         def strain(q: np.ndarray) -> np.ndarray:
             x, _ = poses(tree, q)
             a, b = x[0] @ mb.at(0.1), x[1] @ mb.at(y=0.2)
-            return sp.log((sp.inverse(a) @ b)[None])[0] - sp.log(rest[None])[0]
+            return sp.log((sp.inverse(a) @ b)[None])[0] - sp.log(undeformed[None])[0]
 
         h = 1e-6
         E = np.stack([(strain(q + h * e) - strain(q - h * e)) / (2 * h) for e in np.eye(n)], axis=-1)
@@ -216,7 +216,9 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
 
 def test_a_loop_that_moves_at_no_given_rate_is_refused() -> None:
     m = five_bar()
-    with pytest.raises(mb.MechanismError, match=r"coordinate '\w\.r\w': its loop moves.*at which rate.*held = false"):
+    with pytest.raises(
+        mb.MechanismError, match=r"coordinate '\w\.r\w': its loop moves.*at which rate.*prescribed = false"
+    ):
         lz.linearize(replace(m, motions=m.motions[:2]), GUESS)
 
 

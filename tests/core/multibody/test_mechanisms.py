@@ -69,8 +69,8 @@ def test_double_pendulum() -> None:
     np.testing.assert_allclose(frequencies(m) ** 2, G * (2 + np.sqrt(2) * np.array([-1, 1])), rtol=1e-12)
 
 
-@pytest.mark.parametrize("held", [True, False], ids=["azimuth held", "azimuth free"])
-def test_conical_pendulum_about_its_steady_cone(held: bool) -> None:
+@pytest.mark.parametrize("prescribed", [True, False], ids=["azimuth held", "azimuth free"])
+def test_conical_pendulum_about_its_steady_cone(prescribed: bool) -> None:
     """cos θ = g/(l Ω²); ω = Ω sin θ at a prescribed rate, Ω √(1 + 3 cos²θ) when the azimuth is free."""
     omega, length = 4.0, 1.0
     cosine = G / (length * omega**2)
@@ -80,15 +80,15 @@ def test_conical_pendulum_about_its_steady_cone(held: bool) -> None:
             Joint("turn", "revolute", "ground", "arm"),
             Joint("swing", "revolute", "arm", "bob", at(axis="y"), at(axis="y")),
         ),
-        (Motion("turn.rz", 0.0, omega, held=held),),
+        (Motion("turn.rz", 0.0, omega, prescribed=prescribed),),
         gravity=(0, 0, -G),
     )
     linear = lz.linearize(m, {"swing.rz": -1.0})
     assert np.cos(linear.state.q[1]) == pytest.approx(cosine, rel=1e-12)
-    expected = omega * (np.sqrt(1 - cosine**2) if held else np.sqrt(1 + 3 * cosine**2))
+    expected = omega * (np.sqrt(1 - cosine**2) if prescribed else np.sqrt(1 + 3 * cosine**2))
     found = lz.modes(linear).frequencies
     assert found[-1] == pytest.approx(expected, rel=1e-9)
-    if not held:  # the azimuth itself: a zero (double) root
+    if not prescribed:  # the azimuth itself: a zero (double) root
         assert np.abs(found[:-1]).max() < 1e-5 * expected
 
 
@@ -149,7 +149,7 @@ def top(precession: float, spin: float, i1: float, i3: float, weight_arm: float)
             Joint("nutation", "revolute", "yoke", "cradle", at(axis="y"), at(axis="y")),
             Joint("spin", "revolute", "cradle", "rotor"),
         ),
-        (Motion("precession.rz", 0.0, precession, held=False), Motion("spin.rz", 0.0, spin, held=False)),
+        (Motion("precession.rz", 0.0, precession, prescribed=False), Motion("spin.rz", 0.0, spin, prescribed=False)),
         gravity=(0, 0, -G),
     )
 
@@ -376,9 +376,9 @@ def test_spring_damper_between_points() -> None:
 def test_point_spring_tangents_match_difference_quotients() -> None:
     """Springs, dampers and bushings between bodies that move: τ's analytic tangents against quotients."""
     rng = np.random.default_rng(8)
-    rest = sp.exp(0.1 * rng.normal(size=(1, 6)))
+    undeformed = sp.exp(0.1 * rng.normal(size=(1, 6)))
     k6 = np.cov(rng.normal(size=(6, 30))) * 50
-    bushing = bm.bushing(rest[0], k6, rng.normal(size=6))
+    bushing = bm.bushing(undeformed[0], k6, rng.normal(size=6))
     m = Mechanism(
         (Body("a", inertia(1.0, 0.3, (0.1, 0.2, 0))), Body("b", inertia(2.0, 0.2, (0, 0.3, 0.1)))),
         (Joint("p", "spherical", "ground", "a", at(0.2)), Joint("q", "free", "a", "b", at(0.5, 0.1, 0.3))),
@@ -407,12 +407,14 @@ def test_point_spring_tangents_match_difference_quotients() -> None:
 
 
 def test_the_hubs_zero_mode_when_its_speed_is_free() -> None:
-    held = mechanism(discretize(PARK, 6), 10.0)
-    free = Mechanism(held.bodies, held.joints, (Motion("hub.rz", 0.0, 10.0, held=False),), beams=held.beams)
+    clamped = mechanism(discretize(PARK, 6), 10.0)
+    free = Mechanism(
+        clamped.bodies, clamped.joints, (Motion("hub.rz", 0.0, 10.0, prescribed=False),), beams=clamped.beams
+    )
     found = np.sort(lz.modes(lz.linearize(free)).frequencies)
     assert found[0] < 1e-4
     # flapwise modes do not know; the first chordwise mode of a blade free to turn is that of a pinned beam, far above
-    flapwise = frequencies(held)
+    flapwise = frequencies(clamped)
     assert np.abs(found / flapwise[1] - 1).min() < 1e-6
 
 

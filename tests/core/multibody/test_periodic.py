@@ -39,7 +39,7 @@ def rotor(blades: int, stiffness: float = STIFF) -> mb.Mechanism:
 
 def spinning(moments: tuple[float, float, float]) -> mb.Mechanism:
     return mb.Mechanism(
-        (B("b", mb.inertia(3.0, moments)),), (J("p", "free", "ground", "b"),), (M("p.rz", rate=6.0, held=False),)
+        (B("b", mb.inertia(3.0, moments)),), (J("p", "free", "ground", "b"),), (M("p.rz", rate=6.0, prescribed=False),)
     )
 
 
@@ -120,7 +120,7 @@ def test_the_command_says_so_in_one_line(capsys, tmp_path) -> None:
     path = tmp_path / "spin.toml"
     path.write_text(
         'name = "spin"\n[bodies.b]\nmass = 3.0\nmoments = [5.0, 11.0, 8.0]\n[joints.p]\nkind = "free"\nparent = "ground"\n'
-        'child = "b"\n[motions]\np.rz = { rate = 6.0, held = false }\n',
+        'child = "b"\n[motions]\np.rz = { rate = 6.0, prescribed = false }\n',
         encoding="utf-8",
     )
     with pytest.raises(SystemExit) as ended:

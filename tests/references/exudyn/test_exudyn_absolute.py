@@ -52,7 +52,9 @@ def absolute(mechanism: mb.Mechanism, placed: dict[str, np.ndarray]) -> System:
     for s in mechanism.springs:
         ends = [marker(b, sp.pose(np.eye(3), p)) for b, p in ((s.body_a, s.point_a), (s.body_b, s.point_b))]
         mbs.AddObject(
-            items.SpringDamper(markerNumbers=ends, referenceLength=s.rest, stiffness=s.stiffness, damping=s.damping)
+            items.SpringDamper(
+                markerNumbers=ends, referenceLength=s.free_length, stiffness=s.stiffness, damping=s.damping
+            )
         )
     mbs.Assemble()
     return System(exu, container, mbs, 6 * len(mechanism.bodies))

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(em.CODE.version() is None, reason=f"not installe
 G = 9.81
 
 
-def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linear, em.Stages]:
+def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linearization, em.Stages]:
     """Every stage of both, K̂ to 1e-9, for Exudyn has it by differences; returns both for more."""
     linear = lz.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state

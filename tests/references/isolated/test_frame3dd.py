@@ -12,7 +12,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.references.isolated import frame3dd as frame3dd_frame
 from southwell.references.isolated import frame3dd_worker
-from southwell.references.isolated.frame3dd import CODE, MOST, SECTIONS, request
+from southwell.references.isolated.frame3dd import CODE, MAX_ELEMENTS, SECTIONS, request
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 
@@ -24,7 +24,7 @@ POINT = np.diag([7.2, 7.2, 7.2, 0.0, 0.0, 0.0])
 
 
 def core(blade: Blade, omega: float, count: int = 5) -> Array:
-    return solve.modes(blade, omega, 100, count, model=CODE.model).frequencies
+    return solve.modes(blade, omega, 100, count, effects=CODE.effects).frequencies
 
 
 @needs_frame3dd
@@ -64,7 +64,7 @@ def test_shapes_are_cores() -> None:
     """Of the pitched, twisted blade, real as there is no Coriolis force; sign aside."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 60, 4).shapes[:, :, 1:3].real.reshape(4, -1)
-    theirs = solve.modes(blade, 3.0, 60, 4, model=CODE.model).shapes[:, :, 1:3].reshape(4, -1)
+    theirs = solve.modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours * theirs.conj(), axis=1)) / norms, 1, atol=1e-4)
 
@@ -99,8 +99,8 @@ def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
 
 
 def test_refuses_what_it_has_no_time_for() -> None:
-    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
-        CODE.solve(PARK, 10.0, MOST + 1, 4)
+    with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
+        CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
     s = np.linspace(0, 6, SECTIONS + 3)
     kinked = replace(
         PARK,

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from southwell.cases.conformance.blades import PROPERTIES
 from southwell.core import solve
 from southwell.core.blade import Blade, mass_at, stiffness_at, uniform_blade, without_rotary_inertia
-from southwell.references.isolated.sharpy import CODE, MOST, _shapes, _unpacked, request
+from southwell.references.isolated.sharpy import CODE, MAX_ELEMENTS, _shapes, _unpacked, request
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 
@@ -156,5 +156,5 @@ def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
 
 
 def test_refuses_what_it_cannot_hold() -> None:
-    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
-        CODE.solve(PARK, 10.0, MOST + 1, 4)
+    with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
+        CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)

@@ -13,7 +13,7 @@ from southwell.core.blade import Blade, without_rotary_inertia
 from southwell.core.element.discretize import discretize
 from southwell.core.modes import STATIONS
 from southwell.references.joint_chains import pinocchio as pinocchio_chain
-from southwell.references.joint_chains.pinocchio import CODE, MOST
+from southwell.references.joint_chains.pinocchio import CODE, MAX_ELEMENTS
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, A, E, I, curved, tapered, yoo_shin
 
@@ -29,7 +29,7 @@ TIP_MASS[[3, 5], [3, 5]] += 10.0
 
 
 def core(blade: Blade, omega: float, elements: int, count: int) -> Array:
-    return solve.modes(blade, omega, elements, count, mass="half_end", stiffness="parent").frequencies
+    return solve.modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed").frequencies
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int)
 def test_shapes_agree_with_core() -> None:
     """Between nodes too: the chain's spline against core's own shape functions."""
     ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
-    theirs = solve.modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="parent").shapes.reshape(5, -1)
+    theirs = solve.modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=2e-3)
 
@@ -145,10 +145,10 @@ def test_shapes_have_axes() -> None:
 def test_a_joint_with_a_wrong_derivative_is_found_out() -> None:
     """Pinocchio's composite joint of a translation and three rotations: dtau_dq is not symmetric."""
     pin = pytest.importorskip("pinocchio")
-    chain = discretize(POINT_MASSES, 3, "half_end", "parent")
+    chain = discretize(POINT_MASSES, 3, "half_end", "body_fixed")
     model = pin.Model()
     link = model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hub")
-    for place in (chain.nodes[1], *chain.beams.rest[1:]):
+    for place in (chain.nodes[1], *chain.beams.undeformed[1:]):
         joint = pin.JointModelComposite(pin.JointModelTranslation())
         for turn in (pin.JointModelRX(), pin.JointModelRY(), pin.JointModelRZ()):
             joint.addJoint(turn)
@@ -182,8 +182,8 @@ def test_a_load_that_no_steady_state_carries_says_how_far_it_went() -> None:
 
 
 def test_refuses_what_it_cannot_hold() -> None:
-    with pytest.raises(CodeError, match=f"elements: {MOST + 1}"):
-        CODE.solve(PARK, 10.0, MOST + 1, 4)
+    with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
+        CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
 
 
 def test_takes_every_blade_of_these_tests() -> None:

@@ -108,7 +108,7 @@ def test_an_unknown_code_is_named_and_the_nearest_suggested() -> None:
     [
         ("no_such_module:CODE", "No module named 'no_such_module'"),
         ("misbehaving:NOTHING_HERE", "no attribute 'NOTHING_HERE'"),
-        ("misbehaving:NOT_A_CODE", "lacks name, model"),
+        ("misbehaving:NOT_A_CODE", "lacks name, effects"),
     ],
 )
 def test_a_path_that_leads_to_no_code_is_refused(path: str, told: str) -> None:

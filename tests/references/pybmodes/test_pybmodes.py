@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from southwell.cases.input.library import load
 from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade, without_rotary_inertia
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.references.protocol.interface import CodeError
 from southwell.references.pybmodes import beam as pybmodes_beam
 from southwell.references.pybmodes.beam import CODE
@@ -38,7 +38,7 @@ def orders(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> A
 
 def core(blade: Blade, omega: float, count: int) -> Array:
     """With the same effects left out; sure to 1e-7 at least, by 160 elements of fourth order."""
-    return solve.modes(blade, omega, 160, count, model=CODE.model).frequencies
+    return solve.modes(blade, omega, 160, count, effects=CODE.effects).frequencies
 
 
 def shaft(I_y: float, I_z: float) -> Blade:
@@ -101,7 +101,7 @@ def test_shapes_are_those_of_core() -> None:
     """Displacements by pairing; and the axes: modes of a pitched, twisted blade have a sense."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
-    theirs = solve.modes(blade, 3.0, 160, 4, model=CODE.model).shapes.reshape(4, -1)
+    theirs = solve.modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-5)
 
@@ -192,7 +192,7 @@ def test_why_mass_centres_off_the_axis_are_refused() -> None:
     mass[2, 3] = mass[3, 2] = m * e
     blade = replace(blade, mass=np.repeat(mass[None], 2, axis=0))
     assert "mass centres off the axis" in (CODE.unsupported(blade) or "")
-    ours = solve.modes(blade, 2 * np.pi, 80, 5, model=Model(coriolis=False)).frequencies
+    ours = solve.modes(blade, 2 * np.pi, 80, 5, effects=Effects(coriolis=False)).frequencies
     np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], ours, rtol=1e-4)
 
 

@@ -8,7 +8,7 @@ from southwell.core.condense.compressed import chain_from_segments, chain_modes
 from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.matrix_files import read
 from southwell.core.condense.segments import between
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.solve import modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, hexahedra
@@ -41,7 +41,7 @@ def test_square_cantilever() -> None:
     at_rest = calculix.modes(bricks, SQUARE, 0.0, 6, clamped_free_to_contract(HUB))
     np.testing.assert_allclose(at_rest.frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
     turning = calculix.modes(bricks, SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
-    beam = modes(square_beam(), 10.0, 80, 6, model=calculix.MODEL)
+    beam = modes(square_beam(), 10.0, 80, 6, effects=calculix.EFFECTS)
     np.testing.assert_allclose(turning.frequencies, beam.frequencies, rtol=2e-4)
     assert (mac(turning, beam).diagonal() > 0.999).all()
 
@@ -58,7 +58,7 @@ def test_twisted_blade_three_ways(omega: float) -> None:
     np.testing.assert_allclose(theirs.frequencies[:5], ours.frequencies[:5], rtol=1e-3)
     assert (mac(theirs, ours).diagonal()[:5] > 0.99).all()
     chain = chain_from_segments(segments_in_place(), at(ROOT))
-    compressed = chain_modes(chain, omega, 6, model=Model(coriolis=False))
+    compressed = chain_modes(chain, omega, 6, effects=Effects(coriolis=False))
     np.testing.assert_allclose(compressed.frequencies[:5], theirs.frequencies[:5], rtol=2.5e-3)
     assert (mac(theirs, compressed).diagonal()[:5] > 0.99).all()
 

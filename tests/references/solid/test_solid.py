@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from southwell.core.condense import ties
-from southwell.core.effects import Model
+from southwell.core.effects import Effects
 from southwell.core.solve import modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import hexahedra
@@ -120,7 +120,7 @@ def test_coriolis_forces() -> None:
         found = hexahedra.modes(
             bricks, material, omega, 4, clamped_free_to_contract(0.0), coriolis=coriolis
         ).frequencies
-        exact = modes(beam, omega, 60, 4, model=Model(coriolis=coriolis)).frequencies
+        exact = modes(beam, omega, 60, 4, effects=Effects(coriolis=coriolis)).frequencies
         np.testing.assert_allclose(found, exact, rtol=1e-3)
         drop[coriolis] = found[0], exact[0]
     solids, beams = (drop[True][k] / drop[False][k] - 1 for k in (0, 1))

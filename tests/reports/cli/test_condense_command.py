@@ -165,8 +165,10 @@ def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
     kept = condensed.read(tmp_path / "segments.json")
     same(kept.segments, found.segments, 0.0)
     np.testing.assert_array_equal(kept.root, found.root)
-    (tmp_path / "segments.json").write_text((tmp_path / "segments.json").read_text().replace('"rest"', '"reset"', 1))
-    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .reset.*condense again"):
+    (tmp_path / "segments.json").write_text(
+        (tmp_path / "segments.json").read_text().replace('"undeformed"', '"deformed"', 1)
+    )
+    with pytest.raises(CaseError, match=r"segments.json: .*unknown field .deformed.*condense again"):
         condensed.read(tmp_path / "segments.json")
 
 

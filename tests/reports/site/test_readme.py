@@ -11,7 +11,7 @@ from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.verify import core_solver
 from southwell.cases.verify.lumping import CASE, OMEGA
-from southwell.core.effects import FULL, Model
+from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.solve import modes
 from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
@@ -95,7 +95,7 @@ def cores() -> list[float]:
 
 def test_cores_frequencies_in_the_table_are_those_that_core_gives_now() -> None:
     case = library.load(CASE)
-    found = core_solver.converged(case.variants[0].blade, OMEGA, case.text.compare, FULL)
+    found = core_solver.converged(case.variants[0].blade, OMEGA, case.text.compare, ALL_EFFECTS)
     assert isinstance(found, core_solver.Converged)
     estimates = [s.estimate.value for s in found.settled if s.estimate]
     np.testing.assert_allclose(cores(), estimates, rtol=1e-9, err_msg="run `make verify` and `make readme`")
@@ -112,8 +112,8 @@ def test_the_papers_own_discretisation_in_the_table_rounds_to_the_printed_digits
     chordwise = [c.frequency for c in cells if c.family == "chordwise"]
     assert [f"{f:.4g}" for f in sorted(f for f in chordwise if f)] == ["11.71", "70.37", "189.7"]
     blade = library.load(CASE).variants[0].blade
-    model = Model(rotary_inertia=False)
-    found = modes(blade, OMEGA, 50, 6, mass="half_end", stiffness="parent", model=model).frequencies
+    model = Effects(rotary_inertia=False)
+    found = modes(blade, OMEGA, 50, 6, mass="half_end", stiffness="body_fixed", effects=model).frequencies
     np.testing.assert_allclose(sorted({c.frequency for c in cells if c.frequency}), found, rtol=1e-9)
 
 
