@@ -425,6 +425,7 @@ def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
     from southwell.cases.input import files
     from southwell.cases.input.errors import CaseError
     from southwell.core.condense.exported import MatrixFileError
+    from southwell.reports.cli.errors import IncompleteError
 
     rng = random.Random(f"{seed}/{number}")
     kind = rng.choice(list(FIRST))
@@ -439,7 +440,7 @@ def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
         with files.reading(first):
             take(kind, first, rng)
         return kind, ""
-    except (CaseError, MatrixFileError) as error:
+    except (CaseError, MatrixFileError, IncompleteError) as error:
         told = str(error)
         return kind, "" if "\n" not in told.strip() and len(told) < LONGEST_LINE else f"message: {told[:300]!r}"
     except SlowError:
