@@ -109,7 +109,7 @@ def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
         raise CaseError(f"{htc.path}: timoschenko_input: no filename in the blade's main_body: add it")
     file, chosen = named["filename"], named.get("set")
     numbers = [number(w) for w in chosen.words[1:]] if chosen else []
-    if chosen and (len(numbers) != 2 or not all(n and n == int(n) for n in numbers)):
+    if chosen and (len(numbers) != 2 or not all(n and n.is_integer() for n in numbers)):
         raise CaseError(
             f"{chosen.at}: set: {' '.join(chosen.words[1:])}: not set and subset, as in `set 1 1`: correct it"
         )

@@ -265,6 +265,14 @@ BAD = {
         Mount(),
         r"hawc2.htc: line 19: filename: ./other.dat: not found",
     ),
+    "htc set NaN": (HTC, "set 1 2 ;", "set 1 nan ;", Mount(), r"hawc2.htc: line 20: set: 1 nan: not set and subset"),
+    "htc set infinite": (
+        HTC,
+        "set 1 2 ;",
+        "set inf 2 ;",
+        Mount(),
+        r"hawc2.htc: line 20: set: inf 2: not set and subset",
+    ),
     "htc short": (HTC, "19.988", "16.0", Mount(), r"c2_def is 16\.\d+ m long, the stations end at 20 m"),
     "htc body": (HTC, "blade1 ;", "wing1 ;", Mount(), r"no main_body whose name begins with blade"),
     "bmi tower": (
