@@ -1,12 +1,14 @@
 """Numbers in exported matrices, as Fortran and Nastran write them."""
 
-import math
 import re
 
 from .exported import MatrixFileError
 
 LARGEST_LABEL = 2**31
 """Of a node, row or column."""
+
+LARGEST_ENTRY = 1e30
+"""Magnitude of a matrix entry; beyond it, products overflow."""
 
 _FORM = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+|[+-]\d+)?")
 
@@ -30,7 +32,7 @@ def whole(name: str, number: int, word: str) -> int:
 
 
 def real(name: str, number: int, word: str) -> float:
-    """A finite number; also as 1.5D+03 and 1.5+3.
+    """A number of at most ``LARGEST_ENTRY``; also as 1.5D+03 and 1.5+3.
 
     Raises:
         MatrixFileError: naming the line.
@@ -39,6 +41,6 @@ def real(name: str, number: int, word: str) -> float:
         raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a number: columns shifted?")
     mantissa, exponent = found[1], (found[2] or "").lstrip("EeDd")
     value = float(f"{'-' if word.startswith('-') else ''}{mantissa}E{exponent or 0}")
-    if not math.isfinite(value):
-        raise MatrixFileError(f"{name}, line {number}: {word[:40]}: too large for a number: a slip in the exponent?")
+    if abs(value) > LARGEST_ENTRY:
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]}: implausibly large: check the exponent")
     return value

@@ -32,8 +32,8 @@ import numpy as np
 
 DATA = Path(__file__).parents[1] / "data"
 
-SECONDS, MEMORY, BATCH = 10.0, 1 << 30, 250
-"""Of one trial at most, s and bytes; trials in one process."""
+SECONDS, WAITING, MEMORY, BATCH = 10.0, 60.0, 1 << 30, 250
+"""Of one trial at most: processor time and wall time in s, and bytes; trials in one process."""
 
 LONGEST_LINE = 1500
 """Characters of a message."""
@@ -434,8 +434,10 @@ def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
     content = victim.read_bytes()
     if kind != "arguments":
         victim.write_bytes(mutated(content, rng))
-    before = signal.signal(signal.SIGALRM, _slow)
-    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    timers = ((signal.SIGPROF, signal.ITIMER_PROF, SECONDS), (signal.SIGALRM, signal.ITIMER_REAL, WAITING))
+    before = [signal.signal(number, _slow) for number, _, _ in timers]
+    for _, timer, seconds in timers:
+        signal.setitimer(timer, seconds)
     try:
         with files.reading(first):
             take(kind, first, rng)
@@ -448,8 +450,9 @@ def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
     except Exception:
         return kind, traceback.format_exc(limit=-6)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        for (number, timer, _), handler in zip(timers, before, strict=True):
+            signal.setitimer(timer, 0)
+            signal.signal(number, handler)
         victim.write_bytes(content)
         shutil.rmtree(folder / "out", ignore_errors=True)
 

@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-9
 """Of the blade's length: a root or tip this near to its place is taken to be there, as computed files are rounded."""
 
+MAX_LINES = 250_000
+"""Of a deck; the longest public one has some thousands."""
+
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf(inity)?)(\(\w*\))?", re.IGNORECASE)
 _KEYED = re.compile(r"""\s*("[^"]*"|'[^']*'|[^\s,]+)[\s,]+([A-Za-z]\w*)(?:\((\d+)\))?""")
@@ -47,9 +50,12 @@ def load(path: Path) -> Text:
     """The lines of a file.
 
     Raises:
-        CaseError: if it cannot be read, is no text, or empty.
+        CaseError: if it cannot be read, is no text, is empty, or has more than ``MAX_LINES`` lines.
     """
-    return Text(path, tuple(files.text(path, older=True).splitlines()))
+    content = files.text(path, older=True)
+    if content.count("\n") + content.count("\r") > 2 * MAX_LINES or len(lines := content.splitlines()) > MAX_LINES:
+        raise CaseError(f"{path}: more than {MAX_LINES} lines: is it the right file?")
+    return Text(path, tuple(lines))
 
 
 def number(token: str) -> float | None:

@@ -10,6 +10,7 @@ import scipy.sparse as ss
 from southwell.cases.condense import condensed, condensing
 from southwell.cases.input import files, mechanisms, readers, schema, toml
 from southwell.cases.input.errors import CaseError
+from southwell.cases.input.readers.text import MAX_LINES
 from southwell.cases.judge import results
 from southwell.cases.regression import history
 from southwell.cases.verify import user_results
@@ -43,6 +44,12 @@ def test_only_regular_files_are_opened(folder: Path, name: str, why: str) -> Non
     changed(folder / "elastodyn_main.dat", "elastodyn_blade.dat", name)
     with files.outside_allowed(), pytest.raises(CaseError, match=why):
         readers.read(folder / "elastodyn_main.dat")
+
+
+def test_decks_of_too_many_lines_are_not_taken_apart(tmp_path: Path) -> None:
+    (tmp_path / "long.dat").write_text("1\n" * (MAX_LINES + 1))
+    with pytest.raises(CaseError, match=r"long.dat: more than 250000 lines: is it the right file\?"):
+        readers.read(tmp_path / "long.dat")
 
 
 def test_files_larger_than_stated_are_not_read(tmp_path: Path) -> None:
@@ -202,7 +209,7 @@ MARKET = "%%MatrixMarket matrix"
         (f"{MARKET} coordinate real general\n9 9 1\n{2**63} 1 1.0\n", "so large a number"),
         (f"{MARKET} coordinate real general\n9 9 1\n10 1 1.0\n", "a matrix with 9 rows"),
         (f"{2**63} 1 1.0\n", "so large a number"),
-        (f"1 1 {'9' * 400}\n", "too large for a number"),
+        (f"1 1 {'9' * 400}\n", "implausibly large: check the exponent"),
         ("1 1 nan\n", "is not a number"),
     ],
 )
