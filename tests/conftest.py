@@ -7,6 +7,8 @@ from hypothesis import settings
 
 from southwell.tests.support.guesses import every_steady_state_again
 
+os.environ.setdefault("SOUTHWELL_FRESH", "1")  # no test takes an answer that an earlier one has stored
+
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("nightly", derandomize=False, deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))

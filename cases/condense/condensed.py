@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.condense.compressed import segment_modes
+from ...core.condense.matrix_words import LARGEST_ENTRY
 from ...core.condense.segments import Segment
+from ...core.condense.ties import FARTHEST
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
 from ...core.regular_files import LARGEST_DATA, read_bytes
@@ -18,6 +20,8 @@ from ..input.errors import NO_STATE, CaseError, unsteady
 from ..input.names import Name
 
 Array = NDArray[np.float64]
+
+CHANGED = "was the file changed? condense again"
 
 
 @dataclass(frozen=True)
@@ -109,11 +113,36 @@ def read(path: Path) -> Condensed:
     pieces = []
     for k, piece in enumerate(kept.segments):
         found = {field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()}
+        for field in ("stiffness", "inertia"):
+            if not _positive(found[field]):
+                raise CaseError(f"{path}: segments[{k}].{field}: not symmetric and positive definite: {CHANGED}")
+        if not _is_pose(found["undeformed"]):
+            raise CaseError(f"{path}: segments[{k}].undeformed: not a rotation and a displacement: {CHANGED}")
         pieces.append(Segment(**found))
-    return Condensed(kept.name, _square(path, "root", kept.root, 4), pieces)
+    root = _square(path, "root", kept.root, 4)
+    if not _is_pose(root):
+        raise CaseError(f"{path}: root: not a rotation and a displacement: {CHANGED}")
+    return Condensed(kept.name, root, pieces)
+
+
+def _positive(matrix: Array) -> bool:
+    """Whether a matrix (6, 6) is symmetric and positive definite, each to 1e-6 of its diagonal."""
+    diagonal = np.diagonal(matrix)
+    if not (diagonal > 0).all() or np.abs(matrix).max() > LARGEST_ENTRY:
+        return False
+    size = np.sqrt(diagonal)
+    unit = matrix / size[:, None] / size
+    return bool(np.abs(unit - unit.T).max() < 1e-6 and np.linalg.eigvalsh(unit + unit.T)[0] > 0)
+
+
+def _is_pose(x: Array) -> bool:
+    """Whether a matrix (4, 4) is a rotation, to 1e-9, and a displacement within the limits of a blade."""
+    R = x[:3, :3]
+    turns = np.abs(x).max() <= FARTHEST and np.abs(R.T @ R - np.eye(3)).max() < 1e-9 and np.linalg.det(R) > 0
+    return bool(turns and (x[3] == [0, 0, 0, 1]).all())
 
 
 def _square(path: Path, field: str, rows: list[list[float]], n: int) -> Array:
     if {len(rows), *(len(row) for row in rows)} != {n}:
-        raise CaseError(f"{path}: {field}: not {n} × {n}: was the file changed? condense again")
+        raise CaseError(f"{path}: {field}: not {n} × {n}: {CHANGED}")
     return np.array(rows)

@@ -5,6 +5,7 @@ import re
 import shlex
 import shutil
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -23,12 +24,13 @@ from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Level, Planned, Run, Setting
-from ...cases.verify import journal, lumping, matrix, mechanism_case, user_results
+from ...cases.verify import journal, lumping, matrix, mechanism_case, store, user_results
 from ...cases.verify import names as names_of
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
+from ...cases.verify.store import Cached, Store
 from ...cases.verify.user_results import Added
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
@@ -43,6 +45,9 @@ from .errors import UsageError
 from .mounting import Mounting
 from .report import show
 from .subjects import is_blade_file, subjects
+
+FRESH = "SOUTHWELL_FRESH"
+"""Environment variable that means ``--fresh``."""
 
 SCRATCH = "results.partial.tmp"
 """Folder in ``--out`` for temporary files of this run and of the codes it runs."""
@@ -62,6 +67,7 @@ def command(
     rpm: str | None = None,
     omega: str | None = None,
     changes: Changes = (),
+    fresh: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
     """Solve blades with every code, compare the results and write a report.
@@ -103,6 +109,8 @@ def command(
     changes
         Change a property of every blade: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone,
         pitch. May be repeated.
+    fresh
+        Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
     decks = _Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
@@ -132,7 +140,9 @@ def command(
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
     limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
     with writing(out), _journal(out) as kept:
-        run, stopped = _solve(chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits)
+        run, stopped = _solve(
+            chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits, _store(fresh)
+        )
         try:
             if run.cells:
                 show(run, out)
@@ -180,12 +190,18 @@ def _solve(
     workers: int,
     seeded: Sequence[str],
     limits: Mapping[str, Any],
+    kept_before: Store | None,
 ) -> tuple[Run, Stopped | None]:
-    """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once."""
+    """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once.
+
+    Seeded faults are run again every time: they show that this run would have noticed.
+    """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # a killed run's
     pool, watch = Pool(workers, scratch.resolve()), console.Watch()
-    executor = Remembering(pool, kept)
+    fresh = Remembering(pool, kept)
+    cached = Cached(pool, kept_before) if kept_before else None
+    executor = Remembering(cached, kept) if cached else fresh
     lumped: list[Future[tuple[Level, ...]]] = []
     tried: list[Future[list[Control]]] = []
 
@@ -193,7 +209,7 @@ def _solve(
         kept.begin(replace(about, plan=plan))
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
-        tried.extend(executor.submit(table.run, part) for part in _shared_out(seeded, workers))
+        tried.extend(fresh.submit(table.run, part) for part in _shared_out(seeded, workers))
 
     try:
         scratch.mkdir()
@@ -207,6 +223,8 @@ def _solve(
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
         results.write(out / RESULTS, run)
+        if cached and cached.taken:
+            print(f"southwell: {_taken(cached)}", file=sys.stderr)
         return run, None
     except KeyboardInterrupt:
         stopped = Stopped("interrupted", INTERRUPTED)
@@ -217,8 +235,29 @@ def _solve(
         stopped = Stopped(_said(error), INCOMPLETE)
     finally:
         pool.stop()
+        if kept_before:
+            kept_before.close()
         shutil.rmtree(scratch, ignore_errors=True)
     return replace(journal.read(kept.path), unfinished=stopped.what), stopped
+
+
+def _store(fresh: bool) -> Store | None:
+    """The store of answers; None if it is not wanted or cannot be used."""
+    if fresh or os.environ.get(FRESH):
+        return None
+    try:
+        return Store(store.path())
+    except OSError as error:
+        print(f"southwell: answers are neither taken from the store nor kept in it: {_said(error)}", file=sys.stderr)
+        return None
+
+
+def _taken(cached: Cached) -> str:
+    first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(cached.taken))) for when in (min, max))
+    return (
+        f"{len(cached.taken)} of {cached.asked} answers are from the store, computed between {first} and {last}; "
+        "--fresh computes them again"
+    )
 
 
 def _said(error: OSError) -> str:

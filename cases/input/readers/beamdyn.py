@@ -148,7 +148,7 @@ def _points(main: Text) -> Table:
             found[name],
             "the first key point is the root; begin at 0, 0, 0 and put the hub's radius into the main file",
         )
-    rises = np.concatenate([[True], np.diff(z) > 0])
+    rises = np.concatenate([[True], np.diff(z) > ROUNDING * np.abs(z).max()])
     found.need(rises, "kp_zr", z, "not beyond the key point before it: a duplicate or out of order? correct it")
     if count < 2:
         raise CaseError(f"{main.at(found.lines[0])}: 1 key point: a blade needs at least a root and a tip")

@@ -136,8 +136,8 @@ def _axis(told: Told) -> Axis:
     if start > SAME * z[-1]:
         raise CaseError(f"{told.axis.at}: begins {start:g} m from the root: give it from the root, at 0, 0, 0")
     z[0] = 0.0
-    if (np.diff(z) <= 0).any():
-        k = int(np.argmax(np.diff(z) <= 0)) + 1
+    if (flat := np.diff(z) <= SAME * np.abs(z).max()).any():
+        k = int(np.argmax(flat)) + 1
         raise CaseError(f"{told.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
     values = np.stack([x - x[0], y - y[0], twist * told.degrees], axis=1)
     return measured(CubicSpline(z, values, bc_type="natural"), z)

@@ -1,0 +1,64 @@
+"""``southwell cache``: what the store of answers holds, whether it is as it was written, and removal."""
+
+import sys
+import time
+from typing import Annotated
+
+from cyclopts import App, Parameter
+from rich import box
+from rich.table import Table
+
+from ...cases.verify import store
+from ..shared import console
+from ..shared.statuses import FAILED, PASSED
+from .arguments import Positive
+from .errors import UsageError
+
+DAY = 86_400.0
+
+app = App(name="cache", result_action="return_value")
+"""Show, check or empty the store of answers that `southwell verify` takes answers from."""
+
+
+@app.command(name="list")
+def listing() -> int:
+    """List the stored answers by code: number, size, and when they were computed."""
+    opened = _opened()
+    table = Table(box=box.SIMPLE_HEAD, caption=str(store.path()))
+    for head, side in (("code", "left"), ("answers", "right"), ("MB", "right"), ("first", "left"), ("last", "left")):
+        table.add_column(head, justify=side)  # pyright: ignore[reportArgumentType]
+    for one in opened.kept():
+        first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when)) for when in (one.first, one.last))
+        table.add_row(one.label, str(one.count), f"{one.size / 1e6:.1f}", first, last)
+    console.output().print(table)
+    return PASSED
+
+
+@app.command
+def verify() -> int:
+    """Check that every stored answer is as it was written; status 1 if one is not (it would be computed again)."""
+    opened = _opened()
+    bad = opened.damaged()
+    total = sum(one.count for one in opened.kept())
+    print(f"{total} answers, {len(bad)} damaged")
+    return FAILED if bad else PASSED
+
+
+@app.command
+def prune(*, days: Annotated[Positive, Parameter(negative=())] = 30.0) -> int:
+    """Remove stored answers.
+
+    Parameters
+    ----------
+    days
+        Answers computed longer ago than this are removed.
+    """
+    print(f"{_opened().prune(time.time() - days * DAY)} answers removed", file=sys.stdout)
+    return PASSED
+
+
+def _opened() -> store.Store:
+    try:
+        return store.Store(store.path())
+    except OSError as error:
+        raise UsageError(f"store of answers: {error}: set SOUTHWELL_CACHE to another folder") from error

@@ -1,0 +1,188 @@
+"""The store of answers: each part of the key counts, failures are not kept, what is damaged is computed again."""
+
+import os
+import platform
+import sqlite3
+import subprocess
+import sys
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.cases.judge.results import Cell
+from southwell.cases.verify import identity, store
+from southwell.cases.verify.cells import Head, failed
+from southwell.cases.verify.columns import Column
+from southwell.cases.verify.store import Cached, Store
+from southwell.core.blade import uniform_blade
+from southwell.core.effects import ALL_EFFECTS
+from southwell.references.protocol.process import Failure
+
+from ...support import killing
+
+
+class Inline(Executor):
+    """Runs every task at once, in this thread."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        done: Future[Any] = Future()
+        done.set_result(fn(*args, **kwargs))
+        return done
+
+
+CALLS: list[Any] = []
+
+
+def double(x: Any) -> Any:
+    CALLS.append(x)
+    return 2.0 * x
+
+
+def lost(head: Head, core: Any) -> tuple[list[Cell], list[Any]]:
+    CALLS.append(head.code)
+    return [failed(head, 1.0, Failure("timed out", "no answer within 1 s"))], []
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Store:
+    CALLS.clear()
+    return Store(tmp_path / "cache" / store.NAME)
+
+
+def test_an_answer_is_computed_once(kept: Store) -> None:
+    first = Cached(Inline(), kept)
+    assert [first.submit(double, x).result() for x in (1.0, 2.0, 1.0)] == [2.0, 4.0, 2.0]
+    assert CALLS == [1.0, 2.0]
+    again = Cached(Inline(), kept)
+    assert again.submit(double, 2.0).result() == 4.0
+    assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
+
+
+def column(**changed: Any) -> Column:
+    head = Head("case", "code", "1.0", "code", 1e-3, "nothing")
+    made = Column("code", ALL_EFFECTS, head, partial(lost, head))
+    return replace(made, **changed)
+
+
+def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Question, speed, version, effects, sources of this package, machine, and the kernel that is asked for."""
+    head = column().head
+    keys = {
+        store.question(column(), [0.0]),
+        store.question(column(), [1.0]),
+        store.question(column(head=replace(head, version="1.1")), [0.0]),
+        store.question(column(head=replace(head, code="other")), [0.0]),
+        store.question(column(model=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
+        store.question(double, 1.0),
+        store.question(double, 2.0),
+    }
+    assert len(keys) == 7
+    for change in (
+        lambda m: m.setattr(platform, "machine", lambda: "another"),
+        lambda m: m.setenv("OPENBLAS_CORETYPE", "another"),
+        lambda m: m.setattr(identity, "package", lambda: "other sources"),
+    ):
+        with monkeypatch.context() as m:
+            change(m)
+            assert store.question(double, 1.0) not in keys
+    assert store.question(double, 1.0) in keys
+
+
+def test_the_sources_that_count_are_those_that_make_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "core").mkdir()
+    (tmp_path / "cases" / "verify").mkdir(parents=True)
+    (tmp_path / "references").mkdir()
+    monkeypatch.setattr(identity, "__file__", str(tmp_path / "cases" / "verify" / "identity.py"))
+    (tmp_path / "core" / "a.py").write_text("a = 1\n")
+    before = identity.package.__wrapped__()
+    (tmp_path / "core" / "a.py").write_text("a = 2\n")
+    assert identity.package.__wrapped__() != before
+
+
+def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
+    assert store.storable(column())
+    assert not store.storable(column(adapter="0123"))
+    assert not store.storable(column(head=replace(column().head, version="")))
+
+
+def test_failures_are_not_kept(kept: Store) -> None:
+    for _ in range(2):
+        Cached(Inline(), kept).submit(column(), [], []).result()
+    assert CALLS == ["code", "code"]
+    assert kept.kept() == []
+
+
+def test_a_damaged_answer_is_computed_again(kept: Store, tmp_path: Path) -> None:
+    Cached(Inline(), kept).submit(double, 1.0).result()
+    sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None).execute("update answers set value = '3.0'")
+    assert len(kept.damaged()) == 1
+    assert Cached(Inline(), kept).submit(double, 1.0).result() == 2.0
+    assert CALLS == [1.0, 1.0]
+    assert kept.damaged() == []
+
+
+def test_several_writers_lose_nothing(tmp_path: Path) -> None:
+    def write(k: int) -> None:
+        mine = Store(tmp_path / "cache" / store.NAME)
+        for i in range(50):
+            mine.put(f"{k}/{i}", "x", float(i))
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write, range(4)))
+    (one,) = Store(tmp_path / "cache" / store.NAME).kept()
+    assert one.count == 200
+
+
+def test_prune_removes_what_is_old(kept: Store) -> None:
+    kept.put("a", "x", 1.0)
+    (one,) = kept.kept()
+    assert kept.prune(one.last - 1.0) == 0
+    assert kept.prune(one.last + 1.0) == 1
+    assert kept.kept() == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX modes")
+def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path) -> None:
+    (tmp_path / "open").mkdir()
+    (tmp_path / "open").chmod(0o777)
+    with pytest.raises(OSError, match="nobody else"):
+        Store(tmp_path / "open" / store.NAME)
+
+
+def test_a_file_that_is_no_store(tmp_path: Path) -> None:
+    (tmp_path / "cache").mkdir(mode=0o700)
+    (tmp_path / "cache" / store.NAME).write_text("not a database, " * 100)
+    with pytest.raises(OSError, match="not a database"):
+        Store(tmp_path / "cache" / store.NAME)
+
+
+def test_verify_takes_the_second_time_what_it_computed_the_first(tmp_path: Path) -> None:
+    """And says how many, and from when; with --fresh it computes again. Results are the same but for times."""
+    killing.write(tmp_path)
+    line = ["verify", "case.toml", "--codes", "exact-beam", "--faults", "none", "--workers", "1", "--out"]
+    env = {k: v for k, v in os.environ.items() if k != "SOUTHWELL_FRESH"} | {"SOUTHWELL_CACHE": str(tmp_path / "cache")}
+
+    def run(out: str, *more: str) -> str:
+        command = [sys.executable, "-m", "southwell", *line, out, *more]
+        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    assert "from the store" not in run("first")
+    assert "8 of 8 answers are from the store, computed between 20" in run("second")
+    assert "from the store" not in run("third", "--fresh")
+    assert killing.untimed(tmp_path / "first" / "results.jsonl") == killing.untimed(
+        tmp_path / "second" / "results.jsonl"
+    )
+
+
+def test_the_question_of_another_blade_is_another() -> None:
+    blades = [
+        uniform_blade("a", 6.0, 0.3, EA=1e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=m) for m in (1.2, np.nextafter(1.2, 2.0))
+    ]
+    assert store.question(partial(double, blades[0])) != store.question(partial(double, blades[1]))
