@@ -46,12 +46,7 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
         UnstableError: if K is not positive definite.
         EigenError: if LAPACK does not converge, or an entry is not finite.
     """
-    _check_finite(M, C, K)
-    k, m = np.diagonal(K), np.diagonal(M)
-    usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
-    if (k <= 1e-14 * usual * m).any():  # a coordinate without stiffness, but for rounding
-        raise unstable()
-    scale = 1.0 / np.sqrt(np.diagonal(K))  # coordinates of unlike units made alike
+    scale = scaling(M, C, K)
     M, C, K = (scale[:, None] * a * scale for a in (M, C, K))
     try:
         root = np.linalg.cholesky(K)
@@ -73,6 +68,21 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     x = scipy.linalg.solve_triangular(root.T, z[:n, order].conj(), lower=False)  # i A⁻¹S has 1/ω at λ = −iω
     energy = np.sqrt(np.maximum(np.real((x.conj() * (K @ x)).sum(0)), 1e-300))
     return Eigen(1.0 / mu[order], scale[:, None] * x / energy)
+
+
+def scaling(M: Array, C: Array, K: Array) -> Array:
+    """(n,) by which coordinates of unlike units are made alike: each of a stiffness of one.
+
+    Raises:
+        UnstableError: if a coordinate has no stiffness, but for rounding.
+        EigenError: if an entry is not finite.
+    """
+    _check_finite(M, C, K)
+    k, m = np.diagonal(K), np.diagonal(M)
+    usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
+    if (k <= 1e-14 * usual * m).any():
+        raise unstable()
+    return 1.0 / np.sqrt(k)
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,17 @@
 """The rank criterion of the mechanism solver: independent constraints, and directions without stiffness."""
 
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
+from scipy.linalg import lapack
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+
+_LAPACK: Any = lapack
 
 TOLERANCE = 1e-9
 """Singular values below this fraction of the largest count as zero."""
@@ -60,8 +63,46 @@ def ranked(A: Array) -> Ranked:
     return Ranked(u[:, :r], s[:r], vt[:r], vt[r:].T, u[:, r:])
 
 
+@dataclass(frozen=True)
+class Regular:
+    """LU factors of a matrix (n, n) of full rank, as ``scipy.linalg.lu_factor`` has them."""
+
+    factors: tuple[Array, Index]
+
+    @property
+    def null(self) -> Array:
+        """(n, 0) its null space."""
+        return np.zeros((len(self.factors[0]), 0))
+
+    left_null = null
+
+    def solve(self, b: Array) -> Array:
+        """A⁻¹ b of (n,) or (n, k)."""
+        return scipy.linalg.lu_solve(self.factors, b, check_finite=False)
+
+
+def factored(A: Array) -> Regular | Ranked:
+    """Factor a matrix (n, n): by elimination where its condition leaves no doubt about its rank, else as ``ranked``.
+
+    With κ₁ ≥ κ₂/n, and LAPACK's estimate of κ₁ hardly ever below a third of it (Higham, *Accuracy and Stability of Numerical
+    Algorithms*, 2002, sec. 15.3), full rank by the criterion above follows from ``10 n κ₁ < 1/TOLERANCE``.
+
+    Raises:
+        ValueError: an entry is not finite.
+    """
+    if not np.isfinite(A).all():
+        raise ValueError("array must not contain infs or NaNs")
+    if len(A):
+        lu, pivot, info = _LAPACK.dgetrf(A)
+        if info == 0 and _LAPACK.dgecon(lu, float(np.abs(A).sum(0).max()))[0] > 10.0 * len(A) * TOLERANCE:
+            return Regular((lu, pivot))
+    return ranked(A)
+
+
 def pivots(A: Array) -> tuple[Index, Index]:
     """Columns of A that span its range, as QR with column pivoting picks them, and the columns that depend on them."""
+    if not len(A):
+        return np.zeros(0, np.intp), np.arange(A.shape[1])
     r = ranked(A).rank
     if r == 0:
         return np.zeros(0, np.intp), np.arange(A.shape[1])

@@ -5,6 +5,9 @@ mechanism in relative coordinates with dense matrices: the same result by the pa
 """
 
 import time
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +17,17 @@ from .blade import Blade, without_rotary_inertia
 from .chain import as_mechanism
 from .chain.mode_shapes import mode_shapes
 from .chain.pencil import Shape
-from .chain.steady import SteadyStateError
+from .chain.steady import ORDER, SteadyStateError
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
 from .multibody import equilibrium
 from .multibody import linear as lz
-from .multibody.mechanism import MechanismError
-from .multibody.reduced import reduced
-from .multibody.tree import compile_tree
+from .multibody.dynamics import unbalanced
+from .multibody.lowest import definite, lowest
+from .multibody.mechanism import MechanismError, at_rate
+from .multibody.tree import Tree, compile_tree
 from .space import spatial as sp
 
 Array = NDArray[np.float64]
@@ -52,10 +56,30 @@ def modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
+    one = sweep(
+        blade, [omega], elements, count, mass=mass, stiffness=stiffness, effects=effects, gravity=gravity, load=load
+    )
+    return next(one)
+
+
+def sweep(
+    blade: Blade,
+    omegas: Iterable[float],
+    elements: int = 50,
+    count: int = 10,
+    *,
+    mass: Mass = "consistent",
+    stiffness: Measure = "corotational",
+    effects: Effects = ALL_EFFECTS,
+    gravity: Array | None = None,
+    load: Array | None = None,
+) -> Iterator[Modes]:
+    """The modes at one speed after another; arguments and errors as for ``modes``.
+
+    The mechanism is built once, and each steady state is sought from where those before lead to.
+    """
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
-    if not np.isfinite(omega):
-        raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
     if elements > MAX_ELEMENTS:
         raise ValueError(
             f"elements: {elements}: the velocity transformation has dense matrices: at most {MAX_ELEMENTS}; "
@@ -66,39 +90,65 @@ def modes(
             f"effects: no {', no '.join(effects.lacks())}: the velocity transformation keeps prestretch and geometric "
             "stiffness; use the chain solver"
         )
-    begun = time.perf_counter()
     kept = blade if effects.rotary_inertia else without_rotary_inertia(blade)
     body = discretize(kept, elements, mass, stiffness, load)
-    linear = about_steady_state(body, omega, np.zeros(3) if gravity is None else gravity)
-    M, C, K = (0.5 * (linear.M + linear.M.T), 0.5 * (linear.C - linear.C.T), 0.5 * (linear.K + linear.K.T))
-    try:
-        found = eigen.gyroscopic(M, C if effects.coriolis else np.zeros_like(C), K, count)
-    except eigen.UnstableError as error:
-        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.clamped.size else ""
-        raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
-    _check_balance(linear, K, omega, body.scale)
-    shapes = _shapes(body, linear, found.vectors)
-    return Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
+    x, y, z = np.zeros(3).tolist() if gravity is None else gravity.tolist()
+    tree = compile_tree(as_mechanism.mechanism(body, 0.0, (x, y, z)))
+    known: dict[float, Array] = {}  # coordinates at Ω² of the last few speeds
+    for omega in omegas:
+        if not np.isfinite(omega):
+            raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
+        begun = time.perf_counter()
+        try:
+            linear, found = _solved(tree, body, omega, count, effects, known)
+        except (SteadyStateError, eigen.UnstableError):
+            if not known:
+                raise
+            linear, found = _solved(tree, body, omega, count, effects, {})  # not led elsewhere by other speeds
+        known = dict([*known.items(), (omega**2, linear.state.q)][-ORDER - 1 :])
+        shapes = _shapes(body, linear, found.vectors)
+        yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 
 
-def about_steady_state(body: Chain, omega: float, gravity: Array) -> lz.Linearization:
-    """M̂, Ĉ, K̂ of a chain as a mechanism, about its steady state at ``omega`` (rad/s).
+def _solved(
+    tree: Tree, body: Chain, omega: float, count: int, effects: Effects, known: dict[float, Array]
+) -> tuple[lz.Linearization, eigen.Eigen]:
+    linear = _about_steady_state(tree, omega, known)
+    return linear, _lowest(linear, body, omega, count, effects)
+
+
+def _about_steady_state(tree: Tree, omega: float, known: dict[float, Array]) -> lz.Linearization:
+    """M̂, Ĉ, K̂ about the steady state at ``omega`` (rad/s), sought from a polynomial in Ω² through those that are known.
 
     Raises:
         SteadyStateError: no steady state at this speed.
     """
-    x, y, z = gravity.tolist()
-    tree = compile_tree(as_mechanism.mechanism(body, omega, (x, y, z)))
+    here = replace(tree, mechanism=at_rate(tree.mechanism, "hub.rz", omega))
+    guess = np.zeros(len(tree.coordinates))
+    for x, q in known.items():
+        guess += prod((omega**2 - other) / (x - other) for other in known if other != x) * q
     try:
-        return lz.about(tree, equilibrium.steady(tree))
+        return lz.about(here, equilibrium.steady(here, dict(zip(tree.coordinates, guess.tolist(), strict=True))))
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
 
 
-def _check_balance(linear: lz.Linearization, K: Array, omega: float, length: float) -> None:
+def _lowest(linear: lz.Linearization, body: Chain, omega: float, count: int, effects: Effects) -> eigen.Eigen:
+    M, C, K = (0.5 * (linear.M + linear.M.T), 0.5 * (linear.C - linear.C.T), 0.5 * (linear.K + linear.K.T))
+    try:
+        pencil = definite(M, C if effects.coriolis else np.zeros_like(C), K)
+    except eigen.UnstableError as error:
+        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.clamped.size else ""
+        raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
+    state = linear.state
+    left = unbalanced(linear.tree, state.kinematics, state.cartesian, state.q, state.v)[linear.partition.free]
+    _check_balance(pencil.solve(left), omega, body.scale)
+    return lowest(pencil, count)
+
+
+def _check_balance(distance: Array, omega: float, length: float) -> None:
     """Where Q̂ is not zero, K̂⁻¹ Q̂ is how far off the steady state is."""
-    Q_hat = reduced(linear.tree, linear.state.q, np.zeros(len(K)), linear.names).Q_hat
-    off = np.abs(np.linalg.solve(K, Q_hat)).max(initial=0.0) / max(length, 1.0)
+    off = np.abs(distance).max(initial=0.0) / max(length, 1.0)
     if off > _BALANCED:
         raise SteadyStateError(
             f"omega: {omega:.6g} rad/s: the state found is {off:.1e} of the blade's length off balance"
@@ -109,9 +159,12 @@ def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex12
     """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the independent coordinates."""
     k, n = linear.state.kinematics, len(body.nodes)
     dq = np.zeros((len(k.q), vectors.shape[1]), complex)
-    dq[linear.partition.free] = linear.partition.R @ vectors  # δq = R δq_I
+    dq[linear.partition.free] = linear.partition.spread(vectors)  # δq = R δq_I
     nodes = k.poses[1 : n + 1]  # behind the hub, whose axes are the ground's now
-    twists = sp.adjoint(sp.inverse(nodes)) @ (k.B[1 : n + 1] @ dq)  # δZ = B δq, in the nodes' own axes
+    carries = linear.tree.carries[1 : n + 1].astype(float)
+    each = (k.J.T[:, :, None] * dq[:, None, :]).reshape(len(dq), -1)
+    ground = (carries @ each).reshape(n, 6, -1)  # δZ = B δq
+    twists = sp.adjoint(sp.inverse(nodes)) @ ground  # in the nodes' own axes
     inner = linear.tree.inner[:, None] + np.arange(6)  # β of each element; none where the mass is lumped
     beta = np.zeros((n - 1, body.beams.inner))
     dbeta = np.zeros((*beta.shape, vectors.shape[1]), complex)

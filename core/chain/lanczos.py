@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 _VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
 _SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
 _MAX_SOLVE_ERROR = 0.3  # of a solution without refinement: beyond, K is lost to rounding
+_MAX_COUNT_ERROR = 1e-4  # of a solution: beyond, a count that differs tells of rounding
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
 _EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
@@ -52,10 +53,7 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
     w = _start(2 * n)
     lost = solve_error(factor, exact, M, w)
     if not lost < _MAX_SOLVE_ERROR:
-        raise EigensolverError(
-            f"the stiffness of {len(K.diagonal)} elements is lost to rounding (relative error of a solution {lost:.1e}): give "
-            "fewer elements, or check units"
-        )
+        raise _lost_to_rounding(len(K.diagonal), lost)
     if not factor.positive:
         raise eigen.unstable()
     refinements = _refinements(lost)
@@ -91,9 +89,21 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
             "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
         )
     order = np.argsort(frequencies)
-    completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()], lost)
+    try:
+        completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()], lost)
+    except completeness.MissedModesError as error:
+        if lost > _MAX_COUNT_ERROR:  # the count is of the assembled K, rounded
+            raise _lost_to_rounding(len(K.diagonal), lost) from error
+        raise
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
     return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
+
+
+def _lost_to_rounding(elements: int, error: float) -> EigensolverError:
+    return EigensolverError(
+        f"the stiffness of {elements} elements is lost to rounding (relative error of a solution {error:.1e}): give "
+        "fewer elements, or check units"
+    )
 
 
 def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:

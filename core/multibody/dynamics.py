@@ -15,7 +15,8 @@ from ..element.beams import pencil as beam_pencil
 from ..element.measures import response
 from ..space import spatial as sp
 from ..space.inertia import transformed
-from .kinematics import Kinematics
+from .congruence import congruent, stretched
+from .kinematics import Kinematics, projected
 from .mechanism import Load, MechanismError, Spring
 from .tree import Batch, Tree
 
@@ -24,7 +25,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Cartesian:
-    """Total wrench g (b + m, 6) and its linearisation M, C, K, sparse; rows as those of B, beams' internal forces last.
+    """Total wrench g (b + m, 6) and its linearisation M, C, K by blocks; rows as those of B, beams' internal forces last.
+
+    ``blocks`` (p, 3, 6, 6) are parts of M, C, K on rows ``row`` and columns ``column`` (p,); those of one place add up.
 
     ``size`` (b + m, 6) adds up the parts of g by their absolute values: what its rounding is in proportion to.
     ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground: kept out of K, for
@@ -33,11 +36,27 @@ class Cartesian:
 
     g: Array
     size: Array
-    M: csr_array
-    C: csr_array
-    K: csr_array
+    row: NDArray[np.intp]
+    column: NDArray[np.intp]
+    blocks: Array
     ends: NDArray[np.intp]
     stiffness: Array
+
+    @property
+    def M(self) -> csr_array:
+        """(6 (b + m), 6 (b + m)), sparse."""
+        return self._sparse(0)
+
+    @property
+    def K(self) -> csr_array:
+        """(6 (b + m), 6 (b + m)), sparse."""
+        return self._sparse(2)
+
+    def _sparse(self, which: int) -> csr_array:
+        six = np.arange(6)
+        where = (6 * self.row[:, None] + six)[:, :, None], (6 * self.column[:, None] + six)[:, None, :]
+        at = tuple(a.ravel() for a in np.broadcast_arrays(*where))
+        return csr_array((self.blocks[:, which].ravel(), at), shape=(self.g.size, self.g.size))
 
 
 class _Sum:
@@ -65,17 +84,11 @@ class _Sum:
 
     def total(self) -> Cartesian:
         """The sum as a ``Cartesian``."""
-        row, column = (np.concatenate([part[k] for part in self.blocks]) for k in (0, 1))
-        six = np.arange(6)
-        where = np.broadcast_arrays((6 * row[:, None] + six)[:, :, None], (6 * column[:, None] + six)[:, None, :])
-        at = where[0].ravel(), where[1].ravel()
-        size = self.g.size
-        M, C, K = (
-            csr_array((np.concatenate([part[2][k] for part in self.blocks]).ravel(), at), shape=(size, size))
-            for k in range(3)
-        )
+        row = np.concatenate([part[0] for part in self.blocks])
+        column = np.concatenate([part[1] for part in self.blocks])
+        blocks = np.stack([np.concatenate([part[2][k] for part in self.blocks]) for k in range(3)], axis=1)
         ends, stiffness = zip(*self.springs, strict=True) if self.springs else (_NO_ENDS, _NO_SPRINGS)
-        return Cartesian(self.g, self.size, M, C, K, np.concatenate(ends), np.concatenate(stiffness))
+        return Cartesian(self.g, self.size, row, column, blocks, np.concatenate(ends), np.concatenate(stiffness))
 
 
 _NO_ENDS, _NO_SPRINGS = (np.zeros((0, 2), dtype=np.intp),), (np.zeros((0, 6, 6)),)
@@ -92,7 +105,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
     """
-    out = _Sum(len(k.B))  # g = M Ẏ + Φᶜ_Zᵀ λ − Q, which Φᴶ and Φᴹ must balance (eq. 1)
+    out = _Sum(len(k.poses) + len(tree.inner))  # g = M Ẏ + Φᶜ_Zᵀ λ − Q, which Φᴶ and Φᴹ must balance (eq. 1)
     _bodies(tree, k, out)
     for spring in tree.mechanism.springs:
         _spring(tree, k, spring, out)
@@ -246,7 +259,7 @@ def reduced_mass(k: Kinematics, c: Cartesian) -> Array:
 def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> Array:
     """τ = M* v̇ + Φᶜ_qᵀ λ − Q* (n,): the generalised forces that would balance the tree."""
     # Bᵀ (M (B v̇ + Ḃ v) + Φᶜ_Zᵀ λ − Q), from which Bᵀ Φᴶ_Zᵀ = 0 drops the reactions of the tree's joints (eq. 5)
-    out = np.einsum("bin,bi->n", k.B, c.g)
+    out = projected(k, c.g)
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
         out[j] += s.stiffness * (q[j] - s.neutral) + s.damping * v[j]
@@ -259,19 +272,12 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + G with G_kj = −(J_j × J_k)ᵀ f_j for j beyond k, f_j the
     total wrench on all that coordinate j carries: the turning of the screws against the forces they pass on.
     """
-    n = k.J.shape[1]
-    B, B1, B2 = (b.reshape(-1, n) for b in (k.B, k.B1, k.B2))
-    MB1 = c.M @ B1
-    M = B.T @ c.M @ B
-    C = B.T @ (2.0 * MB1 + c.C @ B)
+    M, C, K = congruent(k, c.row, c.column, c.blocks)
     carried = tree.carries.T.astype(float) @ c.g[: len(tree.bodies)]  # f_j
     force = -(np.swapaxes(sp.ad(k.J.T), -1, -2) @ carried[..., None])[..., 0]  # J_j ×* f_j
-    below = (tree.above.astype(float) - np.eye(n)).T  # below[k, j]: j hangs beyond k
-    K = B.T @ (c.M @ B2 + c.C @ B1 + c.K @ B) + below * (k.J.T @ force.T)
-    if len(c.ends):
-        padded = np.concatenate([k.B, np.zeros((1, 6, n))])
-        stretch = padded[c.ends[:, 1]] - padded[c.ends[:, 0]]
-        K = K + stretch.reshape(-1, n).T @ (c.stiffness @ stretch).reshape(-1, n)
+    K += tree.beyond.T * (k.J.T @ force.T)
+    for at, spring in stretched(k, c.ends, c.stiffness):
+        K[np.ix_(at, at)] += spring
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
         K[j, j] += s.stiffness

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rank import TOLERANCE, Ranked, ranked
+from ..rank import TOLERANCE, Ranked, Regular, factored, ranked
 from . import dynamics, partition
+from .kinematics import projected
 from .loops import MAX_STEP, assemble, closed, size_of
 from .mechanism import MechanismError
 from .state import ContradictionError, State, check_rates, given, moving, state_at
@@ -133,7 +134,7 @@ class _Tangent:
         units: (f,) 1 rad, or the mechanism's length.
     """
 
-    K: Ranked
+    K: Ranked | Regular
     scale: Array
     rounding: Array
     units: Array
@@ -141,7 +142,7 @@ class _Tangent:
     def step(self, here: _Residual) -> Array:
         """Newton's step (f,) of the free coordinates; least along what nothing resists."""
         root = np.sqrt(self.scale)
-        return -here.part.R @ (self.K.solve(here.reduced / root) / root)
+        return -here.part.spread(self.K.solve(here.reduced / root) / root)
 
     def balanced(self, here: _Residual) -> bool:
         """Whether each independent coordinate is balanced but for rounding."""
@@ -166,15 +167,15 @@ def _residual(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tupl
         reactions = -ranked(J.T).solve(forces).reshape(-1, 6)
         state = replace(state, multipliers=reactions, cartesian=dynamics.cartesian(tree, state.kinematics, reactions))
     part = partition.partition(tree, state.kinematics, independent)
-    return _Residual(state, part, forces, part.R.T @ forces)
+    return _Residual(state, part, forces, part.onto(forces))
 
 
 def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): where loops move, what they make of rates and accelerations moves with q."""
     state, part, k = here.state, here.part, here.state.kinematics
-    M, C, K = (a[np.ix_(part.free, part.free)] for a in dynamics.tangent(tree, k, state.cartesian))
-    R = part.R
-    by_independent = K @ R
+    pick, R = np.ix_(part.free, part.free), part.R
+    K = state.tangent[2][pick]
+    by_independent = K @ R if len(part.dependent) else K
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
         following = ~np.isin(part.free, given(tree))
@@ -182,20 +183,24 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
         R1[following] = -back.solve(J1 @ R)
         R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
+        M, C = (a[pick] for a in state.tangent[:2])
         by_independent += C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
     units = np.where(turns, 1.0, size_of(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
-    rounding, own = np.abs(R).T @ size, units[np.isin(part.free, part.independent)]
-    least = (np.abs(R).T @ _carried(state)[part.free] + rounding) / own
-    scale = np.maximum(np.abs(np.einsum("fi,fi->i", R, by_independent)), STIFFNESS_ROUNDING / TOLERANCE * least)
+    sizes = replace(part, R=np.abs(R))
+    rounding, own = sizes.onto(size), units[np.isin(part.free, part.independent)]
+    least = (sizes.onto(_carried(state)[part.free]) + rounding) / own
+    reduced = part.onto(by_independent)
+    scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
-    return _Tangent(ranked((R.T @ by_independent) / root[:, None] / root), root**2, rounding, units)
+    return _Tangent(factored(reduced / root[:, None] / root), root**2, rounding, units)
 
 
 def _sizes(tree: Tree, state: State) -> Array:
     """(n,) forces on each coordinate, added up by size."""
-    out = np.einsum("bin,bi->n", np.abs(state.kinematics.B), state.cartesian.size)
+    k = state.kinematics
+    out = projected(k, state.cartesian.size, np.abs(k.J))
     for s in tree.mechanism.coordinate_springs:
         j = tree.coordinate(s.coordinate)
         out[j] += s.stiffness * (abs(state.q[j]) + abs(s.neutral)) + abs(s.damping * state.v[j])
@@ -205,10 +210,10 @@ def _sizes(tree: Tree, state: State) -> Array:
 def _carried(state: State) -> Array:
     """(n,) what the stiffnesses a coordinate carries would give on it at a strain of one: their rounding is in all it feels."""
     k, c = state.kinematics, state.cartesian
-    units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(k.B))
+    units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(c.g))
     wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
     np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ units[:6])[:, None, :])
-    return np.einsum("bin,bi->n", np.abs(k.B), wrench[:-1])
+    return projected(k, wrench[:-1], np.abs(k.J))
 
 
 def _newton(

@@ -2,10 +2,12 @@
 
 With twists taken at the ground's origin, passing down the tree needs no transformation: ``Y_child = Y_parent + J v``, J the
 joint's screw brought to the ground, so a body's rows of B are the J of the coordinates that carry it. A screw moves with
-the link it hangs on, hence ``J̇ = Y × J`` and ``J̈ = Ẏ × J + Y × J̇``, Y the twist of that link.
+the link it hangs on, hence ``J̇ = Y × J`` and ``J̈ = Ẏ × J + Y × J̇``, Y the twist of that link. B is kept as these screws and
+the tree that repeats them, and written out only where loops need it.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,22 +23,46 @@ class Kinematics:
     """A tree's state and its velocity transformation; b bodies, n coordinates.
 
     Attributes:
+        tree: the mechanism.
         q: (n,) coordinates.
         poses: (b, 4, 4) of the bodies.
-        J: (6, n) screws.
-        B, B1, B2: (b + m, 6, n) velocity transformation, its first and second rates along the motion; the last m rows pick
-            the internal coordinates of the m beams that have them.
+        J, J1, J2: (6, n) screws, their first and second rates along the motion.
         Y, A: (b, 6) twists of the bodies and their rates, ``A = B v̇ + Ḃ v``.
     """
 
+    tree: Tree
     q: Array
     poses: Array
     J: Array
-    B: Array
-    B1: Array
-    B2: Array
+    J1: Array
+    J2: Array
     Y: Array
     A: Array
+
+    @cached_property
+    def B(self) -> Array:
+        """(b + m, 6, n) velocity transformation; the last m rows pick the internal coordinates of beams that have them."""
+        m = len(self.tree.inner)
+        pick = np.zeros((m, 6, len(self.q)))
+        for k in range(6):
+            pick[np.arange(m), k, self.tree.inner + k] = 1.0
+        return np.concatenate([self._rows(self.J), pick])
+
+    @cached_property
+    def B1(self) -> Array:
+        """(b + m, 6, n) first rate of B along the motion."""
+        return self._with_inner(self._rows(self.J1))
+
+    @cached_property
+    def B2(self) -> Array:
+        """(b + m, 6, n) second rate of B along the motion."""
+        return self._with_inner(self._rows(self.J2))
+
+    def _rows(self, J: Array) -> Array:
+        return self.tree.carries[:, None, :] * J
+
+    def _with_inner(self, rows: Array) -> Array:
+        return np.concatenate([rows, np.zeros((len(self.tree.inner), *rows.shape[1:]))])
 
 
 def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
@@ -44,10 +70,16 @@ def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
     whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # turns, which the exponential's series need not follow
     amount = np.where(tree.screw[:, 3:].any(1), q - whole, q)
     steps = tree.fixed @ sp.exp(tree.screw * amount[:, None])
-    links = np.empty((len(q) + 1, 4, 4))
-    links[-1] = np.eye(4)  # the ground, so that index −1 finds it
-    for j, before in enumerate(tree.before):
-        links[j] = links[before] @ steps[j]
+    groups = tree.groups
+    series = np.append(steps, np.eye(4)[None], axis=0)[groups.members]  # of the links of a group, one after the other
+    for k in range(1, series.shape[1]):
+        series[:, k] = series[:, k - 1] @ series[:, k]
+    base = np.empty((len(series) + 1, 4, 4))
+    base[-1] = np.eye(4)  # the ground, so that index −1 finds it
+    for j, before in enumerate(groups.before):
+        base[j] = base[before] @ series[j, -1]
+    series = base[groups.before][:, None] @ series
+    links = np.append(series.reshape(-1, 4, 4)[groups.place], np.eye(4)[None], axis=0)
     # a screw is the same seen from either side of its own motion
     J = (sp.adjoint(links[:-1]) @ tree.screw[..., None])[..., 0].T
     return links[tree.link] @ tree.on_link, J
@@ -56,20 +88,23 @@ def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
 def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
     """Everything that follows from coordinates, velocities and accelerations, each (n,)."""
     x, J = poses(tree, q)
-    hangs = tree.above.astype(float) - np.eye(len(q))  # the links strictly above
-    Y = hangs @ (J * v).T
+    Y = tree.beyond @ (J * v).T  # of the links that the screws move with
     J1 = _cross(Y, J)
-    A = hangs @ (J * a + J1 * v).T
+    A = tree.beyond @ (J * a + J1 * v).T
     J2 = _cross(A, J) + _cross(Y, J1)
     carries = tree.carries.astype(float)
-    B, B1, B2 = (carries[:, None, :] * j for j in (J, J1, J2))
-    Y = B @ v  # (eq. 3)
-    A = B @ a + B1 @ v  # Ẏ = B v̇ + Ḃ v (eq. 4)
-    pick = np.zeros((len(tree.inner), 6, len(q)))
-    for k in range(6):
-        pick[np.arange(len(tree.inner)), k, tree.inner + k] = 1.0
-    none = np.zeros_like(pick)
-    return Kinematics(q, x, J, np.concatenate([B, pick]), np.concatenate([B1, none]), np.concatenate([B2, none]), Y, A)
+    Y = carries @ (J * v).T  # Y = B v (eq. 3)
+    A = carries @ (J * a + J1 * v).T  # Ẏ = B v̇ + Ḃ v (eq. 4)
+    return Kinematics(tree, q, x, J, J1, J2, Y, A)
+
+
+def projected(k: Kinematics, wrenches: Array, J: Array | None = None) -> Array:
+    """Bᵀ w (n,) of wrenches w (b + m, 6); with ``J`` (6, n) in place of the screws."""
+    b = len(k.poses)
+    out = np.einsum("in,ni->n", k.J if J is None else J, k.tree.carries.T.astype(float) @ wrenches[:b])
+    if len(k.tree.inner):
+        out[k.tree.inner[:, None] + np.arange(6)] += wrenches[b:]
+    return out
 
 
 def _cross(Y: Array, J: Array) -> Array:

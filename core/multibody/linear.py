@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import dynamics
 from .partition import Partition, partition
 from .state import State
 from .tree import Tree
@@ -36,7 +35,7 @@ class Linearization:
 
 def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linearization:
     """Linearise about a given state."""
-    M, C, K = dynamics.tangent(tree, state.kinematics, state.cartesian)
+    M, C, K = state.tangent
     p = partition(tree, state.kinematics, independent)
     pick = np.ix_(p.free, p.free)
     M, C, K = M[pick], C[pick], K[pick]

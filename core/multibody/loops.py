@@ -48,6 +48,8 @@ def closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
     Levenberg–Marquardt steps damped by the squared gap: robust near singular configurations, and quadratic at the end.
     """
     q = q.copy()
+    if not tree.welds:
+        return q, np.zeros(0), 1.0
     last = np.inf
     for _ in range(_MAX_STEPS):
         x, J = poses(tree, q)

@@ -5,6 +5,7 @@ so its rates are differences of Ḃ and B̈. Which coordinates depend on the oth
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,14 @@ class Partition:
     R2: Array
     redundant: tuple[str, ...]
 
+    def onto(self, forces: Array) -> Array:
+        """Rᵀ f (i,) or (i, k) of forces on the free coordinates."""
+        return self.R.T @ forces if len(self.dependent) else forces
+
+    def spread(self, steps: NDArray[Any]) -> NDArray[Any]:
+        """R δq_I (f,) or (f, k)."""
+        return self.R @ steps if len(self.dependent) else steps
+
 
 def prescribed(tree: Tree) -> Index:
     """Coordinates whose motion is prescribed."""
@@ -81,7 +90,7 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
         MechanismError: names that cannot serve as independent coordinates.
     """
     free = free_coordinates(tree)
-    J = jacobian(tree, k.B)[:, free]
+    J = jacobian(tree, k.B)[:, free] if tree.welds else np.zeros((0, len(free)))
     dependent, chosen = pivots(J)
     rank = len(dependent)
     if independent is not None:

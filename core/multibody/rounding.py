@@ -16,7 +16,6 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from .. import eigen
-from . import dynamics
 from .equilibrium import again
 from .linear import Linearization, about
 from .mechanism import MechanismError
@@ -81,9 +80,6 @@ def _vectors(Q: Complex, count: int) -> tuple[Complex, Complex]:
 def _sizes(linear: Linearization) -> tuple[Array, Array, Array]:
     """|M̂|, |Ĉ|, |K̂| (i, i) with the terms that they are sums of added up by size."""
     p = linear.partition
-    M, C, K = (
-        np.abs(a[np.ix_(p.free, p.free)])
-        for a in dynamics.tangent(linear.tree, linear.state.kinematics, linear.state.cartesian)
-    )
+    M, C, K = (np.abs(a[np.ix_(p.free, p.free)]) for a in linear.state.tangent)
     R, R1, R2 = np.abs(p.R), np.abs(p.R1), np.abs(p.R2)
     return R.T @ M @ R, R.T @ (C @ R + 2.0 * M @ R1), R.T @ (K @ R + C @ R1 + M @ R2)

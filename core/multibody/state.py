@@ -1,6 +1,7 @@
 """The state of motion at given coordinates: velocities and accelerations that the motions impose through the loops."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,11 @@ class State:
     multipliers: Array
     kinematics: Kinematics
     cartesian: Cartesian
+
+    @cached_property
+    def tangent(self) -> tuple[Array, Array, Array]:
+        """M*, C*, K* (n, n) there; see ``dynamics.tangent``."""
+        return dynamics.tangent(self.kinematics.tree, self.kinematics, self.cartesian)
 
 
 class ContradictionError(MechanismError):

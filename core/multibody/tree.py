@@ -1,6 +1,7 @@
 """A mechanism's spanning tree, compiled to arrays: the topology, before any state."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,47 @@ class Batch:
     at_b: Array
     axes: NDArray[np.intp]
     damping: Array
+
+
+@dataclass(frozen=True)
+class Groups:
+    """Coordinates that move the same rows of B: those of a joint with several, or of joints in series without mass between.
+
+    Attributes:
+        before: (g,) the group each hangs on, −1 for the ground; always one of those before it.
+        members: (g, k) its coordinates, as many as the largest group has; −1 where it has fewer.
+        row: (b + m,) the outermost group that moves each row of B, −1 for none.
+        place: (n,) where each coordinate is in ``members``, flattened.
+    """
+
+    before: NDArray[np.intp]
+    members: NDArray[np.intp]
+    row: NDArray[np.intp]
+    place: NDArray[np.intp]
+
+
+def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.intp]) -> Groups:
+    """From the link before each link, the link each row of B rides on, and the first link of each beam's internal six."""
+    n = len(before)
+    on = before.copy()
+    for j in inner:  # the internal coordinates of a beam move its one row together
+        on[j + 1 : j + 6] = np.arange(j, j + 5)
+    alone = np.bincount(on[on >= 0], minlength=n) == 1
+    alone[link[link >= 0]] = False  # links that carry nothing but one other link
+    group, first, members = np.empty(n, np.intp), [], []
+    for j in range(n):
+        if on[j] >= 0 and alone[on[j]]:
+            group[j] = group[on[j]]
+            members[group[j]].append(j)
+        else:
+            group[j] = len(first)
+            first.append(group[on[j]] if on[j] >= 0 else -1)
+            members.append([j])
+    most = max(map(len, members), default=0)
+    padded = np.array([m + [-1] * (most - len(m)) for m in members], np.intp).reshape(len(first), most)
+    place = np.empty(n, np.intp)
+    place[padded[padded >= 0]] = np.flatnonzero(padded >= 0)
+    return Groups(np.array(first, np.intp), padded, np.append(group, -1)[link], place)
 
 
 @dataclass(frozen=True)
@@ -80,6 +122,20 @@ class Tree:
     above: NDArray[np.bool_]
     carries: NDArray[np.bool_]
 
+    @cached_property
+    def groups(self) -> Groups:
+        """The coordinates that move the same rows of B."""
+        return _groups(self.before, np.append(self.link, self.inner + 5), self.inner)
+
+    @cached_property
+    def beyond(self) -> Array:
+        """(n, n) beyond[j, k] = 1: link j hangs on link k, or further out."""
+        return self.above.astype(float) - np.eye(len(self.above))
+
+    @cached_property
+    def _number(self) -> dict[str, int]:
+        return {name: j for j, name in enumerate(self.coordinates)}
+
     def body(self, name: str) -> int:
         """Index of a body; −1 is the ground."""
         return -1 if name == GROUND else self.bodies.index(name)
@@ -90,9 +146,9 @@ class Tree:
         Raises:
             MechanismError: if there is none of that name.
         """
-        if name not in self.coordinates:
+        if name not in self._number:
             raise MechanismError(f"coordinate {name!r}: no joint has it; there are {', '.join(self.coordinates)}")
-        return self.coordinates.index(name)
+        return self._number[name]
 
 
 def compile_tree(mechanism: Mechanism) -> Tree:

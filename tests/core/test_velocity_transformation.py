@@ -107,6 +107,18 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
     assert np.abs(bare.frequencies / loaded.frequencies - 1).max() > 1e-4
 
 
+@pytest.mark.parametrize("root", [None, "both hinges"])
+def test_a_sweep_is_one_speed_after_another(root: str | None) -> None:
+    """Up, down and through a speed twice, from extrapolated states, against the chain's own at each speed alone."""
+    blade = curved() if root is None else replace(curved(), root=np.array(ROOTS[root]))
+    speeds = [0.5, 1.0, 2.0, 2.0, 2.5, 1.5]
+    gravity = np.array([3.0, 5.0, -9.81])
+    for omega, found in zip(speeds, vt.sweep(blade, speeds, 8, 5, gravity=gravity), strict=True):
+        alone = solve.mesh_modes(blade, omega, 8, 5, gravity=gravity)
+        np.testing.assert_allclose(found.frequencies, alone.frequencies, rtol=AGREE)
+        assert alike(found, alone).min() > 1 - 1e-9
+
+
 @pytest.mark.parametrize("effects", [Effects(coriolis=False), Effects(rotary_inertia=False)])
 def test_effects_left_out(effects: Effects) -> None:
     ours, _ = both(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, effects=effects)

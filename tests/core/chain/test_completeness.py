@@ -83,6 +83,19 @@ def test_stiffness_lost_to_rounding_is_not_called_unstable() -> None:
         solve.mesh_modes(FLAT, 0.0, 20_000, 2)
 
 
+def test_a_count_spoilt_by_rounding_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A count that is one off: a missed mode where K is exact, rounding where solutions with K are off by a per mille."""
+    below = completeness.below
+    monkeypatch.setattr(completeness, "below", lambda p, omega: below(p, omega) + 1)
+    with pytest.raises(MissedModesError):
+        solve.mesh_modes(FLAT, 8.0, 40, 5)
+    monkeypatch.setattr(lanczos, "solve_error", lambda *_: 1e-3)
+    with pytest.raises(
+        lanczos.EigensolverError, match=r"stiffness of 40 elements is lost to rounding .*fewer elements"
+    ):
+        solve.mesh_modes(FLAT, 8.0, 40, 5)
+
+
 def test_ten_thousand_elements_lose_nothing() -> None:
     few, many = (solve.mesh_modes(FLAT, 0.0, n, 3).frequencies for n in (400, 10_000))
     np.testing.assert_allclose(many, few, rtol=1e-9)
