@@ -64,8 +64,13 @@ class Validation:
 def statement(v: Validation) -> str:
     """What the comparison says of the model, relative to the measured value."""
     if v.visible > 0.0:
-        return f"model error visible (at least {100 * v.visible / v.measured:.1f} %)"
+        return f"model error visible (at least {least(v.visible / v.measured)})"
     return f"model error not visible at u_val = {100 * v.uncertainty / v.measured:.1f} %"
+
+
+def least(size: float) -> str:
+    """A visible error in percent, to a tenth, or to two digits where it is less."""
+    return f"{100 * size:.1f} %" if size >= 1e-3 else f"{100 * size:.2g} %"
 
 
 def explained(v: Validation) -> str:
@@ -77,7 +82,7 @@ def explained(v: Validation) -> str:
 
 
 def visible(cell: Cell) -> float:
-    """The least size of the model's error that a measured point shows, relative to the simulation; 0 if none is visible."""
-    if cell.difference is None or cell.uncertainty is None:
+    """The least size of the model's error that a measured point shows, relative to the measured value; 0 if none is visible."""
+    if cell.difference is None or cell.uncertainty is None or not cell.frequency or not cell.reference:
         return 0.0
-    return max(abs(cell.difference) - cell.uncertainty, 0.0)
+    return max(abs(cell.difference) - cell.uncertainty, 0.0) * cell.reference / cell.frequency

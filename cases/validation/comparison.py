@@ -35,8 +35,8 @@ COUNT = 12
 """Modes that are solved for, which hold all that were measured."""
 
 ORDER = 2
-"""Of convergence as elements are halved: straight ones on curved members. With every element in four it is seen at rest to be 1.85
-to 2.21 in all modes that were measured."""
+"""Of convergence as elements are halved: straight ones on curved members. With every element in four it is seen at rest to be
+1.85 to 2.21 in all modes that were measured."""
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from ...cases.judge.measured import visible
+from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
 from ..shared.summary import SYMBOL
@@ -84,7 +84,7 @@ def measured(run: Run) -> str:
     most = max(seen, key=visible, default=None)
     told = f"model error visible in {len(seen)}"
     if most:
-        told += f" ({_statement(most)}: {where(run, most)})"
+        told += f", at least {least(visible(most))} ({where(run, most)})"
     n = len(cells)
     return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {told}; not visible in {n - len(seen)}."
 

@@ -47,9 +47,7 @@ def test_they_change_no_status_and_no_answer() -> None:
 def test_they_are_counted_by_themselves_and_explained() -> None:
     assert "2 ✔ pass, 2 ◇ measured" in evidence.answer(WITH)
     (told,) = (line for line in report.headline(WITH) if line.startswith("Measured"))
-    assert told.startswith(
-        "Measured: 2 frequencies, no evidence: model error visible in 1 (model error visible (at least 6.0 %)"
-    )
+    assert told.startswith("Measured: 2 frequencies, no evidence: model error visible in 1, at least 6.7 % (")
     assert told.endswith("beam, rig, flapwise 1, 13 rad/s); not visible in 1.")
     (row,) = (r for r in evidence.rows(WITH) if r["evidence"].startswith("measured data"))
     assert row["answers"] == "2 ◇"
