@@ -33,10 +33,11 @@ def test_measured_points_have_bars_and_both_have_a_legend(added: list[Added]) ->
     axes = Figure().add_subplot()
     points.draw(axes, added, "mine", RPM)
     rig, code = axes.containers
-    np.testing.assert_allclose(np.column_stack(rig.lines[0].get_data()), [[0, 1.5], [10, 2.0], [30, 4.0]])  # type: ignore[union-attr]
-    bar = rig.lines[2][0].get_segments()[1]  # type: ignore[union-attr]
-    np.testing.assert_allclose(
-        np.array(bar, dtype=float), [[10, 1.96], [10, 2.04]]
+    line, _, (bars,) = rig.lines  # type: ignore[union-attr]
+    assert [float(x) for x in line.get_xdata()] == pytest.approx([0.0, 10.0, 30.0])
+    assert [float(y) for y in line.get_ydata()] == pytest.approx([1.5, 2.0, 4.0])
+    assert [float(y) for _, y in bars.get_segments()[1]] == pytest.approx(
+        [1.96, 2.04]
     )  # two standard uncertainties of 1 %
     assert rig.has_yerr  # type: ignore[union-attr]
     assert not code.has_yerr  # type: ignore[union-attr]
