@@ -59,8 +59,14 @@ def _cell(row: Any) -> Iterator[str]:
         yield "case, code: one is empty"
     if row.mode == 0 and (row.frequency is not None or row.verdict not in UNANSWERED):
         yield f"mode: 0 of a cell with an answer ({row.verdict}): counted from 1"
-    if row.verdict in ("pass", "known difference") and row.difference is None:
+    if row.verdict in ("pass", "known difference", "measured") and row.difference is None:
         yield f"difference: none, with the verdict {row.verdict}"
+    measured = getattr(row, "role", row.verdict) == "measured"
+    if measured != (row.verdict == "measured") and not (measured and row.verdict in UNANSWERED):
+        yield f"verdict: {row.verdict}, with the role {getattr(row, 'role', '')}: measured data, and nothing else, are measured"
+    ordinal = getattr(row, "ordinal", None)
+    if ordinal is not None and not 1 <= ordinal <= MOST_MODES:
+        yield f"ordinal: {ordinal}: counted from 1"
     if row.frequency is not None and row.frequency < 0:
         yield f"frequency: {row.frequency:g}: negative"
     if row.uncertainty is not None and row.uncertainty < 0:

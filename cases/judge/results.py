@@ -18,7 +18,9 @@ from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..input import atomic
 from . import checks
 
-Verdict = Literal["pass", "fail", "inconclusive", "known difference", "estimate", "not applicable", "not run"]
+Verdict = Literal[
+    "pass", "fail", "inconclusive", "known difference", "estimate", "measured", "not applicable", "not run"
+]
 Unit = Literal["rad_s", "rpm", "gamma"]
 
 
@@ -38,7 +40,7 @@ class Cell:
         code: the code's short name.
         version: of the code.
         role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),
-            ``same discretisation`` (held to 1e-8), ``table`` (printed numbers).
+            ``same discretisation`` (held to 1e-8), ``table`` (printed numbers), ``measured`` (no code: see ``measured``).
         frequency: the code's best answer (extrapolated where refinement allows), rad/s.
         reference: core's converged answer with the same physical effects, rad/s.
         difference: relative.
@@ -53,6 +55,7 @@ class Cell:
         order: observed order of convergence, where there is one.
         mac: mass-weighted MAC of the pairing.
         seconds: wall time of the finest solution.
+        ordinal: of the mode within its family, where the run has no rows for the others at this speed.
     """
 
     case: str
@@ -75,6 +78,7 @@ class Cell:
     mac: float | None = None
     seconds: float | None = None
     shares: str = ""
+    ordinal: int | None = None
 
 
 @dataclass(frozen=True)

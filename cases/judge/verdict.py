@@ -7,6 +7,7 @@ inconclusive                 neither: refine
 known difference             the cause is named, its size is computed, what remains is within the target, and
                              refinement leads to the reference
 estimate                     a code that brackets its own answer, and a bracket too wide to tell: never evidence
+measured                     no code but a measurement: ``E = S − D`` against u_val, see ``measured``; never evidence
 not applicable               declared by the code, with the reason
 not run                      not installed
 ============================ ===================================================================================

@@ -1,7 +1,8 @@
 """Who confirms a case's answers, counted by groups of independent origin.
 
 A witness is a column that answered: a code, a closed form, a printed series. It counts if it agrees with core in every mode
-and at every speed that it answers; one whose difference is only explained, or whose own bracket is too wide, is none.
+and at every speed that it answers; one whose difference is only explained, or whose own bracket is too wide, is none. Nor is
+a measurement.
 
 Witnesses with the same engine, theory or rotation terms may be wrong together, so they are one *group*, also when only a
 third witness links them. Who takes core's discretisation or frames confirms that core solves its model, not that the model
@@ -62,7 +63,7 @@ def witnesses(run: Run, case: str) -> list[Witness]:
     columns: dict[str, list[Cell]] = {}
     for cell in run.cells:
         asked = cell.difference is not None or cell.verdict in ("fail", "inconclusive")
-        if cell.case == case and asked and cell.shares:
+        if cell.case == case and asked and cell.shares and cell.role != "measured":
             columns.setdefault(cell.code, []).append(cell)
     target = next((s.target for s in run.settings if s.case == case), None)
     return [_witness(code, cells, origins.get(code), target) for code, cells in columns.items()]

@@ -3,7 +3,7 @@
 Cells are the same where case, code, rotor speed and mode are. What counts against a run: a miss that was none before
 (including that of a cell that was not there), an answer that is gone, a wider target, a seeded fault that nobody catches any
 more. Moved frequencies are listed, and count only if that is asked for: who improves a discretisation moves them and is
-right to.
+right to. Measured data are no answers: they are counted, and nothing about them counts against a run.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ RUNS = 20
 """Earlier runs on the same machine that show how much times vary, at most."""
 
 RANK: dict[Verdict, int] = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 3, "fail": 4}
-"""How bad a verdict is; the others are none."""
+"""How bad a verdict is; the others are none. ``measured`` is not among them: data are not judged."""
 
 MISS = RANK["inconclusive"]
 
@@ -85,6 +85,7 @@ class Comparison:
         moved: cells whose frequency moved, most first.
         worse: cells with a worse verdict, worst first.
         loosened: cells that are held to a wider target.
+        measured: how many measured points the later run has.
         better: cells with a better one.
         gone: answers that are there no more.
         new: cells with an answer that had none.
@@ -104,6 +105,7 @@ class Comparison:
     timings: tuple[Timing, ...]
     missed: tuple[str, ...] = ()
     loosened: tuple[Change, ...] = ()
+    measured: int = 0
 
     @property
     def versions(self) -> dict[str, tuple[str, str]]:
@@ -148,7 +150,7 @@ def compare(
         tolerance: relative change above which a frequency has moved.
     """
     old = {p.key: p for p in before.cells}
-    changes = [Change(old.get(p.key), p) for p in after.cells]
+    changes = [Change(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
     moved = [c for c in changes if abs(c.moved or 0.0) > tolerance]
     worse = sorted((c for c in changes if _worse(c)), key=lambda c: -RANK[c.after.verdict])
     told = {c.after.key for c in worse}
@@ -165,6 +167,7 @@ def compare(
         timings=tuple(_timings(before, after, [e for e in earlier if e.machine == after.machine][-RUNS:])),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
+        measured=sum(p.verdict == "measured" for p in after.cells),
     )
 
 
@@ -187,10 +190,14 @@ def _better(change: Change) -> bool:
 
 
 def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
-    """A code that gives no answer at a speed has one cell there, of mode 0, that says so."""
-    answered = {p.key for p in now if p.frequency is not None}
+    """A code that gives no answer at a speed has one cell there, of mode 0, that says so.
+
+    An answer that is now called a measurement is gone: it was evidence, and is none any more.
+    """
+    answered = {p.key for p in now if p.frequency is not None and p.verdict != "measured"}
     verdicts: dict[Key, Verdict] = {p.key: p.verdict for p in now}
-    gone = [p for p in old.values() if p.frequency is not None and p.key not in answered]
+    due = [p for p in old.values() if p.frequency is not None and p.verdict != "measured"]
+    gone = [p for p in due if p.key not in answered]
     return [Gone(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0))) for p in gone]
 
 

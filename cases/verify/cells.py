@@ -8,7 +8,8 @@ import numpy as np
 from ...core.modes import Modes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
-from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, pair, shares
+from ..judge.measured import Validation, explained
+from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, numbered, pair, shares
 from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
 from ..judge.verdict import Judgement, bracketed, discretised, judge, known
@@ -134,6 +135,51 @@ def printed(head: Head, omega: float, i: int, reference: Reference, value: Estim
     """The cell of a printed number for the ``i``-th mode the case compares."""
     settled = Settled(value, Pair(i, 1.0, note), ())
     return _judged(_row(head, omega, i, reference, None, settled.partner), reference, i, settled, "")
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A measured frequency.
+
+    Attributes:
+        value: D, rad/s.
+        data, inputs: relative standard uncertainties, of the datum and of the simulation by its inputs.
+    """
+
+    value: float
+    data: float
+    inputs: float
+
+
+def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datum) -> Cell:
+    """The cell of a measured frequency of the ``i``-th mode the case compares: never evidence, whatever it shows.
+
+    The numerical uncertainty of core's answer is a bound, and is taken for the standard uncertainty. Where it is not known,
+    no statement is made.
+    """
+    cell = replace(
+        empty(head, omega, "measured", ""),
+        mode=i + 1,
+        family=reference.core.names[i],
+        full=reference.full[i],
+        ordinal=int(numbered(reference.core.names)[i].split()[-1]),
+        frequency=datum.value,
+    )
+    base = reference.core.settled[i].estimate
+    if base is None:
+        return replace(cell, verdict="not applicable", reason="core has no frequency to compare it with")
+    found = Validation(
+        base.value,
+        datum.value,
+        (base.uncertainty or 0.0) * base.value,
+        datum.inputs * base.value,
+        datum.data * datum.value,
+    )
+    difference, uncertainty = found.relative
+    cell = replace(cell, reference=base.value, difference=difference)
+    if base.uncertainty is None:
+        return replace(cell, reason=f"no statement: u_num is not known ({base.note})")
+    return replace(cell, uncertainty=uncertainty, reason=explained(found))
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from .mechanism_case import MechanismCase, Turning
 from .names import unique
 from .reference import references
 from .settings import settings
+from .user_columns import columns as added_columns
 from .user_results import Added, check
-from .user_results import columns as added_columns
 
 
 @dataclass(frozen=True)
@@ -193,7 +193,7 @@ def _tasks(
     out = []
     for v in case.variants:
         made = _dated(columns(case, v, shown[v.name], limits), codes)
-        made += tuple(added_columns(v, added, case.text.compare.target))
+        made += tuple(added_columns(v, added, case.text.compare))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
         out.append(_Task(v, made, question, case.text.compare.modes, shares=partial(error_budget.solve, case, v)))
@@ -218,7 +218,7 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
 def versions(codes: Iterable[Description], added: Sequence[Added] = ()) -> dict[str, str]:
     """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
-    files = {one.name: f"results in {Path(one.path).name}" for one in added}
+    files = {one.name: f"{'measured,' if one.measured else 'results'} in {Path(one.path).name}" for one in added}
     theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
     return {"python": python_version(), **ours, **theirs, **files}
 

@@ -9,31 +9,34 @@ The file has a header, a line a frequency, and comments after ``#``::
 Speed may be in rad/s, rpm or gamma (of dimensionless cases), frequency in rad/s, Hz or gamma. A mode is called by its family
 (edgewise and lag mean chordwise) and the ordinal within it, as everywhere, or by its number from the lowest of all modes of
 the blade; the family may have a column of its own. Two more columns are optional: ``blade`` (as in ``southwell cases``:
-``park-blade/windpact``), needed if several are compared, and ``uncertainty [%]``. Without that one a number is as sure as its
-digits: half a unit of the last.
+``park-blade/windpact``), needed if several are compared, and ``uncertainty [%]`` (or in the frequency's unit). Without that one
+a number is as sure as its digits: half a unit of the last.
+
+With ``measured [Hz]`` in place of ``frequency [Hz]`` the file holds measurements, which are no code's answers. Their
+``uncertainty`` is one standard uncertainty; ``input uncertainty [%]`` is that of the simulation by its inputs. Both may be
+given for all rows at once (``Defaults``), and the first must be given. Speeds need not be among those of the case.
 """
 
 import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
-from ...core.effects import ALL_EFFECTS
 from ...core.participation import MIXED
 from ..input import files
 from ..input.errors import CaseError, nearest
 from ..input.schema import Variant
-from ..judge.pairing import MOTIONS, numbered
+from ..judge.pairing import MOTIONS
 from ..judge.uncertainty import Estimate, from_print
-from .cells import Head, empty, printed
-from .columns import Column, References, Rows
-from .reference import Reference
 
 SPEED = {"speed [rad/s]": 1.0, "speed [rpm]": math.pi / 30, "speed [gamma]": 1.0}
-FREQUENCY = {"frequency [rad/s]": 1.0, "frequency [Hz]": 2 * math.pi, "frequency [gamma]": 1.0}
-OTHERS = ("mode", "family", "blade", "uncertainty [%]")
+UNITS = {"rad/s": 1.0, "Hz": 2 * math.pi, "gamma": 1.0}
+FREQUENCY = {f"frequency [{unit}]": size for unit, size in UNITS.items()}
+MEASURED = {f"measured [{unit}]": size for unit, size in UNITS.items()}
+UNCERTAINTY = ("uncertainty [%]", *(f"uncertainty [{unit}]" for unit in UNITS))
+INPUTS = "input uncertainty [%]"
+OTHERS = ("mode", "family", "blade", *UNCERTAINTY, INPUTS)
 FAMILIES = (*MOTIONS, MIXED)
 ALIASES = {"edgewise": "chordwise", "edge": "chordwise", "lag": "chordwise", "flap": "flapwise"}
 """Names that other programs give the families."""
@@ -56,7 +59,8 @@ class Given:
         slack: half a unit of the speed's last digit, rad/s.
         family: empty where the mode is called by its number among all.
         mode: ordinal within the family, or among all, from 1.
-        value: rad/s, and how sure it is.
+        value: rad/s, and how sure it is: a bound, or of a measured one its standard uncertainty.
+        inputs: of a measured one the relative standard uncertainty of the simulation by its inputs.
     """
 
     line: int
@@ -66,25 +70,57 @@ class Given:
     family: str
     mode: int
     value: Estimate
+    inputs: float = 0.0
 
 
 @dataclass(frozen=True)
 class Added:
-    """A file of results and what to call them."""
+    """A file of results, what to call them, and whether they are measured."""
 
     name: str
     path: str
     rows: tuple[Given, ...]
+    measured: bool = False
 
 
-def read(name: str, path: Path) -> Added:
-    """The results in a CSV file.
+@dataclass(frozen=True)
+class Defaults:
+    """Relative standard uncertainties of measured frequencies that have none of their own in the file.
+
+    Attributes:
+        data: u_D over D; None where none is given.
+        inputs: u_input over S: what the uncertainty of the blade's properties makes of its frequencies.
+    """
+
+    data: float | None = None
+    inputs: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Names of a file's columns; ``uncertainty`` is empty without one."""
+
+    speed: str
+    frequency: str
+    uncertainty: str
+
+    @property
+    def measured(self) -> bool:
+        return self.frequency in MEASURED
+
+    @property
+    def unit(self) -> float:
+        return (FREQUENCY | MEASURED)[self.frequency]
+
+
+def read(name: str, path: Path, defaults: Defaults | None = None) -> Added:
+    """The results in a CSV file; ``defaults`` are for measured ones.
 
     Raises:
         CaseError: one line naming the file, the line, the field, the value, the likely cause and the remedy.
     """
     (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
-    speed, frequency = _header(header, f"{path}: line {first}")
+    columns = _header(header, f"{path}: line {first}")
     if not table:
         raise CaseError(
             f"{path}: no results in it, only a header: add a line for every frequency, as `0, 0.932, flapwise 1`"
@@ -94,31 +130,41 @@ def read(name: str, path: Path) -> Added:
         where = f"{path}: line {k}"
         if len(cells) != len(header):
             raise CaseError(f"{where}: {len(cells)} columns instead of {len(header)}: a missing or stray comma?")
-        rows.append(_given(where, k, dict(zip(header, cells, strict=True)), speed, frequency))
-    _no_repeats(rows, path)
-    return Added(name, str(path), tuple(rows))
+        rows.append(_given(where, k, dict(zip(header, cells, strict=True)), columns, defaults or Defaults()))
+    _no_repeats(rows, path, columns.measured)
+    return Added(name, str(path), tuple(rows), columns.measured)
 
 
-def _header(header: Sequence[str], where: str) -> tuple[str, str]:
-    """The names of the columns of speed and frequency."""
-    known = (*SPEED, *FREQUENCY, *OTHERS)
+def _header(header: Sequence[str], where: str) -> _Columns:
+    """The names of the columns of speed, frequency and uncertainty."""
+    known = (*SPEED, *FREQUENCY, *MEASURED, *OTHERS)
     for column in header:
         if column not in known:
             raise CaseError(f"{where}: unknown column {column!r}: {nearest(column, known)}")
         if header.count(column) > 1:
             raise CaseError(f"{where}: column {column!r} is there {header.count(column)} times: once is enough")
     found = []
-    for what, units in (("speed", SPEED), ("frequency", FREQUENCY)):
+    for what, units in (("speed", SPEED), ("frequency", (*FREQUENCY, *MEASURED))):
         mine = [column for column in header if column in units]
         if len(mine) != 1:
             raise CaseError(f"{where}: {len(mine)} columns of {what}: give exactly one of {', '.join(units)}")
         found.append(mine[0])
     if "mode" not in header:
         raise CaseError(f"{where}: column 'mode' is missing: which mode a frequency is of, as flapwise 1, or 3")
-    return found[0], found[1]
+    speed, frequency = found
+    allowed = ("uncertainty [%]", f"uncertainty {frequency.partition(' ')[2]}")
+    sure = [column for column in header if column in UNCERTAINTY]
+    if len(sure) > 1 or not set(sure) <= set(allowed):
+        told = f"{where}: columns of uncertainty: {', '.join(sure)}: give one at most, {' or '.join(allowed)}"
+        raise CaseError(told)
+    if INPUTS in header and frequency not in MEASURED:
+        raise CaseError(
+            f"{where}: column {INPUTS!r} is for measured frequencies: leave it out, or name theirs 'measured [Hz]'"
+        )
+    return _Columns(speed, frequency, sure[0] if sure else "")
 
 
-def _given(where: str, line: int, row: dict[str, str], speed: str, frequency: str) -> Given:
+def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaults: Defaults) -> Given:
     def number(column: str, least: float = 0.0, most: float = MOST) -> float:
         text = row[column]
         if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
@@ -128,15 +174,26 @@ def _given(where: str, line: int, row: dict[str, str], speed: str, frequency: st
             )
         return float(text)
 
-    omega = number(speed)
-    number(frequency, least=1e-9)
-    value = from_print(row[frequency], FREQUENCY[frequency])
-    if row.get("uncertainty [%]", ""):
-        value = Estimate(value.value, number("uncertainty [%]", most=100.0) / 100.0)
+    omega = number(columns.speed)
+    size = number(columns.frequency, least=1e-9)
+    value = from_print(row[columns.frequency], columns.unit)
+    least = 1e-9 if columns.measured else 0.0  # no measurement is exact
+    if row.get(columns.uncertainty, ""):
+        relative = columns.uncertainty == "uncertainty [%]"
+        u = number(columns.uncertainty, least, 100.0 if relative else size) / (100.0 if relative else size)
+        value = Estimate(value.value, u)
+    elif columns.measured:
+        if defaults.data is None:
+            raise CaseError(
+                f"{where}: uncertainty: missing for a measured frequency: add a column 'uncertainty [%]' (one standard "
+                "uncertainty), or give it for all rows with --data-uncertainty 1%"
+            )
+        value = Estimate(value.value, defaults.data)
+    inputs = number(INPUTS, most=100.0) / 100.0 if row.get(INPUTS, "") else defaults.inputs
     family, mode = _mode(where, row.get("family", ""), row["mode"])
-    slack = from_print(row[speed]).uncertainty if omega else 0.0
-    unit = SPEED[speed]
-    return Given(line, row.get("blade", ""), omega * unit, (slack or 0.0) * omega * unit, family, mode, value)
+    slack = from_print(row[columns.speed]).uncertainty if omega else 0.0
+    unit = SPEED[columns.speed]
+    return Given(line, row.get("blade", ""), omega * unit, (slack or 0.0) * omega * unit, family, mode, value, inputs)
 
 
 def _mode(where: str, family: str, text: str) -> tuple[str, int]:
@@ -151,18 +208,19 @@ def _mode(where: str, family: str, text: str) -> tuple[str, int]:
     return family, int(text)
 
 
-def _no_repeats(rows: Sequence[Given], path: Path) -> None:
+def _no_repeats(rows: Sequence[Given], path: Path, measured: bool) -> None:
     seen: dict[tuple[str, float, str, int], int] = {}
     for row in rows:
         key = row.blade, row.omega, row.family, row.mode
         if key in seen:
             what = f"{row.family} {row.mode}".strip()
-            raise CaseError(f"{path}: line {row.line}: mode: {what} at this speed is in line {seen[key]} too: keep one")
+            remedy = "give their mean, and their scatter as its uncertainty" if measured else "keep one"
+            raise CaseError(f"{path}: line {row.line}: mode: {what} at this speed is in line {seen[key]} too: {remedy}")
         seen[key] = row.line
 
 
 def check(added: Sequence[Added], variants: Sequence[Variant], codes: Iterable[str]) -> None:
-    """Every name is free, and every row is of a blade and a speed that the run has.
+    """Every name is free, and every row is of a blade and a speed that the run has; a measured one of a speed in its range.
 
     Raises:
         CaseError: one line, as for ``read``.
@@ -180,7 +238,15 @@ def check(added: Sequence[Added], variants: Sequence[Variant], codes: Iterable[s
                 raise CaseError(f"{where}: blade: {row.blade!r} is not in this run: {nearest(row.blade, names)}")
             if len(mine) > 1:
                 raise CaseError(f"{where}: blade: not given, and the run has {len(mine)}: add a column, or choose one")
-            if not any(_at(row, omega) for omega in mine[0].speeds.tolist()):
+            highest = float(mine[0].speeds.max())
+            if one.measured and row.omega <= highest + row.slack:
+                continue
+            if one.measured:
+                raise CaseError(
+                    f"{where}: speed: {row.omega:.6g} rad/s is above the highest speed of {mine[0].name}, {highest:.6g} rad/s: "
+                    "correct it, or add a speed to the case"
+                )
+            if not any(at(row, omega) for omega in mine[0].speeds.tolist()):
                 listed = ", ".join(f"{s:.6g}" for s in mine[0].speeds)
                 raise CaseError(
                     f"{where}: speed: {row.omega:.6g} rad/s is not among the speeds of {mine[0].name} ({listed} rad/s): "
@@ -188,52 +254,6 @@ def check(added: Sequence[Added], variants: Sequence[Variant], codes: Iterable[s
                 )
 
 
-def _at(row: Given, omega: float) -> bool:
+def at(row: Given, omega: float) -> bool:
+    """Whether a row's speed, as rounded as it is, is ``omega`` (rad/s)."""
     return abs(row.omega - omega) <= max(row.slack * (1 + 1e-9), 1e-9 * omega)
-
-
-def columns(variant: Variant, added: Sequence[Added], target: float) -> list[Column]:
-    """A column for each file that has something about a blade."""
-    out = []
-    for one in added:
-        mine = [row for row in one.rows if row.blade in ("", variant.name)]
-        if mine:
-            head = Head(variant.name, one.name, f"from {Path(one.path).name}", "code", target, "nothing")
-            out.append(Column(one.name, ALL_EFFECTS, head, partial(_rows, head, mine), due="somewhere"))
-    return out
-
-
-def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
-    cells = []
-    for omega, reference in core:
-        for row in (row for row in given if _at(row, omega)):
-            k = _place(row, reference)
-            if k is None:
-                called, names = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
-                reason = f"line {row.line}: the case does not compare mode {called} here: it compares {names}"
-                cells.append(empty(head, omega, "not applicable", reason))
-            else:
-                cells.append(printed(head, omega, k, reference, _surely(row, omega), ""))
-    return cells, []
-
-
-def _surely(row: Given, omega: float) -> Estimate:
-    """The value, less sure where the speed is not quite the case's.
-
-    By f² = f₀² + K Ω² a frequency changes, relatively, no more than the speed does (Southwell 1921; K not negative).
-    """
-    off = abs(row.omega / omega - 1.0) if omega else 0.0
-    return Estimate(row.value.value, (row.value.uncertainty or 0.0) + off)
-
-
-def _names(reference: Reference) -> list[str]:
-    return numbered(reference.core.names)
-
-
-def _place(row: Given, reference: Reference) -> int | None:
-    """Which of the modes that the case compares a row is of."""
-    if row.family:
-        name = f"{row.family} {row.mode}"
-        return _names(reference).index(name) if name in _names(reference) else None
-    indices = reference.core.wanted.indices
-    return indices.index(row.mode - 1) if row.mode - 1 in indices else None

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..blade import uniform_blade
-from ..eigen import Damped
+from ..eigen import Damped, Eigen
 from ..element.beams import Beams
 from ..element.discretize import discretize
 from .linearize import Linearization, linearize, modes
@@ -25,23 +26,31 @@ class Solution:
 
     Attributes:
         values: (m,) complex eigenvalues λ, 1/s, by modulus: one of each conjugate pair, and real ones.
-        uncertainty: (m,) relative, of the frequencies, and absolute, of the damping ratios: rounding, see ``rounding``.
         shapes: (m, n) motion of all coordinates in each mode, the largest 1; zero where motion is prescribed.
         coordinates: names of the n coordinates.
         steady: their values in the steady state, m or rad, by name.
         independent: the coordinates chosen to vibrate about it; the others follow.
         redundant: redundant constraint equations, as ``joint: component``.
         linear: M̂, Ĉ, K̂ over the independent coordinates, and all that led to them.
+        found: the modes over the independent coordinates, as the eigenvalue solver gave them.
     """
 
     values: Complex
-    uncertainty: Array
     shapes: Complex
     coordinates: tuple[str, ...]
     steady: dict[str, float]
     independent: tuple[str, ...]
     redundant: tuple[str, ...]
     linear: Linearization
+    found: Eigen | Damped
+
+    @cached_property
+    def uncertainty(self) -> Array:
+        """(m,) relative, of the frequencies, and absolute, of the damping ratios: rounding, see ``rounding``.
+
+        Computed when first asked for: that takes as long as the modes.
+        """
+        return rounding(self.linear, self.found)
 
     @property
     def frequencies(self) -> Array:
@@ -93,13 +102,13 @@ def solve(
         shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
     return Solution(
         values=values,
-        uncertainty=rounding(linear, found),
         shapes=shapes,
         coordinates=tree.coordinates,
         steady=dict(zip(tree.coordinates, linear.state.q.tolist(), strict=True)),
         independent=linear.names,
         redundant=part.redundant,
         linear=linear,
+        found=found,
     )
 
 

@@ -1,5 +1,6 @@
 """The Campbell diagram as a figure: modes coloured by what moves in them, n per revolution behind, trouble in red."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -9,10 +10,12 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
+from ...cases.verify.user_results import Added
 from ...core.participation import FAMILIES
 from ..shared.certain import certain
 from ..shared.style import MUTED, WIDTH, beside, house, key, title
 from ..shared.units import Units
+from . import points
 from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
 
 PURE = 0.85
@@ -28,13 +31,14 @@ LETTER = 0.066
 """Width of a letter of the labels at the lines' ends, inches."""
 
 
-def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
+def draw(diagram: Campbell, units: Units, heading: str, added: Sequence[Added] = ()) -> Figure:
     """The diagram.
 
     Lines are the modes; each stretch has the colour of what moves in it there, so that a veering shows as two lines that trade
     colours. The operating range is shaded. Where a mode is nearer to n per revolution than the margin within that range, it
     is underlaid in red; the same deserves a look in the table of margins. Where n per revolution reaches only the lowest of
-    many modes, those have a scale of their own, and the rest lies above it on a coarser one.
+    many modes, those have a scale of their own, and the rest lies above it on a coarser one. Points of ``added``, as those of a
+    test rig, lie over the lines.
     """
     with house():
         low, height = 0.95, 5.9
@@ -52,6 +56,7 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
             ]
         for axes, limits in zip(panels, ranges, strict=True):
             _panel(axes, diagram, units, limits)
+            points.draw(axes, added, diagram.blade.name, units)
         lowest, highest = panels[0], panels[-1]
         rays(lowest, diagram, units)
         band_label(highest, diagram, units)
@@ -69,8 +74,9 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure:
         for axes in panels[1:]:
             axes.spines["bottom"].set_visible(False)
             axes.tick_params(bottom=False, labelbottom=False)
-        title(figure, heading, _below(diagram, units))
-        handles = legend(diagram)
+        hidden = points.outside(added, diagram, ranges[-1][1] / units.frequencies)
+        title(figure, heading, "; ".join(part for part in (_below(diagram, units), hidden) if part))
+        handles = [*legend(diagram), *points.legend(added, diagram.blade.name)]
         key(figure, handles, 0.07, across=-(-len(handles) // (1 + (len(handles) > 5))))
     return figure
 
@@ -135,9 +141,9 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
     x, y = _fine(omega, frequency)
     shares = np.stack([np.interp(x, omega, diagram.shares[k, t, i]) for i in range(4)], axis=1)
     near(axes, diagram, x, y, units)
-    points = np.stack([x * units.speeds, y * units.frequencies], axis=1)
+    places = np.stack([x * units.speeds, y * units.frequencies], axis=1)
     for start, stop, pure in _stretches(shares):
-        part, share = points[start : stop + 1], shares[start : stop + 1]
+        part, share = places[start : stop + 1], shares[start : stop + 1]
         if pure:
             axes.plot(*part.T, color=blend(share.mean(0)), lw=1.8, ls=DASHES[pure], zorder=4)
         else:
@@ -148,7 +154,7 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
             )
     if k[-1] != len(tracks.omega) - 1:
         return []
-    return [(points[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.shares[-1, t])))]
+    return [(places[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.shares[-1, t])))]
 
 
 def _label(diagram: Campbell, t: int, units: Units) -> str:

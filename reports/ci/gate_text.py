@@ -37,6 +37,7 @@ def verdict(found: Comparison, strict: bool) -> str:
         "new": len(found.new),
     }
     told = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
+    told += f"; {found.measured} measured, not judged" if found.measured else ""
     sign = "✔ gate passed" if found.passed(strict) else "✘ gate failed"
     return f"{sign}: {len(found.after.cells)} cells against {_named(found.before)}: {told}"
 

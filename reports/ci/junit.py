@@ -15,7 +15,8 @@ from ..shared import summary
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 (section 2.2, Char) cannot hold."""
 
-SKIPPED = ("not run", "not applicable")
+SKIPPED = ("not run", "not applicable", "measured")
+"""Verdicts of cells that judge nothing: no test has passed there, and none has failed."""
 
 
 def render(run: Run, found: Comparison | None = None, strict: bool = False) -> bytes:

@@ -42,7 +42,7 @@ COMMANDS = (
         VERIFY,
         "validate",
         "verification.validation_page:command",
-        "Compare the model of a measured rotor with its measurements.",
+        "Compare models of measured rotors with their measurements.",
     ),
     (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify takes answers from."),
     (VERIFY, "bench", "verification.bench:command", "Measure the run time of core and of the other codes."),

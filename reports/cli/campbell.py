@@ -35,6 +35,7 @@ from ..shared.console import Watch, output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
 from . import campbell_options as options
+from . import measured
 from .arguments import Accuracy, Changes, Elements, Flag, Whole, Workers
 from .errors import UsageError
 from .mounting import Mounting
@@ -62,6 +63,8 @@ def command(
     workers: Workers = 1,
     changes: Changes = (),
     against: str | None = None,
+    add: tuple[str, ...] = (),
+    data_uncertainty: str | None = None,
     verify: Flag = False,
     strict: Flag = False,
     mounting: Mounting | None = None,
@@ -111,6 +114,11 @@ def command(
         repeated.
     against
         Another blade; adds a table of changes of every frequency.
+    add
+        `NAME=FILE.csv`: frequencies of a test rig (`measured [Hz]`) or of another program (`frequency [Hz]`), drawn over the
+        lines; may be repeated. `southwell verify --add` compares them.
+    data_uncertainty
+        Standard uncertainty of measured frequencies without one in the file: `1%`.
     verify
         Run all codes on the blade at the ends of the operating range; adds the uncertainty of each line and the independent
         codes that confirm it.
@@ -123,6 +131,8 @@ def command(
         raise UsageError("--verify: the other codes solve the blade without gravity and steady loads: leave those out")
     given = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
+    files = [measured.added(text, measured.defaults(data_uncertainty, None)) for text in add]
+    measured.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
     other = single(against, mount) if against else None
     kept = True
@@ -155,7 +165,8 @@ def command(
         kept &= tables.margins_kept(diagram)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
-            written = page.write(diagram, folder, units, line, (*subject.about, *not_used.lines(subject.unused)), extra)
+            about = (*subject.about, *not_used.lines(subject.unused))
+            written = page.write(diagram, folder, units, line, about, extra, files)
         except OSError as error:
             raise _unwritable(out, error.strerror) from error
         names = ", ".join(path.name for path in written)

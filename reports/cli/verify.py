@@ -1,7 +1,6 @@
 """``southwell verify``: cases through every code, compared, judged, reported."""
 
 import os
-import re
 import shlex
 import shutil
 import sys
@@ -39,7 +38,7 @@ from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
 from ..shared.units import RPM, Units
-from . import campbell_options
+from . import campbell_options, measured
 from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, writing
 from .errors import UsageError
 from .mounting import Mounting
@@ -59,6 +58,8 @@ def command(
     out: Path = Path("southwell-report"),
     workers: Workers | None = None,
     add: tuple[str, ...] = (),
+    data_uncertainty: str | None = None,
+    input_uncertainty: str | None = None,
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
@@ -90,8 +91,13 @@ def command(
     workers
         Worker processes (default: one per processor).
     add
-        `NAME=FILE.csv`: results of another program or of a test rig as one more column; may be repeated. Columns of the file:
-        `speed [rpm]` (or rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number).
+        `NAME=FILE.csv`: results of another program as one more column; may be repeated. Columns of the file: `speed [rpm]` (or
+        rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number). Measurements have `measured [Hz]`
+        instead of `frequency [Hz]`, and `uncertainty [%]`: they show how far the model is from the data, and decide nothing.
+    data_uncertainty
+        Standard uncertainty of measured frequencies without one in the file: `1%`.
+    input_uncertainty
+        Standard uncertainty of the computed frequencies due to the blade's properties, for measured rows without one: `2%`.
     junit
         Output file for JUnit XML, one test case per cell.
     faults
@@ -122,10 +128,14 @@ def command(
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
     known = describe(names, [v.blade for v in blades])
-    files = [_added(text) for text in add]
+    defaults = measured.defaults(data_uncertainty, input_uncertainty)
+    files = [measured.added(text, defaults) for text in add]
+    measured.check(files, data_uncertainty, input_uncertainty)
     names_of.unique(chosen, known, files)
     user_results.check(files, blades, [c.name for c in known])
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
+    options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
+    options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
     plain = not (rpm or omega or changes or decks.mount != Mount())
     line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
     about = Run(
@@ -171,13 +181,6 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
     if witnesses is None and whole:
         return setting
     return replace(setting, groups=witnesses or 0, lacking="")
-
-
-def _added(text: str) -> Added:
-    name, equals, path = text.partition("=")
-    if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
-        raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
-    return user_results.read(name, Path(path))
 
 
 def _solve(

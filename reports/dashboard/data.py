@@ -62,7 +62,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
                 size(c),
                 plus_minus(c) if size(c) is not None else "",
                 c.reason,
-                summary.allowed(c.target),
+                target(c),
             ]
             for c in run.cells
         ],
@@ -127,13 +127,13 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
             for v in run.levels
             if v.case == case
         ],
-        "shapes": moving(case, cells, u),
+        "shapes": moving(case, [c for c in cells if c.role != "measured"] or cells, u),
     }
 
 
 def _lines(cells: list[Cell], u: Units) -> list[dict[str, Any]]:
     """Core's frequencies with all effects against speed, as the report's Campbell diagram has them."""
-    found = core_lines([c for c in cells if c.role != "same discretisation"] or cells)
+    found = core_lines([c for c in cells if c.role not in ("same discretisation", "measured")] or cells)
     scaled = {name: [[o * u.speeds, line[o] * u.frequencies] for o in sorted(line)] for name, line in found.items()}
     return [{"name": name, "points": points} for name, points in scaled.items()]
 
@@ -165,11 +165,17 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
         "verdict": GRAVEST_FIRST.index(c.verdict),
         "text": plus_minus(c) if size(c) is not None else "",
         "reason": c.reason,
-        "target": summary.allowed(c.target),
+        "target": target(c),
+        "bar": (c.uncertainty or 0.0) * (c.reference or 0.0) * u.frequencies if c.verdict == "measured" else None,
         "elements": c.elements,
         "order": c.order,
         "seconds": c.seconds,
     }
+
+
+def target(c: Cell) -> str:
+    """What a cell is held to, in words; measured data are held to nothing."""
+    return "none" if c.role == "measured" else summary.allowed(c.target)
 
 
 def code_names(run: Run) -> list[str]:

@@ -18,6 +18,7 @@ SYMBOL: dict[Verdict, str] = {
     "inconclusive": "?",
     "known difference": "≈",
     "estimate": "~",
+    "measured": "◇",
     "not applicable": "–",
     "not run": "○",
 }
@@ -29,6 +30,7 @@ GRAVEST_FIRST: tuple[Verdict, ...] = (
     "known difference",
     "pass",
     "estimate",
+    "measured",
     "not run",
     "not applicable",
 )
@@ -131,14 +133,15 @@ def labels(cells: Sequence[Cell]) -> dict[Cell, str]:
     """
     groups: dict[tuple[str, float, str], dict[int, str]] = {}
     for cell in cells:
-        groups.setdefault(_basis(cell), {})[cell.mode] = cell.family
+        if cell.ordinal is None:
+            groups.setdefault(_basis(cell), {})[cell.mode] = cell.family
     ordinals = {}
     for group, families in groups.items():
         seen: Counter[str] = Counter()
         for mode in sorted(families):
             seen[families[mode]] += 1
             ordinals[group, mode] = seen[families[mode]]
-    return {c: f"{c.family} {ordinals[_basis(c), c.mode]}" for c in cells if c.mode}
+    return {c: f"{c.family} {c.ordinal or ordinals[_basis(c), c.mode]}" for c in cells if c.mode}
 
 
 def _basis(cell: Cell) -> tuple[str, float, str]:
@@ -170,7 +173,7 @@ def allowed(target: float) -> str:
 
 def wide(cell: Cell) -> str:
     """`` (target 2.00 %)`` of a cell that is held to a wider target than is usual; else empty."""
-    return f" (target {allowed(cell.target)})" if cell.target > PAPER else ""
+    return f" (target {allowed(cell.target)})" if cell.target > PAPER and cell.role != "measured" else ""
 
 
 def plus_minus(cell: Cell) -> str:

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable
 
+from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
 from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
+    "measured data, which confirm and contradict nothing": lambda c: c.role == "measured",
     "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
     "printed tables": lambda c: c.role == "table",
     "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
@@ -15,7 +17,7 @@ KINDS: dict[str, Callable[[Cell], bool]] = {
     "mechanisms: codes and closed forms with the same equations": lambda c: c.role == "same discretisation",
     "other": lambda c: True,
 }
-"""A cell is of the first kind that takes it; the first two check the answer, the third the implementation only."""
+"""A cell is of the first kind that takes it; the second and third check the answer, the fourth the implementation only."""
 
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
 """What is named before all else, gravest first."""
@@ -67,9 +69,34 @@ def first(run: Run) -> list[str]:
     """What a reader looks for first: the answer, and what is urgent; if nothing is, the independent answer that is
     farthest from core for its target."""
     far = farthest(c for c in run.cells if c.shares == "nothing")
+    data = [told for told in (measured(run),) if told]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
-        return [answer(run), *urgent(run)]
-    return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}."]
+        return [answer(run), *urgent(run), *data]
+    return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}.", *data]
+
+
+def measured(run: Run) -> str:
+    """What measured data show of the model, in a sentence; empty without any."""
+    cells = [c for c in run.cells if c.verdict == "measured"]
+    if not cells:
+        return ""
+    seen = [c for c in cells if visible(c)]
+    most = max(seen, key=visible, default=None)
+    told = f"model error visible in {len(seen)}"
+    if most:
+        told += f", at least {least(visible(most))} ({where(run, most)})"
+    n = len(cells)
+    return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {told}; not visible in {n - len(seen)}."
+
+
+def _statement(cell: Cell) -> str:
+    return cell.reason.partition(":")[0]
+
+
+def _measured(cells: Iterable[Cell]) -> Cell | None:
+    """The measured point with the largest visible error of the model, or the farthest."""
+    mine = [c for c in cells if c.verdict == "measured"]
+    return max(mine, key=lambda c: (visible(c), abs(c.difference or 0.0)), default=None)
 
 
 def rows(run: Run) -> list[dict[str, str]]:
@@ -86,7 +113,7 @@ def rows(run: Run) -> list[dict[str, str]]:
                 {
                     "evidence": kind,
                     "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
-                    "worst, for its target": _shown(run, same),
+                    "worst, for its target": _shown(run, same or _measured(cells)),
                     "largest known difference": _shown(run, known),
                 }
             )
@@ -110,6 +137,8 @@ def _shown(run: Run, cell: Cell | None) -> str:
         return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
     cause = f"cause: {cell.reason.partition(';')[0]}"
     more = f"target {summary.allowed(cell.target)}" if cell.verdict in SAME else cause
+    if cell.verdict == "measured":
+        more = _statement(cell)
     return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {more}"
 
 

@@ -25,15 +25,16 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
     given core's discretisation are not shown: theirs is not a converged answer. None if the case has numbers at fewer
     than two speeds.
     """
-    cells = [c for c in run.cells if c.case == case and c.role != "same discretisation"]
+    cells = [c for c in run.cells if c.case == case and c.role not in ("same discretisation", "measured")]
+    data = [c for c in run.cells if c.case == case and c.verdict == "measured"]
     lines = core_lines(cells)
     speeds = sorted({omega for line in lines.values() for omega in line})
     if len(speeds) < 2:
         return None
-    answers = [c.frequency for c in cells if c.frequency is not None]
+    answers = [c.frequency for c in (*cells, *data) if c.frequency is not None]
     shown = columns([c for c in cells if c.frequency is not None])
     with house():
-        low = band(len(shown) + 1)
+        low = band(len(shown) + 1 + len(columns(data)))
         height = 4.6 + low
         figure = Figure((WIDTH, height))
         axes = figure.add_axes((0.08, low / height, 0.78, 1 - (low + 0.68) / height))
@@ -50,7 +51,7 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
             style = LINES.get(name.split()[0], "-")
             axes.plot(fine * units.speeds, curve, color=INK, lw=1.0, ls=style, zorder=3)
             ends.append((float(curve[-1]), name))
-        handles = _markers(axes, run, cells, shown, units)
+        handles = [*_markers(axes, run, cells, shown, units), *_data(axes, data, units)]
         beside(axes, ends)
         axes.set_xticks([omega * units.speeds for omega in speeds])
         axes.set_xlabel(units.speed_label)
@@ -121,6 +122,27 @@ def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], 
     return handles
 
 
+def _data(axes: Axes, cells: Sequence[Cell], units: Units) -> list[Line2D]:
+    """Measured points as filled diamonds; the bars are the validation uncertainty, 2 u_val."""
+    handles = []
+    for name, face in zip(columns(cells), (INK, MUTED, FAINT) * len(cells), strict=False):
+        mine = [c for c in cells if column(c) == name]
+        axes.errorbar(
+            [c.omega * units.speeds for c in mine],
+            [(c.frequency or 0.0) * units.frequencies for c in mine],
+            yerr=[(c.uncertainty or 0.0) * (c.reference or 0.0) * units.frequencies for c in mine],
+            fmt="D",
+            ms=4.5,
+            color=face,
+            elinewidth=0.9,
+            capsize=2.0,
+            clip_on=False,
+            zorder=5,
+        )
+        handles.append(Line2D([], [], ls="", marker="D", ms=4.5, color=face, label=f"{name}, measured, ± 2 u_val"))
+    return handles
+
+
 FACES: dict[Verdict, str] = {
     "pass": "full",
     "known difference": "left",
@@ -135,8 +157,11 @@ BELOW = 1e-5
 
 
 def differences(run: Run, case: str, units: Units) -> Figure | None:
-    """Every cell's difference ± uncertainty on a log axis, a row a code, a track a mode; None if there are no numbers."""
-    cells = [c for c in run.cells if c.case == case and c.difference is not None]
+    """Every cell's difference ± uncertainty on a log axis, a row a code, a track a mode; None if there are no numbers.
+
+    Without measured data, which have no target.
+    """
+    cells = [c for c in run.cells if c.case == case and c.difference is not None and c.role != "measured"]
     if not cells:
         return None
     names, style, modes = columns(cells), looks(columns(run.cells)), labels(cells)

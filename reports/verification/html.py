@@ -42,6 +42,7 @@ table { border-collapse: collapse; font-size: 12.5px; line-height: 1.35; font-va
 th, td { border: 1px solid var(--faint); padding: 3px 6px; text-align: left; vertical-align: top; }
 td.pass { background: #b7e3d3; } td.fail { background: #f3b08f; font-weight: 700; } td.inconclusive { background: #f9dd9a; }
 td.known-difference { background: #bfe0f7; } td.not-run, td.not-applicable, td.estimate { color: #6b6b6b; }
+td.measured { background: #ead9f0; }
 th { background: #f3f4f6; } td:first-child { font-weight: 500; }
 img { display: block; max-width: min(100%, 60rem); height: auto; margin: 1rem 0; }
 details { margin: 0.8rem 0; } summary { cursor: pointer; font-weight: 600; }

@@ -121,7 +121,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the gravest first; text without markup."""
-    lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run)]
+    lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
@@ -194,6 +194,7 @@ class Section:
     main: str
     rest: list[tuple[str, str]]
     told: str
+    measured: str
     figures: list[str]
     reasons: str
     count: int
@@ -206,11 +207,12 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     cells = [c for c in run.cells if c.case == case]
     setting = next((s for s in run.settings if s.case == case), None)
     unit = units(run, case)
-    speeds = sorted({c.omega for c in cells if c.mode})
+    judged = [c for c in cells if c.role != "measured"] or cells
+    speeds = sorted({c.omega for c in judged if c.mode})
     printed = [c.omega for c in cells if c.role == "table"]
     focus = max(printed or speeds, default=None)
     tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
-    reasons, split = why(cells, unit), error_budget.rows(run, case)
+    reasons, split = why(judged, unit), error_budget.rows(run, case)
     return Section(
         name=case,
         setting=setting,
@@ -220,12 +222,32 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         main=tables[focus] if focus is not None else "",
         rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
         told=told(cells),
+        measured=measured(run, case, unit),
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
         shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
         shares_at=error_budget.heading(run, case, unit),
     )
+
+
+def measured(run: Run, case: str, unit: Units) -> str:
+    """Every measured point of a case, and what it says of the model; empty without any."""
+    names = summary.labels(run.cells)
+    cells = [c for c in run.cells if c.case == case and c.role == "measured"]
+    rows = [
+        {
+            "data": plain(c.code),
+            "mode": plain(names.get(c, "")),
+            "speed": unit.at(c.omega),
+            f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
+            f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
+            "measured against core": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
+            "what it says of the model": plain(c.reason),
+        }
+        for c in sorted(cells, key=lambda c: (c.code, c.mode, c.omega))
+    ]
+    return table(rows) if rows else ""
 
 
 def told(cells: Sequence[Cell]) -> str:

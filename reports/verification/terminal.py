@@ -20,6 +20,7 @@ COLOUR: dict[Verdict, str] = {
     "pass": "green",
     "known difference": "cyan",
     "estimate": "dim",
+    "measured": "magenta",
     "inconclusive": "yellow",
     "fail": "bold red",
     "not applicable": "dim",
@@ -88,7 +89,7 @@ def _field(cells: Sequence[Cell]) -> str:
 
 def _wide(cell: Cell) -> str:
     """The target, where it is wider than is usual."""
-    return f" of {100 * cell.target:g}" if cell.target > summary.PAPER else ""
+    return f" of {100 * cell.target:g}" if summary.wide(cell) else ""
 
 
 def _short(size: float, target: float) -> str:

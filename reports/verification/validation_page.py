@@ -1,6 +1,6 @@
 """The page of a measured rotor beside its model, and the command that writes it, ``southwell validate``."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,82 +10,59 @@ from matplotlib.figure import Figure
 
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
-from ...cases.judge.measured import COVERAGE, statement
-from ...cases.validation import comparison, sandia34
-from ...cases.validation.comparison import Point, Simulated
+from ...cases.judge.measured import COVERAGE
+from ...cases.validation import comparison, rotating_beams, sandia34
+from ...cases.validation.comparison import Simulated
+from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
+from . import validation_beams
+from .validation_tables import by_line, every
 
 PAGE, FIGURE = "validation.md", "validation.svg"
 
 
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
-    """Compare the model of a measured rotor with its measurements.
+    """Compare models of measured rotors with their measurements.
 
-    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotor is the Sandia 34 m vertical-axis test
-    bed. Writes validation.md and a Campbell diagram with the measured points. Takes several minutes. The status is 0
-    whatever the comparison shows: a measurement is not a code.
+    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotors are the Sandia 34 m vertical-axis test
+    bed and the rotating beams of Epps and Chandra. Writes validation.md and Campbell diagrams with the measured points.
+    Takes several minutes. The status is 0 whatever the comparison shows: a measurement is not a code.
 
     Parameters
     ----------
     out
         Output folder.
     """
+    beams = {name: tuple(rotating_beams.points(name)) for name in rotating_beams.BEAMS}
     model = comparison.simulated()
     points = comparison.points(model)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        for name, text in pages(model, points).items():
+        for name, text in pages(model, points, beams).items():
             atomic.write(out / name, text)
     except OSError as error:
         raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()
-    console.print(table(summary(points)), markup=False, soft_wrap=True)
+    for rows in (summary(points), *(by_line(of_beam, {}) for of_beam in beams.values())):
+        console.print(table(rows), markup=False, soft_wrap=True)
+        console.print()
     console.print(f"{out / PAGE}", markup=False, soft_wrap=True)
     return 0
 
 
-def pages(model: Simulated, points: Sequence[Point]) -> dict[str, str]:
-    """The page and its figure, by file name."""
-    every = [{"line": p.line, "rpm": f"{p.rpm:.1f}", **numbers(p), "": statement(p.validation)} for p in points]
-    text = "\n\n".join(
-        [_HEAD, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, "## Every point", table(every)]
-    )
-    return {PAGE: text + "\n", FIGURE: svg(figure(model, points))}
-
-
-def numbers(p: Point) -> dict[str, str]:
-    """A point's S, D, E and uncertainties, Hz."""
-    v = p.validation
-    return {
-        "S": f"{v.simulated:.3f}",
-        "D": f"{v.measured:.3f}",
-        "E": f"{v.error:+.3f}".replace("-", "−"),
-        "u_num": f"{v.numerical:.3f}",
-        "u_input": f"{v.inputs:.3f}",
-        "u_D": f"{v.data:.3f}",
-        "u_val": f"{v.uncertainty:.3f}",
-    }
+def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequence[Point]]) -> dict[str, str]:
+    """The page and its figures, by file name; ``beams`` are the points of each kind of rotating beam."""
+    parts = [_HEAD, _SANDIA, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, every(points)]
+    parts += validation_beams.parts(beams)
+    figures = {FIGURE: svg(figure(model, points)), validation_beams.FIGURE: svg(validation_beams.figure(beams))}
+    return {PAGE: "\n\n".join(parts) + "\n", **figures}
 
 
 def summary(points: Sequence[Point]) -> list[dict[str, str]]:
-    """One row per measured line."""
-    rows = []
-    for line in comparison.data()["lines"]:
-        mine = [p for p in points if p.line == line["name"]]
-        off = [100.0 * p.validation.error / p.validation.measured for p in mine]
-        seen = sum(p.validation.visible > 0.0 for p in mine)
-        rows.append(
-            {
-                "line": line["name"],
-                "mode": plain(line["title"]),
-                "points": str(len(mine)),
-                "E, % of D": f"{min(off):+.1f} to {max(off):+.1f}".replace("-", "−"),
-                "model error visible": f"{seen} of {len(mine)}",
-            }
-        )
-    return rows
+    """One row per measured line of the Sandia rotor."""
+    return by_line(points, {line["name"]: plain(line["title"]) for line in comparison.data()["lines"]})
 
 
 def figure(model: Simulated, points: Sequence[Point]) -> Figure:
@@ -98,7 +75,7 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
             mine = [p for p in points if p.line == line["name"]]
             colour = COLOURS[k % len(COLOURS)]
             for name in line["of"]:
-                f = [comparison.at_speed([at[name] for at in model.base], x) for x in rpm]
+                f = [comparison.at_speed([at[name] for at in model.base], x)[0] for x in rpm]
                 axes.plot(rpm, f, color=colour, linewidth=1.2)
             axes.errorbar(
                 [p.rpm for p in mine],
@@ -110,28 +87,30 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
                 elinewidth=0.8,
                 label=f"{line['name']}: {line['title']}",
             )
-        axes.set(xlabel="rotor speed, rpm", ylabel="frequency, Hz", xlim=(0, None), ylim=(0, None))
+        axes.set(xlabel="rotor speed, rpm", ylabel="frequency, Hz", xlim=(-0.02 * rpm[-1], None), ylim=(0, None))
         axes.set_title("Sandia 34 m test bed: measured (points, ± 2 u_D) and simulated (lines)")
         axes.grid(color=MUTED, alpha=0.15)
         fig.legend(loc="outside lower center", ncols=3, fontsize=8)
     return fig
 
 
-_HEAD = f"""# A measured rotor
-
-The Sandia 34 m vertical-axis test bed: two curved blades and four struts on a tower. Its model was written from the
-published section data before the measured frequencies were looked at, and has not been adjusted since.
+_HEAD = f"""# Measured rotors
 
 A measurement is not a code. It does not confirm or contradict core; it shows how far the *model* is from the rotor. The
 comparison error E = S − D holds the model's error and three uncertainties: of the numerical solution (u_num), of the inputs
 (u_input), and of the data (u_D). With u_val² = u_num² + u_input² + u_D², the model's error is visible where |E| exceeds
-{COVERAGE:g} u_val (ASME V&V 20-2009, sec. 1-5). All values are in Hz.
+{COVERAGE:g} u_val (ASME V&V 20-2009, sec. 1-5). All values are in Hz."""
+
+_SANDIA = f"""## The Sandia 34 m vertical-axis test bed
+
+Two curved blades and four struts on a tower. The model was written from the published section data before the measured
+frequencies were looked at, and has not been adjusted since.
 
 Source: {sandia34.data()["citation"]}; data {comparison.data()["provenance"]}."""
 
 _ASSUMED = sandia34.data()["uncertainty"]
 
-_MODEL = f"""## What the model assumes
+_MODEL = f"""### What the model assumes
 
 - The guys are rigid: the tower's top is free only in yaw. The tower's modes are therefore too high.
 - The inputs' uncertainty is not published. Assumed, as one standard uncertainty:
@@ -139,5 +118,7 @@ _MODEL = f"""## What the model assumes
 - The source's mass matrices put the mass centre across the chord, where the profile is not thick enough for it. Stiffness and
   mass are those of one material, so the model has the mass centre at the tension centre. The change to either reading
   of the printed number enters u_input.
-- u_num is the change from halving every element, and half the distance of two modes where a measured line may be either.
+- u_num is from the change when every element is halved, extrapolated with order {comparison.ORDER}; from the interpolation
+  between the speeds at which the model is solved ({", ".join(f"{rpm:g}" for rpm in comparison.SPEEDS)} rpm); and half the
+  distance of two modes where a measured line may be either.
 - u_D is {comparison.data()["uncertainty"]:g} Hz: half the least scatter of repeated measurements at one speed."""

@@ -74,14 +74,18 @@ function campbell() {
       return { name: `${n}P`, end: `${n}P`, colour: "#8a949e", width: 1, quiet: true, points: [[0, 0], [end, n * DATA.perSpeed * end]] };
     }) : [];
     const dots = names.map((name, k) => ({ name, colour: colour(k), marks: true, line: false,
-      points: solved.filter((c) => (names.includes(c.name) ? c.name : `mode ${c.mode}`) === name && (!code || c.code === code)).map((c) => [c.speed, c.f]) }));
-    const drawing = chart([...rays, ...core, ...dots], { x: `rotor speed, ${DATA.speed}`, y: `frequency, ${DATA.frequency}`, yMin: 0, label: "Campbell diagram" });
-    place.replaceChildren(drawing, legend(core));
+      points: solved.filter((c) => c.bar === null && (names.includes(c.name) ? c.name : `mode ${c.mode}`) === name && (!code || c.code === code)).map((c) => [c.speed, c.f]) }));
+    const measured = unique(solved.filter((c) => c.bar !== null).map((c) => c.code)).filter((name) => !code || name === code).map((name) => {
+      const mine = solved.filter((c) => c.code === name);
+      return { name: `${name}, measured ± 2 u_val`, colour: "currentColor", marks: true, line: false, bars: mine.map((c) => c.bar), points: mine.map((c) => [c.speed, c.f]) };
+    });
+    const drawing = chart([...rays, ...core, ...dots, ...measured], { x: `rotor speed, ${DATA.speed}`, y: `frequency, ${DATA.frequency}`, yMin: 0, label: "Campbell diagram" });
+    place.replaceChildren(drawing, legend([...core, ...measured]));
   }
   const block = make("section", {}, make("h2", {}, "Campbell diagram"));
   if (!solved.length) { block.append(make("p", { class: "muted" }, "No code has an answer.")); return block; }
   draw();
-  block.append(controls, place, make("p", { class: "muted" }, "Lines: core, all effects. Points: the codes' answers. nP: n per revolution."));
+  block.append(controls, place, make("p", { class: "muted" }, "Lines: core, all effects. Points: the codes' answers; with bars: measured data. nP: n per revolution."));
   return block;
 }
 

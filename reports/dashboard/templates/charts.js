@@ -23,7 +23,7 @@ function short(value, near = 0) {
   return size >= 1e5 || size < 1e-3 ? Number(value.toPrecision(3)).toExponential().replace("e+", "e") : String(Number(value.toPrecision(count)));
 }
 
-// series: [{name, points: [[x, y], …], colour, marks, line, dash, width, quiet, end}]
+// series: [{name, points: [[x, y], …], colour, marks, line, dash, width, quiet, end, bars: half heights}]
 function chart(series, { x, y, logX = false, logY = false, whole = false, height = 300, yMin = null, label = "", steps = [] }) {
   const finite = ([a, b]) => Number.isFinite(a) && Number.isFinite(b);
   const all = series.flatMap((s) => s.points).filter(finite);
@@ -64,6 +64,7 @@ function chart(series, { x, y, logX = false, logY = false, whole = false, height
       group.append(make("svg:polyline", { points: points.map(([a, b]) => `${X(a).toFixed(1)},${Y(b).toFixed(1)}`).join(" "), fill: "none",
         stroke: s.colour, "stroke-width": s.width || 1.6, "stroke-dasharray": s.dash }));
     }
+    s.points.forEach(([a, b], k) => s.bars?.[k] && group.append(make("svg:line", { x1: X(a), x2: X(a), y1: Y(Math.max(b - s.bars[k], y0)), y2: Y(Math.min(b + s.bars[k], y1)), stroke: s.colour, "stroke-width": 1.4 })));
     if (s.marks) for (const [a, b] of points) group.append(make("svg:circle", { cx: X(a), cy: Y(b), r: 2.6, fill: s.colour }, make("svg:title", {}, `${s.name}: ${short(a)}, ${b.toPrecision(7)}`)));
     if (s.end && points.length) group.append(make("svg:text", { x: X(points.at(-1)[0]) + 4, y: Y(points.at(-1)[1]) + 4 }, s.end));
     svg.append(group);

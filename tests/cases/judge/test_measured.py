@@ -39,3 +39,21 @@ def test_more_uncertainty_shows_less(s: float, d: float, n: float, i: float, u: 
 def test_an_uncertainty_is_finite_and_not_negative(bad: float) -> None:
     with pytest.raises(ValueError, match=r"data: .* finite and not negative"):
         Validation(1.0, 1.0, 0.0, 0.0, bad)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_frequency_is_finite_and_above_zero(bad: float) -> None:
+    with pytest.raises(ValueError, match=r"measured: .* finite and above zero"):
+        Validation(1.0, bad, 0.0, 0.0, 0.1)
+
+
+def test_an_error_that_is_hardly_visible_is_not_said_to_be_zero() -> None:
+    assert statement(Validation(1.0, 0.9, 0.0, 0.0, 0.04998)) == "model error visible (at least 0.0044 %)"
+
+
+@given(st.floats(0.5, 2.0), st.floats(0.0, 0.5))
+def test_the_data_against_the_simulation_show_as_much(ratio: float, u: float) -> None:
+    """|D/S − 1| exceeds k u_val/S by as much as |E| exceeds k u_val, which is what rows of results hold."""
+    v = Validation(simulated=1.3, measured=1.3 * ratio, numerical=0.0, inputs=0.0, data=u)
+    difference, uncertainty = v.relative
+    assert max(abs(difference) - uncertainty, 0.0) * 1.3 == pytest.approx(v.visible, abs=1e-12)

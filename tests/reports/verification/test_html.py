@@ -87,8 +87,9 @@ def test_links_lead_to_headings(folder: Path) -> None:
 def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path) -> None:
     run = samples.run()
     rough = replace(run.cells[0], code="rough", verdict="estimate", reason="its own bracket")
+    datum = replace(run.cells[0], code="rig", role="measured", verdict="measured", reason="model error not visible")
     text = html.render(
-        matrix_report.write(replace(run, cells=(*run.cells, rough)), folder).read_text(encoding="utf-8"), folder
+        matrix_report.write(replace(run, cells=(*run.cells, rough, datum)), folder).read_text(encoding="utf-8"), folder
     )
     for verdict, sign in summary.SYMBOL.items():
         name = verdict.replace(" ", "-")

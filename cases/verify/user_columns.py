@@ -1,0 +1,99 @@
+"""Results without an adapter as columns of the matrix: those of a program are judged, measured ones are not.
+
+Beside core's frequency S a measured one, D, has a comparison error E = S − D, and the uncertainty u_val of that from the
+numerical solution, the inputs and the data (ASME V&V 20-2009). Measurements are rarely taken at the speeds of a case: core is
+solved at theirs.
+"""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from ...core.blade import Blade
+from ...core.effects import ALL_EFFECTS
+from ...references.protocol.process import Failure
+from ..input.schema import Compare, Variant
+from ..judge.pairing import numbered
+from ..judge.results import Cell
+from ..judge.uncertainty import Estimate
+from .cells import Datum, Head, empty, measured, printed
+from .columns import Column, References, Rows
+from .reference import Reference, references
+from .user_results import Added, Given, at
+
+
+def columns(variant: Variant, added: Sequence[Added], compare: Compare) -> list[Column]:
+    """A column for each file that has something about a blade."""
+    out = []
+    for one in added:
+        mine = [row for row in one.rows if row.blade in ("", variant.name)]
+        if not mine:
+            continue
+        file = Path(one.path).name
+        if one.measured:
+            head = Head(variant.name, one.name, f"measured, in {file}", "measured", compare.target)
+            work = partial(_measured, head, variant.blade, compare, mine)
+        else:
+            head = Head(variant.name, one.name, f"from {file}", "code", compare.target, "nothing")
+            work = partial(_rows, head, mine)
+        out.append(Column(one.name, ALL_EFFECTS, head, work, due="somewhere"))
+    return out
+
+
+def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
+    cells = []
+    for omega, reference in core:
+        for row in (row for row in given if at(row, omega)):
+            k = _place(row, reference)
+            sure = Estimate(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega))
+            cells.append(
+                _elsewhere(head, omega, row, reference) if k is None else printed(head, omega, k, reference, sure, "")
+            )
+    return cells, []
+
+
+def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
+    """A cell for every measured frequency, at the case's speed where its own is that when rounded, else at its own."""
+    cells, solved = [], dict(core)
+    for row in given:
+        omega = next((omega for omega, _ in core if at(row, omega)), row.omega)
+        if omega not in solved:
+            (found,) = references(blade, [omega], compare, {ALL_EFFECTS})[ALL_EFFECTS]
+            if isinstance(found, Failure):
+                cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {found.reason}"))
+                continue
+            solved[omega] = found
+        k = _place(row, solved[omega])
+        datum = Datum(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega), row.inputs)
+        cells.append(
+            _elsewhere(head, omega, row, solved[omega]) if k is None else measured(head, omega, k, solved[omega], datum)
+        )
+    return cells, []
+
+
+def _off(row: Given, omega: float) -> float:
+    """How far a frequency may be off, relative, where the row's speed is not quite ``omega``.
+
+    By f² = f₀² + K Ω² it changes, relatively, no more than the speed does (Southwell 1921; K not negative).
+    """
+    return abs(row.omega / omega - 1.0) if omega else 0.0
+
+
+def _elsewhere(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
+    """The cell of a row about a mode that the case does not compare."""
+    called, known = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
+    reason = f"line {row.line}: the case does not compare mode {called} here: it compares {known}"
+    return empty(head, omega, "not applicable", reason)
+
+
+def _names(reference: Reference) -> list[str]:
+    return numbered(reference.core.names)
+
+
+def _place(row: Given, reference: Reference) -> int | None:
+    """Which of the modes that the case compares a row is of."""
+    if row.family:
+        name = f"{row.family} {row.mode}"
+        return _names(reference).index(name) if name in _names(reference) else None
+    indices = reference.core.wanted.indices
+    return indices.index(row.mode - 1) if row.mode - 1 in indices else None

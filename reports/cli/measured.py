@@ -1,0 +1,55 @@
+"""``--add`` and the uncertainties of what it adds, for the commands that take measurements."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...cases.verify import user_results
+from ...cases.verify.user_results import Added, Defaults
+from .errors import UsageError
+
+
+def defaults(data: str | None, inputs: str | None) -> Defaults:
+    """What ``--data-uncertainty`` and ``--input-uncertainty`` say."""
+    return Defaults(
+        data=_percent("--data-uncertainty", data) if data is not None else None,
+        inputs=_percent("--input-uncertainty", inputs) if inputs is not None else 0.0,
+    )
+
+
+def _percent(option: str, text: str) -> float:
+    try:
+        value = float(text.removesuffix("%")) / 100.0
+    except ValueError:
+        raise UsageError(f"{option}: {text!r} is not a percentage: give one standard uncertainty, as in 1%") from None
+    if not 0.0 < value <= 1.0:
+        raise UsageError(
+            f"{option}: {text!r}: needs more than 0 and at most 100 %: give one standard uncertainty, as in 1%"
+        )
+    return value
+
+
+def added(text: str, u: Defaults) -> Added:
+    """The file of one ``--add``.
+
+    Raises:
+        UsageError: if it has not the form NAME=FILE.csv.
+        CaseError: if the file cannot be used.
+    """
+    name, equals, path = text.partition("=")
+    if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
+        raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
+    return user_results.read(name, Path(path), u)
+
+
+def check(files: Sequence[Added], data: str | None, inputs: str | None) -> None:
+    """Refuse an uncertainty that is of nothing.
+
+    Raises:
+        UsageError: if no file is measured and one is given.
+    """
+    for option, given in (("--data-uncertainty", data), ("--input-uncertainty", inputs)):
+        if given is not None and not any(one.measured for one in files):
+            raise UsageError(
+                f"{option}: {given}: no file of --add has measured frequencies: name their column 'measured [Hz]'"
+            )

@@ -1,0 +1,87 @@
+"""The rotating beams of Epps and Chandra beside their models: a part of the page of measured rotors."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...cases.judge.measured import COVERAGE
+from ...cases.validation import rotating_beams
+from ...cases.validation.points import Point
+from ..shared.markdown import plain, table
+from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house
+from .validation_tables import by_line, every
+
+FIGURE = "validation-beams.svg"
+
+
+def parts(beams: Mapping[str, Sequence[Point]]) -> list[str]:
+    """Paragraphs of the page; ``beams`` are the points of each kind of beam."""
+    out = [_HEAD, f"![Campbell diagrams]({FIGURE})"]
+    for name, points in beams.items():
+        of_beam = rotating_beams.data()[name]
+        heading = of_beam["title"][0].upper() + of_beam["title"][1:]
+        out += [
+            f"### {plain(heading)}",
+            f"Source: {plain(of_beam['provenance'])}.",
+            table(by_line(points, {})),
+            every(points),
+        ]
+    return out
+
+
+def figure(beams: Mapping[str, Sequence[Point]]) -> Figure:
+    """A panel for each beam: measured points, and core's frequencies, whose squares are joined by straight lines in Ω²."""
+    panels = [
+        (f"{name}, {sweep:g}°" if len(d["sweep"]) > 1 else name, [p for p in points if _of_sweep(p, sweep)])
+        for name, points in beams.items()
+        for d in [rotating_beams.data()[name]]
+        for sweep in d["sweep"]
+    ]
+    with house():
+        fig = Figure(figsize=(WIDTH, 6.0), layout="constrained")
+        for k, (heading, points) in enumerate(panels, 1):
+            rpm_max = max(p.rpm for p in points)
+            axes = fig.add_subplot(-(-len(panels) // 3), 3, k)
+            for j, line in enumerate(dict.fromkeys(p.line for p in points)):
+                mine = [p for p in points if p.line == line]
+                rpm, f = np.array([p.rpm for p in mine]), np.array([p.validation.simulated for p in mine])
+                fine = np.linspace(rpm[0], rpm[-1], 81)
+                colour = COLOURS[j % len(COLOURS)]
+                axes.plot(fine, np.sqrt(np.interp(fine**2, rpm**2, f**2)), color=colour, linewidth=1.2)
+                bars = [COVERAGE * p.validation.data for p in mine]
+                D = [p.validation.measured for p in mine]
+                axes.errorbar(rpm, D, yerr=bars, fmt=MARKERS[j], color=colour, markersize=4, elinewidth=0.8)
+            axes.set(
+                xlabel="rotor speed, rpm",
+                ylabel="frequency, Hz",
+                xlim=(-0.03 * rpm_max, None),
+                ylim=(0, None),
+                title=heading,
+            )
+            axes.grid(color=MUTED, alpha=0.15)
+        fig.suptitle("Epps and Chandra's beams, flapwise: measured (points, ± 2 u_D) and simulated (lines)")
+    return fig
+
+
+def _of_sweep(point: Point, sweep: float) -> bool:
+    """Whether a point is of the beam so swept; a point of a beam that is never swept has no angle."""
+    return "°" not in point.line or point.line.endswith(f" {sweep:g}°")
+
+
+_ASSUMED = rotating_beams.data()["uncertainty"]
+
+_HEAD = f"""## The rotating beams of Epps and Chandra
+
+Thin strips, clamped off the rotor's axis, the aluminium ones with a swept tip. The measurements had been seen before the models
+were written; nothing in the models is free: they are the beams as printed, and none was adjusted. The second-hand sources are
+named with each beam; the paper itself was not at hand.
+
+Source: {rotating_beams.data()["citation"]}.
+
+- Assumed, as one standard uncertainty of the inputs: {100 * _ASSUMED["stiffness"]:g} % of all stiffness (1 % of the thickness),
+  {100 * _ASSUMED["mass"]:g} % of all mass. The clamp, the hub's radius and the speed are taken as exact.
+- u_num is core's own uncertainty after refinement.
+- u_D is {rotating_beams.data()["aluminium"]["measured"]:g} Hz for the aluminium beams: the scatter of their first
+  frequency, which hardly depends on the sweep. For the composite beam, whose frequencies were read off a figure,
+  {rotating_beams.data()["composite"]["measured"]:g} Hz is assumed."""
