@@ -19,6 +19,7 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
 from ...references.protocol.description import Description
+from ...references.protocol.interface import Independence
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer, answers
 from ...references.protocol.process import Failure, Limits
@@ -32,6 +33,14 @@ from ..judge.verdict import judge, unsigned
 from .cells import Head, empty, failed
 from .columns import Column, Rows, failing_work
 from .mechanism_case import MechanismCase, Turning
+
+_BY_HAND = Independence(
+    engine="closed form",
+    theory="second-order Lagrangian by hand",
+    rotation="second-order Lagrangian by hand",
+    sections="the case's closed_form.parameters",
+    eigensolver="references.damped",
+)
 
 Array = NDArray[np.float64]
 References = dict[Effects, list["Reference"]]
@@ -80,11 +89,13 @@ def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -
     (variant,) = case.variants
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
-        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target)
-        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits)))
+        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target, code.shares)
+        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits), code.independence))
     if form := variant.described.text.closed_form:
-        head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
-        out.append(Column(head.code, ALL_EFFECTS, head, partial(_compared, head, variant, partial(_formula, form))))
+        known = f"southwell {version('southwell')}"
+        head = Head(case.name, "closed form", known, "same discretisation", case.target, "nothing")
+        work = partial(_compared, head, variant, partial(_formula, form))
+        out.append(Column(head.code, ALL_EFFECTS, head, work, _BY_HAND))
     return out
 
 
