@@ -101,8 +101,9 @@ class Plant:
         """The tree at coordinates q (n,), its motions at their rates."""
         pin, model, data, m = self._pin, self._model, self._data, self.mechanism
         pin.computeRNEADerivatives(model, data, q, self.v, np.zeros_like(q))
-        force, K, C = np.array(data.tau), np.array(data.dtau_dq), np.array(data.dtau_dv)
-        M = np.array(pin.crba(model, data, q))
+        n = len(q)
+        force, K, C = np.array(data.tau), *(np.reshape(a, (n, n)).copy() for a in (data.dtau_dq, data.dtau_dv))
+        M = np.reshape(pin.crba(model, data, q), (n, n))
         M = np.triu(M) + np.triu(M, 1).T
         for s in m.coordinate_springs:
             j = self.tree.names.index(s.coordinate)
@@ -134,4 +135,5 @@ def _inertia(pin: Any, about_origin: Array) -> Any:
     mass = float(about_origin[0, 0])
     centre = np.array([about_origin[1, 5], about_origin[2, 3], about_origin[0, 4]]) / (mass or 1.0)
     cross = np.array([[0, -centre[2], centre[1]], [centre[2], 0, -centre[0]], [-centre[1], centre[0], 0]])
-    return pin.Inertia(mass, centre, about_origin[3:, 3:] + mass * cross @ cross)
+    moments, axes = np.linalg.eigh(about_origin[3:, 3:] + mass * cross @ cross)
+    return pin.Inertia(mass, centre, (axes * np.maximum(moments, 0.0)) @ axes.T)  # rounding may leave a moment below 0

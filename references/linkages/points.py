@@ -51,12 +51,13 @@ def frames(pin: Any, model: Any, data: Any, q: Array, ids: Sequence[int]) -> lis
     for k, unit in enumerate(np.eye(n)):
         pin.computeJointJacobiansTimeVariation(model, data, q, unit)
         pin.updateFramePlacements(model, data)
-        slopes[k] = [pin.getFrameJacobianTimeVariation(model, data, i, axes) for i in ids] if ids else slopes[k]
+        for place, i in enumerate(ids):
+            slopes[k, place] = np.reshape(pin.getFrameJacobianTimeVariation(model, data, i, axes), (6, n))
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)
     out = []
     for place, i in enumerate(ids):
-        J = np.array(pin.getFrameJacobian(model, data, i, axes))
+        J = np.reshape(pin.getFrameJacobian(model, data, i, axes), (6, n)).copy()  # of one coordinate it has one axis
         pose, dJ = data.oMf[i], slopes[:, place]
         out.append(Frame(np.array(pose.translation), np.array(pose.rotation), J[:3], J[3:], dJ[:, :3], dJ[:, 3:]))
     return out
