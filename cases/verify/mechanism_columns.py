@@ -135,6 +135,8 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
     """A code's cells at one speed: its partner of each of core's ``count`` lowest modes, by mass-weighted MAC."""
     if isinstance(answer, Failure):
         return [failed(head, omega, answer)]
+    if fault := _incomplete(reference, answer):
+        return [failed(head, omega, Failure("nonsense", fault))]
     likeness = alike(reference, answer)
     partners = dict(zip(*(k.tolist() for k in linear_sum_assignment(-likeness)), strict=True))
     out = []
@@ -165,6 +167,19 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
             )
         )
     return out
+
+
+def _incomplete(reference: Reference, answer: MechanismModes) -> str:
+    """Why an answer cannot be paired by shape, or is not all of the modes: what a frequency alone does not tell."""
+    theirs = [reference.modes.coordinates.index(n) for n in answer.coordinates if n in reference.modes.coordinates]
+    shapes, many = reference.modes.shapes, len(reference.modes.values)
+    if np.linalg.matrix_rank(shapes[:, theirs]) < np.linalg.matrix_rank(shapes):
+        return f"coordinates {', '.join(answer.coordinates)}: these do not tell the {many} modes apart: name all"
+    highest = np.abs(reference.modes.values).max(initial=0.0)
+    extra = len(answer.values) - many
+    if extra > 0 and np.sum(np.abs(answer.values) <= highest * (1.0 + ROUNDING)) > many:
+        return f"values: {len(answer.values)} modes, and core has {many}: are there conjugates, or spurious ones?"
+    return ""
 
 
 def alike(reference: Reference, answer: MechanismModes) -> Array:

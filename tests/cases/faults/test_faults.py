@@ -24,7 +24,17 @@ from ...support import samples
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40
     areas = Counter(f.area for f in ALL)
-    assert set(areas) == {"core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"}
+    assert set(areas) == {
+        "core",
+        "adapter",
+        "pairing",
+        "uncertainty",
+        "verdict",
+        "reader",
+        "counting",
+        "history",
+        "gate",
+    }
     assert len(FAST) == 7
     assert all(f.what and f.size and f.seams for f in ALL)
     assert all(f.trial or f.blinds or f.area in ("counting", "history", "gate") for f in ALL)
@@ -50,7 +60,8 @@ def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known", "target in percent"]
+    "name",
+    ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known", "target in percent"],
 )
 def test_one_of_each_other_kind_is_detected(name: str) -> None:
     (control,) = table.run([name])

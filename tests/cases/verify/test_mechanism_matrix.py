@@ -101,6 +101,29 @@ def test_a_shape_like_no_other_has_no_partner() -> None:
     assert "no partner, its most similar has MAC 0.5" in bad[0].reason
 
 
+def test_coordinates_that_do_not_tell_the_modes_apart_are_a_failure() -> None:
+    """Over one coordinate every mode has MAC 1 with every other, and pairing would be by number."""
+
+    def flap_only(a: MechanismModes) -> MechanismModes:
+        k = a.coordinates.index("flap.rz")
+        ones = np.ones((len(a.values), 1), complex)
+        return replace(a, coordinates=("flap.rz",), steady=a.steady[[k]], shapes=ones)
+
+    (cell,) = told(flap_only)
+    assert cell.verdict == "fail"
+    assert "coordinates flap.rz: these do not tell the 2 modes apart" in cell.reason
+
+
+def test_spurious_modes_are_a_failure() -> None:
+    def more(a: MechanismModes) -> MechanismModes:
+        return replace(
+            a, values=np.append(a.values, 0.9 * a.values[1:]), shapes=np.append(a.shapes, a.shapes[:1], axis=0)
+        )
+
+    (cell,) = told(more)
+    assert (cell.verdict, "3 modes, and core has 2" in cell.reason) == ("fail", True)
+
+
 @pytest.mark.parametrize(
     ("kind", "verdict"), [("crashed", "fail"), ("timed out", "inconclusive"), ("not installed", "not run")]
 )
