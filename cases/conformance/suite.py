@@ -14,14 +14,17 @@ symmetry (``conformance_checks``), or, for what a code may drop without a word, 
 core's with it than without.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Any, Literal
 
 from ...references.protocol.interface import Code
+from ...references.protocol.mechanism_interface import MechanismCode
 from . import checks as checks
+from . import mechanism_checks as mechanism
 from .blades import PROPERTIES
-from .checks import Ask, BrokenError, NotForItError
+from .checks import BrokenError, NotForItError
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class Check:
 
     name: str
     law: str
-    ask: Ask
+    ask: Callable[[Any], None]
     runs: bool = True
 
     def __str__(self) -> str:
@@ -53,7 +56,7 @@ class Outcome:
     reason: str = ""
 
 
-def judge(code: Code, check: Check) -> Outcome:
+def judge(code: Code | MechanismCode, check: Check) -> Outcome:
     """Ask one thing of a code. Whatever it raises, unless it declines the blade with a reason, is a failure."""
     if check.runs and code.version() is None:
         return Outcome(check, "not run", f"not installed: {code.hint}")
@@ -96,4 +99,34 @@ CHECKS = (
     Check("effects", "effects declared are kept, and no others", checks.effects),
     *(Check(f"keeps {p.name}", "refused, or not dropped", partial(checks.keeps, p)) for p in PROPERTIES),
 )
-"""Every check, in the order in which failures are best read."""
+"""Every check of a code for blades, in the order in which failures are best read."""
+
+FOR_MECHANISMS = (
+    Check(
+        "mechanism declarations",
+        "name, title, shares, effects, and a version or a hint",
+        mechanism.declares,
+        runs=False,
+    ),
+    Check("mechanism refusals", "what unsupported_mechanism declines, solve_mechanism refuses too", mechanism.refuses),
+    Check("pendulum", "√(g/l), its steady state, and its coordinate by name", mechanism.hangs),
+    Check("damped slide", "damping, preload and weight in closed form", mechanism.oscillates),
+    Check("flap and lag hinge", "Johnson's frequencies of a turning rod", mechanism.flaps),
+    Check("gyroscope", "a spinning disc on two gimbals in closed form", mechanism.gyrates),
+    Check("stretched spring", "a spring between points stiffens across its line by its tension", mechanism.stretched),
+    Check("branching tree", "two branches, joints given level by level", mechanism.branches),
+    Check("parallelogram", "refused, or √(g/l) with three redundant equations", mechanism.closes),
+    Check(
+        "constraints' curvature",
+        "refused, or the pendulum whose stiffness is all in a loop's reaction",
+        mechanism.curves,
+    ),
+    Check("joint from child to parent", "the coordinate reversed, the eigenvalues unchanged", mechanism.reversed_joint),
+    Check("mechanism repeats itself", "the same call, the same answer", mechanism.repeats),
+    Check("periodic equations", "refused", mechanism.periodic),
+    Check("no steady state", "refused", mechanism.falls),
+)
+"""Every check of a code for mechanisms."""
+
+EVERY = (*CHECKS, *FOR_MECHANISMS)
+"""All of them; a worker is told which by number."""

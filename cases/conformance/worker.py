@@ -10,7 +10,7 @@ from ...references.protocol import boundary, registry
 from ...references.protocol.boundary import NonsenseError
 from ...references.protocol.child import Reply, blunder, serve
 from ...references.protocol.process import Failure, Limits, converse, one_line
-from .suite import CHECKS, Check, Outcome, judge
+from .suite import CHECKS, EVERY, Check, Outcome, judge
 
 LIMITS = Limits(seconds=600.0)
 """Of one check, which is several solutions."""
@@ -26,7 +26,7 @@ def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMIT
 
     Args:
         name: of the code, or its import path.
-        checks: those of ``suite.CHECKS`` that are asked.
+        checks: those of ``suite.EVERY`` that are asked.
         limits: of each check.
 
     Raises:
@@ -35,7 +35,7 @@ def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMIT
     done: list[Outcome] = []
     where = registry.address(name)
     while len(done) < len(checks):
-        asked = [CHECKS.index(check) for check in checks[len(done) :]]
+        asked = [EVERY.index(check) for check in checks[len(done) :]]
         request = json.dumps({**where, "checks": asked}).encode()
         lines, ended = converse(__name__, request, len(asked), limits)
         for number, line in enumerate(lines):
@@ -61,7 +61,7 @@ def _answer(request: Any) -> Iterator[Reply]:
             yield {"kind": code.kind, "reason": code.reason}
             continue
         try:
-            outcome = judge(code, CHECKS[number])
+            outcome = judge(code, EVERY[number])
             yield {"verdict": outcome.verdict, "reason": outcome.reason}
         except BaseException as error:  # an exit, too
             yield blunder(error)

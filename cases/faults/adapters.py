@@ -88,11 +88,11 @@ def _wide(modes: Modes) -> Modes:
     return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
 
 
-def _found_at(path: str) -> Callable[[Any], Any]:
-    """The exact beam's adapter is another."""
+def _found_at(path: str, code: str = "exact-beam") -> Callable[[Any], Any]:
+    """A code's adapter is another."""
 
     def make(right: Any) -> Any:
-        return lambda name: path if name == "exact-beam" else right(name)
+        return lambda name: path if name == code else right(name)
 
     return make
 
@@ -151,6 +151,9 @@ FAULTS = (
     _adapter("crash", "the code's process dies", "no answer", _crashes),
     _adapter("digits lost", "six digits of a code on core's own discretisation", "1e-6",
              told(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
+    Fault("one Gauss point an element", "adapter", "a finite element's matrices are integrated with one point", "factors",
+          ((registry, "locate", _found_at("southwell.cases.faults.one_point:CODE", "scikit-fem")),),
+          Trial("park-cantilever", (10.0,), ("scikit-fem",))),
     Fault("unsupported() raises", "adapter", "the adapter raises where it should refuse", "no answer",
           ((registry, "locate", _found_at("southwell.cases.faults.raising:UNSUPPORTED")),), PARK),
     Fault("version() raises", "adapter", "the adapter raises where it should tell its version", "no answer",

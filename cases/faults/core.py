@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...core import solve
-from ...core.blade import BEND_Z, TORSION, Blade
+from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.chain.steady import Steady
 from ...core.effects import Effects
 from ...core.element import discretize, sections
@@ -40,6 +40,10 @@ BESIDE[3, 3] = BESIDE[5, 5] = 0.2 * 0.1**2
 CONED = Trial("pretwisted-beam", (4.0,), ("exudyn-tree",), lambda b: replace(b, precone=0.1, tip_mass=BESIDE), modes=2)
 """With a point mass of a fifth of the beam's, a tenth of its length ahead of its axis, at the tip. Without precone or without
 offset, the other sense of either is a mirror image, and no frequency tells."""
+
+
+COUPLED = replace(CONED, change=lambda b: _coupled(replace(b, precone=0.1, tip_mass=BESIDE)))
+"""The same blade, so that the sense of the coupling matters, too."""
 
 
 def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
@@ -156,6 +160,31 @@ def _scaled(mass: Any, blade: Blade, s: Any, factor: float, beyond: float) -> An
 def _swapped(stiffness: Any, *_: Any) -> Any:
     order = [0, 2, 1, 3, 5, 4]
     return stiffness[:, order][:, :, order]
+
+
+def _coupling(stiffness: Any, *_: Any) -> Any:
+    out = stiffness.copy()
+    out[:, TORSION, [BEND_Y, BEND_Z]] = stiffness[:, TORSION, [BEND_Z, BEND_Y]]
+    out[:, [BEND_Y, BEND_Z], TORSION] = stiffness[:, [BEND_Z, BEND_Y], TORSION]
+    return out
+
+
+def _uncoupled(factor: float) -> Callable[[Any, Blade, Any], Any]:
+    def alter(stiffness: Any, *_: Any) -> Any:
+        out = stiffness.copy()
+        out[:, TORSION, BEND_Y] *= factor
+        out[:, BEND_Y, TORSION] *= factor
+        return out
+
+    return alter
+
+
+def _coupled(blade: Blade) -> Blade:
+    """Torsion coupled with flapwise bending by half of what would make it singular."""
+    stiffness = blade.stiffness.copy()
+    size = 0.5 * np.sqrt(stiffness[:, TORSION, TORSION] * stiffness[:, BEND_Y, BEND_Y])
+    stiffness[:, TORSION, BEND_Y] = stiffness[:, BEND_Y, TORSION] = size
+    return replace(blade, stiffness=stiffness)
 
 
 def _times(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any]:
@@ -362,6 +391,14 @@ FAULTS = (
           (sections, "stiffness_at", valued(_times(TORSION, 1.01))), TORSIONAL),
     _core("speed in revolutions", "rad/s taken for revolutions per second", "flapwise by factors",
           (core_solver, "mesh_modes", at_speed(lambda omega: 2 * np.pi * omega)), PARK),
+    _core("transposed coupling", "torsion couples with the other bending: a pair of indices exchanged", "shapes; percents",
+          (sections, "stiffness_at", valued(_coupling)), COUPLED),
+    _core("coupling's sign", "bending and torsion couple with the other sign", "lowest modes by percents",
+          (sections, "stiffness_at", valued(_uncoupled(-1.0))), COUPLED),
+    _core("no coupling", "the sections' off-diagonal stiffness is dropped", "percents",
+          (sections, "stiffness_at", valued(_uncoupled(0.0))), COUPLED),
+    _core("one Gauss point", "the flexibility of an element is integrated with one point: it cannot be inverted", "no answer",
+          (sections, "GAUSS", lambda _: 1), PARK),
     _core("root spring", "the spring in the root's hinge is dropped", "first modes by tens of percents",
           _own_modes(lambda b: replace(b, root=np.where(np.isinf(b.root), b.root, 0.0))), HINGED),
 )  # fmt: skip

@@ -155,7 +155,7 @@ FAULTS = (
     _judging("every number passes", "verdict", "the judge says pass", "all cells", judge(_passes),
              "no hub radius"),
     _judging("target in percent", "verdict", "the target is a hundred times as large", "0.1 % is 10 %",
-             judge(_loose), "axis shifted"),
+             judge(_loose), "density"),
     _judging("sign of the difference", "verdict", "only frequencies above core's count", "negative differences pass",
              judge(_signed), "softening's sign"),
     _judging("all is known", "verdict", "every failure is a known difference", "all failures",

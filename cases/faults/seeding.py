@@ -2,7 +2,7 @@
 
 A fault replaces something by its name in a module (a *seam*) while a small case is run by the real matrix. It is detected by
 the cells that are bad with it and are not without. A fault in what judges may make cells better instead of worse; it is
-detected by another fault that must be caught and is not. Faults in history and gate are detected by their canaries.
+detected by another fault that must be caught and is not. Faults in counting, history and gate are detected by their canaries.
 
 A fault acts in the thread that runs its trial and in no other, so that trials may share a process with real work. Compiled
 loops cannot be replaced from Python: seams of core are the functions that call them.
@@ -20,14 +20,17 @@ import msgspec
 import numpy as np
 
 from ...core.blade import Blade
+from ...core.multibody.mechanism import Mechanism
 from ...references.protocol import registry
 from ...references.protocol.description import Description, describe
 from ..input import library
+from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
-from ..verify import matrix
+from ..verify import matrix, mechanism_case
+from ..verify.mechanism_case import MechanismCase
 
-Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "history", "gate"]
+Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"]
 
 Seam = tuple[Any, str, Callable[[Any], Any]]
 """A module or class, the name of a function or constant in it, and what makes the faulty one from the right one."""
@@ -39,17 +42,22 @@ def _same(blade: Blade) -> Blade:
     return blade
 
 
+def _same_mechanism(mechanism: Mechanism) -> Mechanism:
+    return mechanism
+
+
 @dataclass(frozen=True)
 class Trial:
-    """A small case: one blade of the package's, at few speeds, by few codes.
+    """A small case: one blade or mechanism of the package's, at few speeds, by few codes.
 
     Attributes:
-        case: ``case`` or ``case/blade``, as on the command line.
+        case: ``case`` or ``case/blade``, as on the command line, or a mechanism's name.
         speeds: rad/s.
         codes: names.
         change: what makes the trial's blade from the package's.
         modes: how many are compared; as many as the case says by default.
         motions: those that are compared; likewise.
+        altered: what makes the trial's mechanism from the package's.
     """
 
     case: str
@@ -58,6 +66,7 @@ class Trial:
     change: Callable[[Blade], Blade] = _same
     modes: int | None = None
     motions: tuple[str, ...] = ()
+    altered: Callable[[Mechanism], Mechanism] = _same_mechanism
 
 
 @dataclass(frozen=True)
@@ -70,7 +79,7 @@ class Fault:
         what: what such a program does, in a sentence.
         size: of its effect on what the trial compares.
         seams: what is replaced.
-        trial: what is run; None for history and gate, whose canaries are run.
+        trial: what is run; None for counting, history and gate, whose canaries are run.
         blinds: name of a fault that must be caught and, with this one, no longer is.
         fast: whether every run executes it.
     """
@@ -131,11 +140,20 @@ class Serial(Executor):
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
     """What the real matrix makes of a trial."""
+    if trial.case in library.mechanisms():
+        return matrix.run([_turning(trial)], known(trial), Serial(), parts=False).cells
     case, changed = _variant(trial)
     told = case.text.compare
     compare = msgspec.structs.replace(told, modes=trial.modes or told.modes, motions=trial.motions or told.motions)
     one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
     return matrix.run([one], known(trial), Serial(), parts=False).cells
+
+
+def _turning(trial: Trial) -> MechanismCase:
+    case = mechanism_case.case(library.mechanism(trial.case))
+    (one,) = case.variants
+    described = replace(one.described, mechanism=trial.altered(one.described.mechanism))
+    return replace(case, variants=(replace(one, described=described, speeds=np.array(trial.speeds)),))
 
 
 def _variant(trial: Trial) -> tuple[Case, Variant]:
@@ -151,8 +169,8 @@ def known(trial: Trial) -> tuple[Description, ...]:
 
 @lru_cache
 def _described(trial: Trial, _paths: tuple[str, ...]) -> tuple[Description, ...]:
-    variant = _variant(trial)[1]
-    return describe(trial.codes, [variant.blade])
+    blades = [] if trial.case in library.mechanisms() else [_variant(trial)[1].blade]
+    return describe(trial.codes, blades)
 
 
 @lru_cache
@@ -162,7 +180,10 @@ def faultless(trial: Trial) -> tuple[Cell, ...]:
 
 
 def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
-    """Run one fault's trial; ``by_name`` finds another fault by its name, ``canaries`` are those of history and gate."""
+    """Run one fault's trial.
+
+    ``by_name`` finds another fault by its name; ``canaries`` are those of counting, history and gate.
+    """
     trial = fault.trial
     if fault.blinds:
         return _blinding(fault, by_name(fault.blinds))
@@ -172,8 +193,11 @@ def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[]
     if absent := [one.asked for one in known(trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(trial)
-    with seeded(fault.seams):
-        wrong = cells(trial)
+    try:
+        with seeded(fault.seams):
+            wrong = cells(trial)
+    except CaseError as error:  # without core's answer there is no run at all
+        return _control(fault, (f"{trial.case}, core: {error}",))
     return _judged(fault, right, wrong)
 
 

@@ -6,16 +6,24 @@ from ..input.errors import CaseError, nearest
 from ..judge.results import Control
 from .adapters import FAULTS as ADAPTERS
 from .core import FAULTS as CORE
+from .counting import FAULTS as COUNTING
+from .counting import canaries as counts
 from .gate import FAULTS as GATE
-from .gate import canaries
+from .gate import canaries as gates
 from .judging import FAULTS as JUDGING
+from .mechanisms import FAULTS as MECHANISMS
 from .seeding import Fault, execute
 
-ALL: tuple[Fault, ...] = (*CORE, *ADAPTERS, *JUDGING, *GATE)
+ALL: tuple[Fault, ...] = (*CORE, *ADAPTERS, *MECHANISMS, *JUDGING, *COUNTING, *GATE)
 
 BY_NAME = {fault.name: fault for fault in ALL}
 
 FAST = tuple(fault.name for fault in ALL if fault.fast)
+
+
+def canaries() -> list[str]:
+    """What counting, history and gate should have said of their canaries and did not."""
+    return [*counts(), *gates()]
 
 
 def chosen(text: str) -> tuple[str, ...]:

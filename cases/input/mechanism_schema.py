@@ -10,7 +10,7 @@ from msgspec import Meta, Struct
 
 from ...core.multibody.joints import Kind
 from .names import Name, Typed
-from .schema import LOOSEST, Speeds
+from .schema import LOOSEST, Confirmations, Speeds
 
 Three = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0)]
@@ -131,6 +131,8 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
         float, Meta(gt=0, le=LOOSEST, description="largest difference: of frequencies relative, of damping ratios")
     ] = 1e-8
     time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
+    groups: Annotated[Confirmations, Meta(description="how many independent groups must agree with core")] = 1
+    lacking: Annotated[str, Meta(description="why no group is required, where none is")] = ""
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):

@@ -42,11 +42,13 @@ class Pair:
         mode: index among the other code's modes; None if there is none.
         mac: of the two shapes, or of the two subspaces (cos² of the largest principal angle).
         note: anything a reader should know: compared as a subspace, ambiguous, why there is no partner.
+        ambiguous: whether the other code has a mode of nearly the same shape at another frequency.
     """
 
     mode: int | None
     mac: float
     note: str = ""
+    ambiguous: bool = False
 
 
 def weights(blade: Blade) -> Array:
@@ -163,8 +165,9 @@ def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
     rivals = np.delete(row, mode)
     if rivals.max(initial=0.0) < RIVAL_MAC:
         return Pair(mode, float(row[mode]))
-    second = np.delete(other.frequencies, mode)[rivals.argmax()]
-    return Pair(mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too")
+    second = float(np.delete(other.frequencies, mode)[rivals.argmax()])
+    apart = abs(second - other.frequencies[mode]) > DEGENERATE * second
+    return Pair(mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too", bool(apart))
 
 
 def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:

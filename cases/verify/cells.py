@@ -124,7 +124,7 @@ def same(
             core = float(noise[base.mode]) if noise is not None and len(noise) else ROUNDING
             own = float(theirs.rounding[partner.mode]) if len(theirs.rounding) else core
             sure = core + max(own, core)
-            verdict, reason = judge(f / f0 - 1.0, sure, head.target)
+            verdict, reason = _unless_ambiguous(judge(f / f0 - 1.0, sure, head.target), partner)
             cell = replace(cell, frequency=f, reference=f0, difference=f / f0 - 1.0, uncertainty=sure)
             cell = replace(cell, verdict=verdict, reason=_join(reason, partner.note))
         cells.append(cell)
@@ -289,7 +289,7 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) 
     else:
         verdict, reason = judge(difference, uncertainty, cell.target)
     if verdict == "pass":
-        verdict, reason = _known(reference, i, cell.target)
+        verdict, reason = _unless_ambiguous(_known(reference, i, cell.target), mine.partner)
     else:
         reason = _join(reason, best.note, base.note and f"core: {base.note}", late)
     return replace(
@@ -302,6 +302,11 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) 
         reason=_join(reason, mine.partner.note),
         order=best.order,
     )
+
+
+def _unless_ambiguous(judged: Judgement, partner: Pair) -> Judgement:
+    """No agreement where the code has another mode of nearly the same shape elsewhere: which of them is its answer?"""
+    return ("inconclusive", "") if partner.ambiguous and judged[0] in ("pass", "known difference") else judged
 
 
 def _join(*parts: str) -> str:

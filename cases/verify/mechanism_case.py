@@ -62,6 +62,10 @@ def case(described: Described) -> MechanismCase:
     if text.speeds is None or text.compare is None:
         missing = "speeds" if text.speeds is None else "compare"
         raise CaseError(f"{path}: {missing}: missing: a mechanism is a case with [speeds] and [compare]; add it")
+    if (text.compare.groups == 0) != bool(text.compare.lacking):
+        raise CaseError(
+            f"{path}: compare.groups: give groups = 0 and compare.lacking, the reason, together, or neither"
+        )
     try:
         at_rate(described.mechanism, text.rotor, 0.0)
     except mb.MechanismError as error:
@@ -87,6 +91,15 @@ def setting(case: MechanismCase) -> Setting:
         "modes compared": f"the lowest {variant.count}, and their damping ratios",
         "target": f"{case.target:g}",
     }
+    compare = text.compare
     return Setting(
-        case.name, text.title, " ".join(text.description.split()), text.source, "rpm" if rpm else "rad_s", facts
+        case=case.name,
+        title=text.title,
+        description=" ".join(text.description.split()),
+        source=text.source,
+        unit="rpm" if rpm else "rad_s",
+        facts=facts,
+        groups=compare.groups if compare else 0,
+        lacking=compare.lacking if compare else "",
+        target=case.target,
     )

@@ -19,6 +19,7 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
 from ...references.protocol.description import Description
+from ...references.protocol.interface import Independence
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer, answers
 from ...references.protocol.process import Failure, Limits
@@ -32,6 +33,14 @@ from ..judge.verdict import judge, unsigned
 from .cells import Head, empty, failed
 from .columns import Column, Rows, failing_work
 from .mechanism_case import MechanismCase, Turning
+
+_BY_HAND = Independence(
+    engine="closed form",
+    theory="second-order Lagrangian by hand",
+    rotation="second-order Lagrangian by hand",
+    sections="the case's closed_form.parameters",
+    eigensolver="references.damped",
+)
 
 Array = NDArray[np.float64]
 References = dict[Effects, list["Reference"]]
@@ -80,11 +89,13 @@ def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -
     (variant,) = case.variants
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
-        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target)
-        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits)))
+        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target, code.shares)
+        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits), code.independence))
     if form := variant.described.text.closed_form:
-        head = Head(case.name, "closed form", version("southwell"), "same discretisation", case.target)
-        out.append(Column(head.code, ALL_EFFECTS, head, partial(_compared, head, variant, partial(_formula, form))))
+        known = f"southwell {version('southwell')}"
+        head = Head(case.name, "closed form", known, "same discretisation", case.target, "nothing")
+        work = partial(_compared, head, variant, partial(_formula, form))
+        out.append(Column(head.code, ALL_EFFECTS, head, work, _BY_HAND))
     return out
 
 
@@ -124,6 +135,8 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
     """A code's cells at one speed: its partner of each of core's ``count`` lowest modes, by mass-weighted MAC."""
     if isinstance(answer, Failure):
         return [failed(head, omega, answer)]
+    if fault := _incomplete(reference, answer):
+        return [failed(head, omega, Failure("nonsense", fault))]
     likeness = alike(reference, answer)
     partners = dict(zip(*(k.tolist() for k in linear_sum_assignment(-likeness)), strict=True))
     out = []
@@ -154,6 +167,19 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
             )
         )
     return out
+
+
+def _incomplete(reference: Reference, answer: MechanismModes) -> str:
+    """Why an answer cannot be paired by shape, or is not all of the modes: what a frequency alone does not tell."""
+    theirs = [reference.modes.coordinates.index(n) for n in answer.coordinates if n in reference.modes.coordinates]
+    shapes, many = reference.modes.shapes, len(reference.modes.values)
+    if np.linalg.matrix_rank(shapes[:, theirs]) < np.linalg.matrix_rank(shapes):
+        return f"coordinates {', '.join(answer.coordinates)}: these do not tell the {many} modes apart: name all"
+    highest = np.abs(reference.modes.values).max(initial=0.0)
+    extra = len(answer.values) - many
+    if extra > 0 and np.sum(np.abs(answer.values) <= highest * (1.0 + ROUNDING)) > many:
+        return f"values: {len(answer.values)} modes, and core has {many}: are there conjugates, or spurious ones?"
+    return ""
 
 
 def alike(reference: Reference, answer: MechanismModes) -> Array:

@@ -93,6 +93,10 @@ def solve(
     while runs:
         for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
             wrong = omega in failed and failed[omega].kind == "nonsense"  # stays, whatever other refinements give
+            if isinstance(answer, Modes) and solved[omega] and answer.elements <= solved[omega][-1].elements:
+                answer = Failure(
+                    "nonsense", f"elements: {answer.elements} after {solved[omega][-1].elements}: not refined"
+                )
             if isinstance(answer, Failure):
                 failed[omega] = failed[omega] if wrong else answer
             else:

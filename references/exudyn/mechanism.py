@@ -21,7 +21,7 @@ from ...core.multibody.mechanism import Mechanism
 from ...core.multibody.tree import Tree, compile_tree
 from ...core.rank import ranked
 from ..protocol.damped import damped_modes
-from ..protocol.interface import CodeError, Shares
+from ..protocol.interface import CORE, CodeError, Independence, Shares
 from ..protocol.mechanism_interface import MechanismModes
 from . import system as ex
 from .loops import System, own_coordinates, system, velocity
@@ -74,6 +74,13 @@ class ExudynMechanism:
     shares: Shares = "mechanical model"
     effects = ALL_EFFECTS
     hint = ex.HINT
+    independence = Independence(
+        engine="Exudyn",
+        theory="tree of rigid bodies, loops by generic joints",
+        rotation="Exudyn, differences of its forces",
+        sections=CORE,
+        eigensolver="references.damped",
+    )
 
     def version(self) -> str | None:
         """Version of Exudyn."""

@@ -53,7 +53,10 @@ class UnknownCodeError(ValueError):
     """A code that cannot be had: the message names it, the likely cause, and the remedy."""
 
 
-FOR_MECHANISMS = {"exudyn-loops": "southwell.references.exudyn.mechanism:CODE"}
+FOR_MECHANISMS = {
+    "exudyn-loops": "southwell.references.exudyn.mechanism:CODE",
+    "pinocchio-loops": "southwell.references.linkages.mechanism:CODE",
+}
 """Likewise, of those that take mechanisms and no blades."""
 
 
@@ -125,7 +128,7 @@ def code(name: str) -> Any:
         told = f"module {module!r} has no attribute {attribute!r}"
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {ADVICE}")
     found = getattr(holder, attribute)
-    needed = ("name", "model", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
+    needed = ("name", "effects", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
     if missing:
         raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.protocol.interface.Code")

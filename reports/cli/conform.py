@@ -5,6 +5,7 @@ from collections import Counter
 from rich import box
 from rich.table import Table
 
+from ...cases.conformance.suite import CHECKS, FOR_MECHANISMS
 from ...cases.conformance.worker import outcomes
 from ...references.protocol.description import describe
 from ...references.protocol.registry import ADVICE, UnknownCodeError
@@ -28,12 +29,11 @@ def command(code: str, /) -> int:
     if known.failure and known.failure.reason.startswith("import: "):
         why = known.failure.reason.removeprefix("import: ")
         raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
-    if not known.blades:
-        raise UnknownCodeError(f"code: {code!r} takes mechanisms, not blades: there are no checks for it")
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("", "check", "law, or reason"):
         table.add_column(head, overflow="fold")
-    found = outcomes(code)
+    checks = (*(CHECKS if known.blades else ()), *(FOR_MECHANISMS if known.mechanisms else ()))
+    found = outcomes(code, checks if not known.failure else CHECKS)
     for outcome in found:
         table.add_row(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law)
     console = output()

@@ -58,3 +58,27 @@ BRACKET = Fooling("bracket", _wide, bracket=True)
 ZERO = Fooling("zero", lambda m: replace(m, frequencies=np.append(0.0, m.frequencies[1:])))
 BLOWS = Fooling("blows", raises="unsupported")
 NO_VERSION = Fooling("no-version", raises="version")
+
+
+def _ghosts(modes: Modes) -> Modes:
+    """Beside every mode another of nearly the same shape, 30 % above it."""
+    frequencies = np.concatenate([modes.frequencies, 1.3 * modes.frequencies])
+    blurred = modes.shapes + 0.05 * modes.shapes[::-1]
+    order = np.argsort(frequencies, kind="stable")[: len(modes.frequencies)]
+    return replace(modes, frequencies=frequencies[order], shapes=np.concatenate([modes.shapes, blurred])[order])
+
+
+def _wandering(modes: Modes) -> Modes:
+    """Another frequency at every refinement, and the same number of elements told of each."""
+    return replace(modes, frequencies=modes.frequencies * (1 + 0.01 / modes.elements), elements=10)
+
+
+def _backwards(modes: Modes) -> Modes:
+    """Refinements numbered from the finest to the coarsest."""
+    return replace(modes, frequencies=modes.frequencies * (1 + 0.01 / modes.elements), elements=1000 - modes.elements)
+
+
+GHOSTS = Fooling("ghosts", _ghosts)
+WANDERING = Fooling("wandering", _wandering, order=2)
+BACKWARDS = Fooling("backwards", _backwards, order=2)
+NAMED_CORE = Fooling("core")

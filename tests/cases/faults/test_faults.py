@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from southwell.cases.faults import seeding, table
-from southwell.cases.faults.gate import canaries
-from southwell.cases.faults.table import ALL, BY_NAME, FAST
+from southwell.cases.faults import mechanisms, seeding, table
+from southwell.cases.faults.table import ALL, BY_NAME, FAST, canaries
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import results, verdict
 from southwell.cases.judge.results import Control, Run
@@ -25,10 +24,20 @@ from ...support import samples
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40
     areas = Counter(f.area for f in ALL)
-    assert set(areas) == {"core", "adapter", "pairing", "uncertainty", "verdict", "reader", "history", "gate"}
+    assert set(areas) == {
+        "core",
+        "adapter",
+        "pairing",
+        "uncertainty",
+        "verdict",
+        "reader",
+        "counting",
+        "history",
+        "gate",
+    }
     assert len(FAST) == 7
     assert all(f.what and f.size and f.seams for f in ALL)
-    assert all(f.trial or f.blinds or f.area in ("history", "gate") for f in ALL)
+    assert all(f.trial or f.blinds or f.area in ("counting", "history", "gate") for f in ALL)
     assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
 
 
@@ -43,18 +52,36 @@ def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
     assert all(line.endswith(("fail", "inconclusive")) for line in control.caught)
 
 
-@pytest.mark.parametrize("name", [f.name for f in ALL if f.area in ("history", "gate")])
-def test_a_fault_in_history_or_gate_is_detected(name: str) -> None:
+@pytest.mark.parametrize("name", [f.name for f in ALL if f.area in ("counting", "history", "gate")])
+def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
     assert canaries() == []
     (control,) = table.run([name])
     assert control.caught
 
 
 @pytest.mark.parametrize(
-    "name", ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known"]
+    "name",
+    ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known", "target in percent"],
 )
 def test_one_of_each_other_kind_is_detected(name: str) -> None:
     (control,) = table.run([name])
+    assert control.caught
+
+
+@pytest.mark.parametrize("name", [f.name for f in mechanisms.FAULTS])
+def test_a_fault_in_mechanisms_is_detected(name: str) -> None:
+    (control,) = table.run([name])
+    if control.needs:
+        pytest.skip(f"not installed: {control.needs}")
+    assert control.caught
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", ["transposed coupling", "coupling's sign", "no coupling", "one Gauss point"])
+def test_a_fault_in_sections_is_detected(name: str) -> None:
+    (control,) = table.run([name])
+    if control.needs:
+        pytest.skip(f"not installed: {control.needs}")
     assert control.caught
 
 

@@ -88,6 +88,23 @@ def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     assert evidence.answer(alone).startswith("Nothing was compared.")
 
 
+def test_a_mode_that_the_code_has_twice_is_no_agreement() -> None:
+    """One at the right frequency, and one of nearly the same shape 30 % above it: which is its answer?"""
+    cells = of("ghosts")
+    assert {c.verdict for c in cells if "ambiguous" in c.reason} == {"inconclusive"}
+    assert sum("ambiguous" in c.reason for c in cells) >= 4
+    assert summary.status(run("GHOSTS")) == 1
+
+
+@pytest.mark.parametrize("code", ["wandering", "backwards"])
+def test_refinements_that_are_none_are_a_failure(code: str) -> None:
+    """Else the same number of elements is a division by zero, and a falling one an order of convergence."""
+    (cell,) = of(code)
+    assert (cell.verdict, cell.mode) == ("fail", 0)
+    assert cell.reason.startswith("elements: ")
+    assert cell.reason.endswith("not refined")
+
+
 def test_a_frequency_of_zero_is_a_failure() -> None:
     assert of("zero")[0].verdict == "fail"
 

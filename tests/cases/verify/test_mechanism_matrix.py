@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from southwell import multibody as mb
+from southwell.cases.faults import seeding
 from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
-from southwell.cases.verify import mechanism_case, mechanism_columns
+from southwell.cases.judge import witnesses
+from southwell.cases.verify import matrix, mechanism_case, mechanism_columns
 from southwell.cases.verify.cells import Head
 from southwell.cases.verify.columns import columns as blade_columns
 from southwell.cases.verify.mechanism_columns import cells
@@ -99,6 +101,29 @@ def test_a_shape_like_no_other_has_no_partner() -> None:
     assert "no partner, its most similar has MAC 0.5" in bad[0].reason
 
 
+def test_coordinates_that_do_not_tell_the_modes_apart_are_a_failure() -> None:
+    """Over one coordinate every mode has MAC 1 with every other, and pairing would be by number."""
+
+    def flap_only(a: MechanismModes) -> MechanismModes:
+        k = a.coordinates.index("flap.rz")
+        ones = np.ones((len(a.values), 1), complex)
+        return replace(a, coordinates=("flap.rz",), steady=a.steady[[k]], shapes=ones)
+
+    (cell,) = told(flap_only)
+    assert cell.verdict == "fail"
+    assert "coordinates flap.rz: these do not tell the 2 modes apart" in cell.reason
+
+
+def test_spurious_modes_are_a_failure() -> None:
+    def more(a: MechanismModes) -> MechanismModes:
+        return replace(
+            a, values=np.append(a.values, 0.9 * a.values[1:]), shapes=np.append(a.shapes, a.shapes[:1], axis=0)
+        )
+
+    (cell,) = told(more)
+    assert (cell.verdict, "3 modes, and core has 2" in cell.reason) == ("fail", True)
+
+
 @pytest.mark.parametrize(
     ("kind", "verdict"), [("crashed", "fail"), ("timed out", "inconclusive"), ("not installed", "not run")]
 )
@@ -144,7 +169,7 @@ class Wild:
     """A code that raises what it likes."""
 
     name = title = "wild"
-    shares, model, hint = "nothing", ALL_EFFECTS, "pip install wild"
+    shares, effects, hint = "nothing", ALL_EFFECTS, "pip install wild"
 
     def version(self) -> str:
         return "1"
@@ -169,7 +194,7 @@ TORSO = Torso()
 
 
 def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
-    with pytest.raises(registry.UnknownCodeError, match="lacks name, model, version, unsupported_mechanism"):
+    with pytest.raises(registry.UnknownCodeError, match="lacks name, effects, version, unsupported_mechanism"):
         registry.code("southwell.tests.cases.verify.test_mechanism_matrix:TORSO")
 
 
@@ -194,8 +219,9 @@ def write(folder: Path, name: str, *changes: tuple[str, str]) -> Path:
 BAD = [
     ("rad_s = [10.0, 20.0, 30.0, 40.0]", "rad_s = [10.0, 5.0]", "speeds.rad_s: .*not ascending"),
     ("rad_s = [10.0, 20.0, 30.0, 40.0]", "gamma = [1.0]", "speeds.gamma"),
-    ("[compare]\nmodes = 2", "", "compare: missing"),
+    ("[compare]\nmodes = 2\ngroups = 2", "", "compare: missing"),
     ("modes = 2", "modes = 3", "compare.modes: 3: it has 2: lower it"),
+    ("groups = 2", "groups = 0", "compare.groups: give groups = 0 and compare.lacking, the reason"),
     ("[speeds]\nrad_s = [10.0, 20.0, 30.0, 40.0]", "", "speeds: missing"),
     ('rotor = "shaft.rz"', 'rotor = "lag.rz"', "rotor: coordinate 'lag.rz': no motion at a rate"),
     ('formula = "flap-lag"', 'formula = "flap-lap"', "closed_form.formula: 'flap-lap'.*did you mean flap-lag"),
@@ -247,3 +273,20 @@ def test_formulae_of_limiting_blades() -> None:
     expected = np.sqrt(delta @ K @ delta / (delta @ np.diag([100.0, 0.2]) @ delta))
     assert found.values[0].imag == pytest.approx(expected, rel=1e-6)
     np.testing.assert_allclose(found.shapes[0, 1] / found.shapes[0, 0], 0.5, rtol=1e-6)
+
+
+def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
+    """Exudyn is given core's spanning tree, and is no group; Pinocchio reads the mechanism itself."""
+    for name in library.mechanisms():
+        case = mechanism_case.case(library.mechanism(name))
+        run = matrix.run([case], describe(tuple(registry.FOR_MECHANISMS)), seeding.Serial(), parts=False)
+        found = {w.name: w.kind for w in witnesses.witnesses(run, name)}
+        assert found["exudyn-loops"] == "core's model"
+        if any(not c.version for c in run.cells):
+            pytest.skip("not every code is installed")
+        assert [[w.name for w in group] for group in witnesses.groups(witnesses.witnesses(run, name))] == [
+            ["pinocchio-loops"],
+            ["closed form"],
+        ]
+        assert run.settings[0].groups == 2
+        assert witnesses.short(run) == []

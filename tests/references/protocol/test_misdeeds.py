@@ -98,7 +98,7 @@ def test_answers_that_cannot_be_are_quoted_and_cost_no_other(folder: Path) -> No
 def test_what_is_no_code_is_the_askers_mistake(folder: Path) -> None:
     module(folder, "nothing_here", "CODE = 42\n")
     for path, told in (
-        ("nothing_here:CODE", "lacks name, model"),
+        ("nothing_here:CODE", "lacks name, effects"),
         ("nothing_here:NO", "no attribute 'NO'"),
         ("nowhere:CODE", "No module"),
     ):

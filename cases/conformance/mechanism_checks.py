@@ -1,0 +1,297 @@
+"""What conformance asks of a code for mechanisms: closed forms, symmetries, and refusals that are kept."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core import multibody as mb
+from ...core.effects import Effects
+from ...references.protocol.interface import CodeError, Shares
+from ...references.protocol.mechanism_interface import MechanismCode, MechanismModes
+from .checks import BrokenError, NotForItError
+
+Array = NDArray[Any]
+Ask = Callable[[MechanismCode], None]
+
+NEAR = 1e-7
+"""Of eigenvalues, relative to the largest: nothing is discretised, but a code may take differences."""
+
+G, LENGTH, MASS = 9.81, 0.7, 3.0
+
+DOWN = (0.0, -G, 0.0)
+"""Gravity along −y, across the axes of hinges along z."""
+
+POINT = mb.inertia(MASS, 0.0, (0.0, -LENGTH, 0.0))
+
+
+def _keep(true: Any, message: str) -> None:
+    if not bool(true):
+        raise BrokenError(message)
+
+
+def _ask(code: MechanismCode, mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> MechanismModes:
+    if reason := code.unsupported_mechanism(mechanism):
+        raise NotForItError(reason)
+    return code.solve_mechanism(mechanism, guess or {})
+
+
+def _are(found: MechanismModes, expected: Any, what: str) -> None:
+    """Eigenvalues as expected, one of each conjugate pair, in whatever order."""
+    wanted = np.asarray(expected, np.complex128)
+    said = f"{what}: {_list(found.values)} 1/s, expected {_list(wanted)}"
+    _keep(len(found.values) == len(wanted), said)
+    left = [complex(v.real, abs(v.imag)) for v in found.values]
+    for value in wanted:
+        near = min(left, key=lambda v: abs(v - value))
+        _keep(abs(near - value) <= NEAR * np.abs(wanted).max(), said)
+        left.remove(near)
+
+
+def _list(values: Array) -> str:
+    return ", ".join(f"{v.real:.9g}{v.imag:+.9g}i" for v in values)
+
+
+def _conjugate(M: Array, C: Array, K: Array) -> Array:
+    """One of each conjugate pair of eigenvalues of λ² M + λ C + K."""
+    n = len(M)
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    values = np.linalg.eigvals(state)
+    return values[values.imag > 0]
+
+
+def pendulum() -> mb.Mechanism:
+    """A point mass hanging from a hinge."""
+    return mb.Mechanism((mb.Body("bob", POINT),), (mb.Joint("hinge", "revolute", "ground", "bob"),), gravity=DOWN)
+
+
+def hinged(kind: str) -> mb.Mechanism:
+    """A slender rod on a flap or lag hinge half its length from the rotor's axis, which turns at 5 rad/s."""
+    end = mb.at(LENGTH / 2, axis="-y" if kind == "flap" else "z")
+    rod = mb.inertia(MASS, (0.0, MASS * LENGTH**2 / 12, MASS * LENGTH**2 / 12), (LENGTH / 2, 0.0, 0.0))
+    return mb.Mechanism(
+        (mb.Body("hub"), mb.Body("rod", rod)),
+        (
+            mb.Joint("shaft", "revolute", "ground", "hub"),
+            mb.Joint(kind, "revolute", "hub", "rod", end, mb.at(axis="-y" if kind == "flap" else "z")),
+        ),
+        (mb.Motion("shaft.rz", rate=5.0),),
+    )
+
+
+def declares(code: MechanismCode) -> None:
+    """What the adapter says of itself."""
+    _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
+    _keep(code.title.strip(), "title: empty")
+    _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
+    _keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
+    version = code.version()
+    _keep(version is None or version.strip(), "version: empty; None if the code is not installed")
+    _keep(version is not None or code.hint.strip(), "hint: empty, and the code is not installed: how to get it?")
+    reason = code.unsupported_mechanism(pendulum())
+    _keep(reason is None, f"unsupported_mechanism: {reason}: a pendulum is the least")
+
+
+def refuses(code: MechanismCode) -> None:
+    """``unsupported_mechanism`` and ``solve_mechanism`` say the same."""
+    base = pendulum()
+    bushing = mb.Beam("ground", "bob", mb.bushing(np.eye(4), np.eye(6)))
+    asked = {
+        "a bushing": replace(base, beams=(bushing,)),
+        "an acceleration": replace(base, motions=(mb.Motion("hinge.rz", 0.0, 0.0, 1.0),)),
+        "a loop with a spring on every joint": _parallelogram(springs=True),
+    }
+    declined = False
+    for what, mechanism in asked.items():
+        reason = code.unsupported_mechanism(mechanism)
+        if reason is None:
+            continue
+        declined = True
+        _keep(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
+        try:
+            code.solve_mechanism(mechanism, {})
+        except CodeError:
+            continue
+        raise BrokenError(f"{what}: unsupported_mechanism says {reason!r}, and yet solve_mechanism answers")
+    if not declined:
+        raise NotForItError("it takes every mechanism asked")
+
+
+def hangs(code: MechanismCode) -> None:
+    """√(g/l), and its steady state from a guess beside it."""
+    found = _ask(code, pendulum(), {"hinge.rz": 0.3})
+    _are(found, [1j * np.sqrt(G / LENGTH)], "pendulum")
+    _keep(found.coordinates == ("hinge.rz",), f"coordinates: {found.coordinates}, expected ('hinge.rz',)")
+    _keep(abs(found.steady[0]) < 1e-9, f"pendulum: it hangs at {found.steady[0]:.3g} rad, expected 0")
+
+
+def oscillates(code: MechanismCode) -> None:
+    """A damped slide, preloaded: m λ² + c λ + k = 0 about m g/k."""
+    k, c = 200.0, 12.0
+    slide = mb.Mechanism(
+        (mb.Body("mass", mb.inertia(MASS, 0.1)),),
+        (mb.Joint("rail", "prismatic", "ground", "mass", mb.at(axis="y"), mb.at(axis="y")),),
+        coordinate_springs=(mb.CoordinateSpring("rail.z", k, c, 0.05),),
+        gravity=DOWN,
+    )
+    found = _ask(code, slide)
+    decay = c / (2 * MASS)
+    _are(found, [complex(-decay, np.sqrt(k / MASS - decay**2))], "damped slide")
+    at = 0.05 - MASS * G / k
+    _keep(abs(found.steady[0] - at) < 1e-9, f"damped slide: it settles at {found.steady[0]:.9g} m, expected {at:.9g}")
+
+
+def flaps(code: MechanismCode) -> None:
+    """Ω √(1 + e S/I) on a flap hinge, Ω √(e S/I) on a lag hinge (W. Johnson, *Helicopter Theory*, 1980, sec. 9-2)."""
+    ratio = (LENGTH / 2) * (LENGTH / 2) / (LENGTH**2 / 3)
+    _are(_ask(code, hinged("flap")), [5j * np.sqrt(1 + ratio)], "flap hinge at 5 rad/s")
+    _are(_ask(code, hinged("lag")), [5j * np.sqrt(ratio)], "lag hinge at 5 rad/s")
+
+
+def gyrates(code: MechanismCode) -> None:
+    """A spinning disc on two gimbals with springs: I λ² ± H λ + k coupled, eigenvalues ±i (√(H² + 4 I k) ± H)/(2 I)."""
+    across, polar, k, spin = 0.4, 0.5, 30.0, 20.0
+    gimbals = mb.Mechanism(
+        (mb.Body("ring"), mb.Body("fork"), mb.Body("disc", mb.inertia(1.0, (across, across, polar)))),
+        (
+            mb.Joint("outer", "revolute", "ground", "ring", mb.at(axis="x"), mb.at(axis="x")),
+            mb.Joint("inner", "revolute", "ring", "fork", mb.at(axis="y"), mb.at(axis="y")),
+            mb.Joint("spin", "revolute", "fork", "disc"),
+        ),
+        (mb.Motion("spin.rz", rate=spin),),
+        (mb.CoordinateSpring("outer.rz", k), mb.CoordinateSpring("inner.rz", k)),
+    )
+    H = polar * spin
+    root = np.sqrt(H**2 + 4 * across * k)
+    _are(_ask(code, gimbals), [0.5j * (root - H) / across, 0.5j * (root + H) / across], "disc on gimbals")
+
+
+def stretched(code: MechanismCode) -> None:
+    """A mass on a rail across a stretched spring between points: √(T/(m l)) by its tension alone, and damped along it."""
+    k, free, far = 90.0, 0.4, 1.0
+    rail = mb.Mechanism(
+        (mb.Body("mass", mb.inertia(MASS, 0.1)),),
+        (mb.Joint("rail", "prismatic", "ground", "mass"),),
+        springs=(mb.Spring("ground", "mass", np.array([far, 0.0, 0.0]), np.zeros(3), k, 5.0, free),),
+    )
+    _are(_ask(code, rail), [1j * np.sqrt(k * (far - free) / far / MASS)], "mass across a stretched spring")
+
+
+def branches(code: MechanismCode) -> None:
+    """A sprung slide from which a pendulum and a double pendulum hang, its joints given level by level."""
+    k, l, m = 150.0, LENGTH, MASS
+    sled = mb.Body("sled", mb.inertia(2 * m))
+    bobs = tuple(mb.Body(name, POINT) for name in ("left", "right", "below"))
+    below = mb.at(0.0, -l, 0.0)
+    tree = mb.Mechanism(
+        (sled, *bobs),
+        (
+            mb.Joint("rail", "prismatic", "ground", "sled", mb.at(axis="x"), mb.at(axis="x")),
+            mb.Joint("a", "revolute", "sled", "left"),
+            mb.Joint("b", "revolute", "sled", "right"),
+            mb.Joint("c", "revolute", "left", "below", below),
+        ),
+        coordinate_springs=(mb.CoordinateSpring("rail.z", k),),
+        gravity=DOWN,
+    )
+    moves = np.array([[1, l, 0, 0], [1, 0, l, 0], [1, 2 * l, 0, l]])  # of each bob, by sled, a, b and c
+    M = 2 * m * np.diag([1.0, 0, 0, 0]) + m * moves.T @ moves
+    K = np.diag([k, 2 * m * G * l, m * G * l, 0.0])
+    K[1:, 1:] += m * G * l * np.outer([1, 0, 1], [1, 0, 1])
+    _are(_ask(code, tree), _conjugate(M, np.zeros((4, 4)), K), "pendulums on a slide")
+
+
+def _parallelogram(springs: bool = False) -> mb.Mechanism:
+    """A bar that hangs level from two massless cranks: three times overdetermined in space."""
+    across, down = mb.at(1.0), mb.at(0.0, -LENGTH, 0.0)
+    names = ("A", "B", "C", "D")
+    return mb.Mechanism(
+        (mb.Body("one"), mb.Body("two"), mb.Body("bar", mb.inertia(MASS, (0.0, 0.3, 0.3), (0.4, -0.1, 0.2)))),
+        (
+            mb.Joint("A", "revolute", "ground", "one"),
+            mb.Joint("B", "revolute", "ground", "two", across),
+            mb.Joint("C", "revolute", "one", "bar", down),
+            mb.Joint("D", "revolute", "two", "bar", down, across, cut=True),
+        ),
+        coordinate_springs=tuple(mb.CoordinateSpring(f"{j}.rz", 1.0) for j in names) if springs else (),
+        gravity=DOWN,
+    )
+
+
+def closes(code: MechanismCode) -> None:
+    """The bar of a parallelogram moves without turning: √(g/l), wherever its mass centre lies."""
+    found = _ask(code, _parallelogram(), {"A.rz": 0.2, "B.rz": 0.2, "C.rz": -0.2})
+    _are(found, [1j * np.sqrt(G / LENGTH)], "parallelogram")
+
+
+def curves(code: MechanismCode) -> None:
+    """A bar free in a plane, pinned by a loop joint: all its stiffness is the constraints' curvature, m g l/(I + m l²)."""
+    moment = 0.5
+    pinned = mb.Mechanism(
+        (mb.Body("bar", mb.inertia(MASS, moment)),),
+        (
+            mb.Joint("plane", "planar", "ground", "bar"),
+            mb.Joint("pin", "revolute", "ground", "bar", mb.at(y=LENGTH), mb.at(y=LENGTH), cut=True),
+        ),
+        gravity=DOWN,
+    )
+    found = _ask(code, pinned, {"plane.x": 0.05, "plane.rz": 0.05})
+    _are(found, [1j * np.sqrt(MASS * G * LENGTH / (moment + MASS * LENGTH**2))], "bar on a loop joint")
+
+
+def reversed_joint(code: MechanismCode) -> None:
+    """A joint given from child to parent, bodies in another order: the coordinate counts the other way, λ is the same."""
+    ways = []
+    for ends in (("ground", "bob"), ("bob", "ground")):
+        joint = mb.Joint("hinge", "revolute", *ends)
+        spring = mb.CoordinateSpring("hinge.rz", 5.0, 1.0, 0.2 if ends[0] == "ground" else -0.2)
+        ways.append(_ask(code, replace(pendulum(), joints=(joint,), coordinate_springs=(spring,))))
+    _are(
+        ways[1],
+        [complex(v.real, abs(v.imag)) for v in ways[0].values],
+        "pendulum, its hinge given from child to parent",
+    )
+    _keep(
+        abs(ways[0].steady[0] + ways[1].steady[0]) < 1e-9, "hinge given from child to parent: its angle is not reversed"
+    )
+
+
+def repeats(code: MechanismCode) -> None:
+    """Nothing is left over from another call."""
+    first = _ask(code, hinged("flap"))
+    _ask(code, hinged("lag"))
+    again = _ask(code, hinged("flap"))
+    same = np.array_equal(first.values, again.values) and np.array_equal(first.shapes, again.shapes)
+    _keep(same, f"the same call twice, another between: {_list(first.values)}, then {_list(again.values)}")
+
+
+def periodic(code: MechanismCode) -> None:
+    """Gravity across the rotor's axis: no steady state, and no answer."""
+    sagging = replace(hinged("lag"), gravity=DOWN)
+    if code.unsupported_mechanism(sagging):
+        return
+    try:
+        found = code.solve_mechanism(sagging, {})
+    except CodeError:
+        return
+    raise BrokenError(
+        f"gravity across the axis of rotation: {_list(found.values)} 1/s, expected a refusal: it is periodic"
+    )
+
+
+def falls(code: MechanismCode) -> None:
+    """A mass that nothing holds has no steady state."""
+    loose = mb.Mechanism(
+        (mb.Body("mass", mb.inertia(MASS, 0.1)),),
+        (mb.Joint("rail", "prismatic", "ground", "mass", mb.at(axis="y"), mb.at(axis="y")),),
+        gravity=DOWN,
+    )
+    try:
+        found = code.solve_mechanism(loose, {})
+    except CodeError:
+        return
+    raise BrokenError(
+        f"a mass that falls freely: {_list(found.values)} 1/s, expected a refusal: it has no steady state"
+    )

@@ -1,0 +1,91 @@
+"""Faults in counting independent confirmations, and the canaries that must notice them: witnesses whose groups are known."""
+
+from typing import Any
+
+from ...references.protocol.interface import CORE
+from ..judge import witnesses
+from ..judge.results import Cell, Origin, Run, Setting
+from ..judge.witnesses import groups, short
+from .seeding import Fault, Seam
+
+CASE = "canary"
+
+
+def _cell(code: str, **changes: Any) -> Cell:
+    values: dict[str, Any] = {
+        "case": CASE, "omega": 10.0, "mode": 1, "family": "flapwise", "code": code, "version": "1", "role": "code",
+        "frequency": 10.0, "reference": 10.0, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3, "verdict": "pass",
+        "shares": "nothing",
+    }  # fmt: skip
+    return Cell(**{**values, **changes})
+
+
+def _origin(code: str, engine: str = "", theory: str = "", rotation: str = "", sections: str = "blade") -> Origin:
+    own = f"of {code}"
+    return Origin(CASE, code, engine or own, theory or own, rotation or own, sections, own)
+
+
+def _run(*parts: tuple[Cell, Origin | None], required: int = 0) -> Run:
+    setting = Setting(CASE, "", "", "", "rad_s", groups=required, target=1e-3)
+    origins = tuple(origin for _, origin in parts if origin)
+    return Run(tuple(cell for cell, _ in parts), settings=(setting,), origins=origins)
+
+
+ONE = (_cell("robin"), _origin("robin"))
+TWO = (_cell("wren"), _origin("wren"))
+
+COUNTS: dict[str, tuple[Run, int]] = {
+    "two of different origin": (_run(ONE, TWO), 2),
+    "two of one engine": (_run(ONE, (_cell("wren"), _origin("wren", engine="of robin"))), 1),
+    "two of one theory": (_run(ONE, (_cell("wren"), _origin("wren", theory="of robin"))), 1),
+    "two with the same rotation terms": (_run(ONE, (_cell("wren"), _origin("wren", rotation="of robin"))), 1),
+    "one on core's discretisation": (_run(ONE, (_cell("wren", shares="discretisation"), _origin("wren"))), 1),
+    "one with core's frames": (_run(ONE, (_cell("wren"), _origin("wren", sections=CORE))), 1),
+    "one that declares nothing": (_run(ONE, (_cell("wren"), None)), 1),
+    "one that disagrees in one mode": (
+        _run(ONE, TWO, (_cell("wren", mode=2, difference=2e-3, verdict="fail"), None)), 1),
+    "one whose difference is only explained": (
+        _run(ONE, (_cell("wren", difference=0.1, verdict="known difference"), _origin("wren"))), 1),
+    "one that cannot tell": (
+        _run(ONE, (_cell("wren", difference=0.1, uncertainty=0.5, verdict="estimate"), _origin("wren"))), 1),
+    "a table held to a wider target": (
+        _run(ONE, (_cell("wren", role="table", target=2e-2, difference=1e-2), _origin("wren"))), 1),
+}  # fmt: skip
+
+
+def canaries() -> list[str]:
+    """What the count should have been and was not; empty where all is well."""
+    wrong = []
+    for what, (run, expected) in COUNTS.items():
+        found = len(groups(witnesses.witnesses(run, CASE)))
+        if found != expected:
+            wrong.append(f"groups: {what}: {found} counted, not {expected}")
+    alone = short(_run(ONE, required=2))
+    if [(s.groups, s.required) for s in alone] != [(1, 2)] or short(_run(ONE, TWO, required=2)):
+        wrong.append("groups: one of two required is not told as too few")
+    return wrong
+
+
+def _counting(name: str, what: str, size: str, seam: Seam) -> Fault:
+    return Fault(name, "counting", what, size, (seam,))
+
+
+def _without(field: str) -> Any:
+    return lambda right: tuple(name for name in right if name != field)
+
+
+FAULTS = (
+    _counting("every code a group", "who shares an engine or a theory counts twice", "a group",
+              (witnesses, "_linked", lambda right: lambda a, b: False)),
+    _counting("rotation terms ignored", "the same rotation terms are no link", "a group",
+              (witnesses, "MATTERS", _without("rotation"))),
+    _counting("core confirms core", "who has core's discretisation or frames counts", "a group",
+              (witnesses, "_kind", lambda right: lambda cell, origin: "code")),
+    _counting("explained is agreed", "every witness agrees", "a group",
+              (witnesses, "_gravest", lambda right: lambda standings: "agrees")),
+    _counting("best mode counts", "a witness agrees if it does in any mode", "a group",
+              (witnesses, "_gravest", lambda right: lambda standings: next(
+                  (s for s in ("agrees", "explained", "open", "disagrees") if s in set(standings)), "agrees"))),
+    _counting("too few are enough", "no number of groups is required", "a group",
+              (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9)),
+)  # fmt: skip

@@ -1,0 +1,117 @@
+"""Faults in the solver of mechanisms, in adapters for them and in their pairing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.multibody import linearize, periodic
+from ...core.multibody.linear import Linearization
+from ...core.multibody.mechanism import Mechanism, inertia
+from ...references.protocol.mechanism_interface import MechanismModes
+from ...references.protocol.mechanism_worker import Answer
+from ...references.protocol.process import Failure, Limits
+from ..verify import mechanism_columns
+from .seeding import Fault, Seam, Trial
+
+HINGED = Trial("hinged-blade", (30.0,), ())
+"""The closed form alone: its parameters are stated apart from the mechanism."""
+
+LINKED = Trial("pitch-link", (30.0,), ())
+
+ASKED = Trial("pitch-link", (30.0,), ("pinocchio-loops",))
+THICK = inertia(30.0, (20.0, 45.0, 30.0), (2.0, -0.02, 0.0))
+
+
+def _thick(m: Mechanism) -> Mechanism:
+    return replace(m, bodies=tuple(replace(b, inertia=THICK) if b.name == "blade" else b for b in m.bodies))
+
+
+SPINNING = replace(ASKED, altered=_thick)
+"""A blade so thick that gyroscopic forces couple flap and pitch."""
+
+DAMPED = Trial("hinged-blade", (30.0,), ("pinocchio-loops",))
+
+
+def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
+    """Core's linearised equations of motion altered, at every azimuth."""
+
+    def make(right: Any) -> Any:
+        return lambda *args, **kwargs: alter(right(*args, **kwargs))
+
+    return (linearize, "about", make), (periodic, "about", make)
+
+
+def _told(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
+    """What a code answers is altered."""
+
+    def make(right: Any) -> Any:
+        def wrong(*args: Any) -> list[Answer]:
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in right(*args)]
+
+        return wrong
+
+    return make
+
+
+def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
+    """The code solves another mechanism than it is given."""
+
+    def make(right: Any) -> Any:
+        def wrong(name: str, some: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:
+            return right(name, [alter(m) for m in some], guess, limits)
+
+        return wrong
+
+    return make
+
+
+def _by_number(right: Any) -> Any:
+    return lambda reference, answer: np.eye(len(reference.modes.values), len(answer.values))
+
+
+def _open(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, joints=tuple(j for j in mechanism.joints if not j.cut))
+
+
+def _still(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, motions=tuple(replace(m, rate=0.0) for m in mechanism.motions))
+
+
+def _exchanged(modes: MechanismModes) -> MechanismModes:
+    return replace(modes, shapes=modes.shapes[::-1])
+
+
+def _mixed(modes: MechanismModes) -> MechanismModes:
+    sizes = np.linalg.norm(modes.shapes, axis=1, keepdims=True)
+    a, b = modes.shapes[:2] / sizes[:2]
+    return replace(modes, shapes=np.stack([a + b, a - b]), values=modes.values[:2])
+
+
+FAULTS = (
+    Fault("mechanism: no damper", "core", "the damper on a joint is dropped", "damping ratio 0.14",
+          _about(lambda found: replace(found, C=0.5 * (found.C - found.C.T))), HINGED),
+    Fault("mechanism: gyroscopic sign", "core", "gyroscopic terms have the other sign", "no frequency; no partner",
+          _about(lambda found: replace(found, C=found.C.T)), SPINNING),
+    Fault("loop: mass", "core", "what hangs on the loop weighs two thousandths less", "+0.1 %",
+          _about(lambda found: replace(found, M=0.998 * found.M)), LINKED),
+    Fault("loop: coupling", "core", "the stiffness that a loop couples two coordinates by is dropped", "percents",
+          _about(lambda found: replace(found, K=np.diag(np.diag(found.K)))), LINKED),
+    Fault("mechanism: damping lost", "adapter", "of eigenvalues the moduli alone come back", "damping ratio 0.14",
+          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
+    Fault("mechanism: sixth digit", "adapter", "six digits of the very same equations", "1e-6",
+          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
+    Fault("mechanism: one mode", "adapter", "the code returns its first mode alone", "no answer",
+          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
+    Fault("mechanism: shapes exchanged", "adapter", "shapes belong to other eigenvalues", "factors",
+          ((mechanism_columns, "answers", _told(_exchanged)),), DAMPED),
+    Fault("loop left open", "adapter", "the joint that closes the loop is dropped", "factors; no partner",
+          ((mechanism_columns, "answers", _given(_open)),), ASKED),
+    Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
+          ((mechanism_columns, "answers", _given(_still)),), ASKED),
+    Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
+          ((mechanism_columns, "alike", _by_number),), blinds="mechanism: shapes told of others"),
+    Fault("mechanism: shapes told of others", "adapter", "every shape is a mixture of two", "MAC 0.5",
+          ((mechanism_columns, "answers", _told(_mixed)),), DAMPED),
+)  # fmt: skip

@@ -1,0 +1,226 @@
+"""Mechanisms with closed loops in Pinocchio, reduced to the null space of the loops' equations.
+
+What is shared with core is the description: bodies, joints with their coordinates, springs, loads. The spanning tree, which
+may cut other joints, is read from it here (``spanning``); inertia forces and their derivatives are Pinocchio's; loops are
+closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body; and the equations of
+motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not by core's
+partition into independent and dependent coordinates. The reduction's derivative, the curvature of the constraints under their
+reactions, is analytical. The eigensolver is ``protocol.damped``, as of ``exudyn-loops``.
+"""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ...core.effects import ALL_EFFECTS
+from ...core.multibody.mechanism import Mechanism
+from ..protocol.damped import damped_modes
+from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.mechanism_interface import MechanismModes
+from .plant import Plant, Tangent
+from .spanning import spanning
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+RANK = 1e-9
+"""Singular values of the constraint Jacobian below this fraction of the largest are redundant equations."""
+
+PERIODIC = 1e-8
+"""Relative change of the reduced matrices with the azimuth that counts as rounding."""
+
+AZIMUTH = 1.9
+"""rad, or m: how far the fastest motion goes on before the matrices are formed again."""
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """The equations of motion about the steady state.
+
+    Attributes:
+        names: (n) of the coordinates.
+        q: (n,) their values.
+        free: (f,) which of them are not prescribed.
+        null: (f, i) orthonormal directions in which these can move.
+        M, C, K: (i, i) over these directions.
+    """
+
+    names: tuple[str, ...]
+    q: Array
+    free: Index
+    null: Array
+    M: Array
+    C: Array
+    K: Array
+
+
+class PinocchioMechanism:
+    """See the module: rigid bodies, any joints, springs, dampers, loads and gravity, in steady rotation."""
+
+    name = "pinocchio-loops"
+    title = "Pinocchio, loops by null space"
+    shares: Shares = "nothing"
+    effects = ALL_EFFECTS
+    hint = "pip install 'southwell[codes]'"
+    independence = Independence(
+        engine="Pinocchio",
+        theory="tree of rigid bodies, loops by products of directions",
+        rotation="Pinocchio, derivatives of recursive Newton-Euler",
+        eigensolver="references.damped",
+    )
+
+    def version(self) -> str | None:
+        """Version of Pinocchio."""
+        try:
+            return version("pin")
+        except PackageNotFoundError:
+            return None
+
+    def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
+        """A reason if there are beams, accelerations, or springs or motions on a joint that cannot but close a loop."""
+        if mechanism.beams:
+            return "beams or bushings: it has rigid bodies only"
+        if any(m.law or m.acceleration for m in mechanism.motions):
+            return "an accelerating motion: it has no steady state"
+        if odd := next((j for j in mechanism.joints if j.kind == "elastic"), None):
+            return f"joint {odd.name!r}: elastic: it has rigid bodies only"
+        try:
+            names = spanning(mechanism).names
+        except ValueError as error:
+            return str(error)
+        for what in (*mechanism.motions, *mechanism.coordinate_springs):
+            if what.coordinate not in names:
+                return f"{what.coordinate}: every joint of its loop has a spring or a motion: one has to close the loop"
+        return None
+
+    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        """All modes; see ``mechanism_interface.MechanismCode``.
+
+        Raises:
+            CodeError: an unsupported or periodic mechanism, no steady state near the guess, or loops that move in it.
+        """
+        if reason := self.unsupported_mechanism(mechanism):
+            raise CodeError(reason)
+        begun = time.perf_counter()
+        found = linearize(mechanism, guess)
+        values, x = damped_modes(found.M, found.C, found.K)
+        shapes = np.zeros((len(values), len(found.q)), np.complex128)
+        shapes[:, found.free] = (found.null @ x).T
+        return MechanismModes(found.names, found.q, values, shapes, time.perf_counter() - begun)
+
+
+def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:
+    """The steady state near a guess, and the equations of motion about it.
+
+    Raises:
+        CodeError: no steady state near the guess, loops that move in it, or matrices that change with the azimuth.
+    """
+    plant = Plant(mechanism)
+    names = plant.tree.names
+    q = np.array([guess.get(name, 0.0) for name in names])
+    for m in mechanism.motions:
+        if m.position is not None:
+            q[names.index(m.coordinate)] = m.position
+    moved = [names.index(m.coordinate) for m in mechanism.motions]
+    q = _settle(plant, q, np.setdiff1d(np.arange(len(q)), moved))
+    prescribed = [names.index(m.coordinate) for m in mechanism.motions if m.prescribed]
+    free = np.setdiff1d(np.arange(len(q)), prescribed)
+    here = plant.at(q)
+    if here.reversed:
+        raise CodeError(f"joint {here.reversed!r} closes with its axes opposed: give a better guess")
+    if np.abs(here.J @ plant.v).max(initial=0.0) > RANK * np.abs(plant.v).max(initial=0.0):
+        raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
+    null = null_space(here.J[:, free])
+    out = Reduced(names, q, free, null, *reduced(here, free, null))
+    _check_constant(plant, out)
+    return out
+
+
+def reduced(here: Tangent, free: Index, null: Array) -> tuple[Array, Array, Array]:
+    """M, C, K (i, i) along directions (f, i) of the free coordinates, the reactions' own stiffness in K."""
+    multipliers = _least_squares(here.J[:, free].T, here.force[free])
+    pick = np.ix_(free, free)
+    M, C, K = (null.T @ a[pick] @ null for a in (here.M, here.C, here.K + here.curvature(multipliers)))
+    return M, C, K
+
+
+def _least_squares(A: Array, b: Array) -> Array:
+    """The least x (n,) that minimises |A x − b|; either size may be 0."""
+    return np.asarray(np.linalg.lstsq(A, b, rcond=RANK)[0], np.float64) if A.size else np.zeros(A.shape[1])
+
+
+def null_space(J: Array) -> Array:
+    """(f, i) orthonormal basis of the directions that no equation (c, f) holds."""
+    return scipy.linalg.null_space(J, rcond=RANK) if len(J) else np.eye(J.shape[1])
+
+
+def _settle(plant: Plant, q: Array, free: Index) -> Array:
+    """Newton's method: the loops closed, the forces along what they leave free balanced.
+
+    Raises:
+        CodeError: it does not converge.
+    """
+    q, before = q.copy(), np.inf
+    for _ in range(100):
+        here = plant.at(q)
+        J, force = here.J[:, free], here.force[free]
+        gap = np.array([f.value for f in here.loops])
+        close = _least_squares(J, -gap)
+        step, null = close, null_space(J)
+        if np.abs(gap).max(initial=0.0) < 1e-2:
+            multipliers = _least_squares(J.T, force)
+            K = (here.K + here.curvature(multipliers))[np.ix_(free, free)]
+            step = close - null @ _least(null.T @ K @ null, null.T @ (force + K @ close))
+        change = float(np.abs(step).max(initial=0.0))
+        q[free] += step * min(1.0, 0.3 / max(change, 0.3))
+        if change < 1e-13 or (change < 1e-9 and change > 0.3 * before):
+            _check_balance(plant, q, free)
+            return q
+        before = change
+    raise CodeError("no steady state near the guess: give a better one")
+
+
+def _least(K: Array, force: Array) -> Array:
+    """The least step that balances the forces, each direction in its own stiffness."""
+    size = np.sqrt(np.maximum(np.abs(K).max(axis=1, initial=0.0), np.finfo(float).tiny))
+    return np.linalg.lstsq(K / size / size[:, None], force / size, rcond=1e-12)[0] / size
+
+
+def _check_balance(plant: Plant, q: Array, free: Index) -> None:
+    """Compare the forces left with the stiffness.
+
+    Raises:
+        CodeError: there is no balance, as of a mass that falls freely.
+    """
+    here = plant.at(q)
+    left = np.abs(null_space(here.J[:, free]).T @ here.force[free]).max(initial=0.0)
+    if left > 1e-8 * np.abs(here.force[free]).max(initial=0.0) + 1e-12 * np.abs(here.K).max(initial=0.0):
+        raise CodeError("no steady state near the guess: forces remain that nothing balances")
+
+
+def _check_constant(plant: Plant, found: Reduced) -> None:
+    """Compare the reduced matrices with those at another azimuth.
+
+    Raises:
+        CodeError: they differ: the equations are periodic.
+    """
+    fastest = float(np.abs(plant.v).max(initial=0.0))
+    if not fastest or not found.null.shape[1]:
+        return
+    later = plant.at(found.q + plant.v * (AZIMUTH / fastest))
+    open_ = max((abs(f.value) for f in later.loops), default=0.0)
+    moved = np.abs(later.J[:, found.free] @ found.null).max(initial=0.0)
+    here, there = (found.M, found.C, found.K), reduced(later, found.free, found.null)
+    scale = (fastest**2, fastest, 1.0)
+    size = max(float(np.abs(s * a).max()) for s, a in zip(scale, here, strict=True))
+    change = max(float(np.abs(s * (a - b)).max()) for s, a, b in zip(scale, here, there, strict=True))
+    if change > PERIODIC * size or max(open_, moved) > PERIODIC:
+        raise CodeError("periodic: its matrices change with the azimuth, and it has no steady modes")
+
+
+CODE = PinocchioMechanism()

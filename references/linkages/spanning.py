@@ -1,0 +1,120 @@
+"""A mechanism's spanning tree, read from its bodies and joints independently of core: one link for each coordinate.
+
+Joints that have a motion or a spring belong to the tree, so that these act on its coordinates; those marked as cut are left
+out first. Which other joints close the loops is immaterial.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.multibody.joints import Joint
+from ...core.multibody.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+GROUND = "ground"
+
+AXES = {
+    "fixed": "",
+    "revolute": "rz",
+    "prismatic": "z",
+    "cylindrical": "z rz",
+    "universal": "rx ry",
+    "spherical": "rx ry rz",
+    "planar": "x y rz",
+    "free": "x y z rx ry rz",
+}
+"""Coordinates of each kind of joint in their order from parent to child: along (x, y, z) or about (rx, ry, rz) an axis."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """One coordinate.
+
+    Attributes:
+        name: the coordinate's, ``flap.rz``.
+        before: index of the link it hangs on, −1 for the ground.
+        place: (4, 4) pose of its axes in that link.
+        axis: (3,) unit vector along or about which it moves; reversed where the joint is laid from child to parent.
+        turns: whether it rotates.
+    """
+
+    name: str
+    before: int
+    place: Array
+    axis: Array
+    turns: bool
+
+
+@dataclass(frozen=True)
+class Spanning:
+    """The tree.
+
+    Attributes:
+        links: (n) one for each coordinate, each followed by all that hang on it: Pinocchio's matrices are wrong otherwise.
+        bodies: name → the link it rides on (−1: the ground) and its pose (4, 4) there.
+        loops: joints that are not in the tree.
+    """
+
+    links: tuple[Link, ...]
+    bodies: dict[str, tuple[int, Array]]
+    loops: tuple[Joint, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the coordinates."""
+        return tuple(link.name for link in self.links)
+
+
+def spanning(mechanism: Mechanism) -> Spanning:
+    """The tree that keeps the joints with motions and springs, and leaves out those marked as cut, as far as possible.
+
+    Raises:
+        ValueError: a body that no joint reaches, or a kind of joint that is not known here.
+    """
+    needed = {m.coordinate.rpartition(".")[0] for m in mechanism.motions}
+    needed |= {s.coordinate.rpartition(".")[0] for s in mechanism.coordinate_springs}
+    links: list[Link] = []
+    bodies: dict[str, tuple[int, Array]] = {GROUND: (-1, np.eye(4))}
+    waiting = list(mechanism.joints)
+    for joint in waiting:
+        if joint.kind not in AXES:
+            raise ValueError(f"joint {joint.name!r}: kind {joint.kind!r} is not known here")
+    while len(bodies) <= len(mechanism.bodies):
+        within = [j for j in waiting if (j.parent in bodies) != (j.child in bodies)]
+        if not within:
+            lost = next(b.name for b in mechanism.bodies if b.name not in bodies)
+            raise ValueError(f"body {lost!r}: no joint leads to it from the ground")
+        joint = min(within, key=lambda j: (j.name not in needed, j.cut))
+        waiting.remove(joint)
+        _lay(joint, links, bodies)
+    return _depth_first(links, bodies, tuple(waiting))
+
+
+def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops: tuple[Joint, ...]) -> Spanning:
+    """The tree with each link followed by all that hang on it."""
+    order: list[int] = []
+    ahead = [-1]
+    while ahead:
+        here = ahead.pop()
+        order.append(here)
+        ahead += [k for k, link in reversed(list(enumerate(links))) if link.before == here]
+    place = {old: new for new, old in enumerate(order, -1)}
+    ordered = tuple(replace(links[old], before=place[links[old].before]) for old in order[1:])
+    return Spanning(ordered, {name: (place[link], pose) for name, (link, pose) in bodies.items()}, loops)
+
+
+def _lay(joint: Joint, links: list[Link], bodies: dict[str, tuple[int, Array]]) -> None:
+    """Add a joint's links from the end that is placed, and place its other end."""
+    forward = joint.parent in bodies
+    near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
+    before, pose = bodies[joint.parent if forward else joint.child]
+    place = pose @ near
+    steps = AXES[joint.kind].split()
+    for step in steps if forward else steps[::-1]:
+        axis = np.eye(3)["xyz".index(step[-1])]
+        links.append(Link(f"{joint.name}.{step}", before, place, axis if forward else -axis, step[0] == "r"))
+        before, place = len(links) - 1, np.eye(4)
+    bodies[joint.child if forward else joint.parent] = before, place @ np.linalg.inv(far)
