@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.discretize import Chain
+from ..protocol import install
 from .joint_chain import JointChain, bodies, check, places, rigid
 
 Array = NDArray[np.float64]
@@ -129,7 +130,7 @@ def _inertia(lump: Array) -> Any:
 CODE = JointChain(
     name="drake",
     title="Drake, chain of joints",
-    hint="pip install 'southwell[more-codes]'",
+    hint=install.extra("more-codes"),
     engine="Drake",
     distribution="drake",
     max_elements=MAX_ELEMENTS,

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.discretize import Chain
+from ..protocol import install
 from .joint_chain import JointChain, bodies, check, places, rigid
 
 Array = NDArray[np.float64]
@@ -137,7 +138,7 @@ def plant(chain: Chain) -> Bodies:
 CODE = JointChain(
     name="mujoco",
     title="MuJoCo, chain of joints",
-    hint="pip install 'southwell[more-codes]'",
+    hint=install.extra("more-codes"),
     engine="MuJoCo",
     distribution="mujoco",
     max_elements=MAX_ELEMENTS,

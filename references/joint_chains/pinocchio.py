@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.discretize import Chain
+from ..protocol import install
 from .joint_chain import JointChain, bodies, check, places
 
 Array = NDArray[np.float64]
@@ -98,7 +99,7 @@ def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Arra
 CODE = JointChain(
     name="pinocchio",
     title="Pinocchio, chain of joints",
-    hint="pip install 'southwell[codes]'",
+    hint=install.extra("codes"),
     engine="Pinocchio",
     distribution="pin",
     max_elements=MAX_ELEMENTS,

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
 from ...core.multibody.mechanism import Mechanism
+from ..protocol import install
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.mechanism_interface import MechanismModes
@@ -66,7 +67,7 @@ class PinocchioMechanism:
     title = "Pinocchio, loops by null space"
     shares: Shares = "nothing"
     effects = ALL_EFFECTS
-    hint = "pip install 'southwell[codes]'"
+    hint = install.extra("codes")
     independence = Independence(
         engine="Pinocchio",
         theory="tree of rigid bodies, loops by products of directions",

@@ -19,6 +19,7 @@ from scipy.sparse import linalg as spla
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments
@@ -50,7 +51,7 @@ class ScikitFemReissner:
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4
-    hint = "pip install 'southwell[codes]'"
+    hint = install.extra("codes")
 
     def version(self) -> str | None:
         """Version of scikit-fem, without importing it."""

@@ -16,8 +16,11 @@ from .errors import UsageError
 
 DAY = 86_400.0
 
-app = App(name="cache", result_action="return_value")
-"""Show, check or empty the store of answers that `southwell verify` takes answers from."""
+app = App(
+    name="cache",
+    help="Show, check or empty the store of answers that verify takes answers from.",
+    result_action="return_value",
+)
 
 
 @app.command(name="list")

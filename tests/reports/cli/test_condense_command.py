@@ -72,7 +72,7 @@ def in_house() -> list:
     return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
 
 
-def same(found: list, expected: list, within: float = 1e-8, fields: str = "rest stiffness inertia ride") -> None:
+def same(found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia ride") -> None:
     for a, b in zip(found, expected, strict=True):
         for field in fields.split():
             x, y = getattr(a, field), getattr(b, field)
@@ -82,7 +82,7 @@ def same(found: list, expected: list, within: float = 1e-8, fields: str = "rest 
 def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
     """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
     found = condensing.condense(toml(folder, WHOLE)).blade
-    same(found.segments, in_house(), 1e-7, "rest stiffness")
+    same(found.segments, in_house(), 1e-7, "undeformed stiffness")
     same(found.segments, in_house(), 1e-3, "inertia")
     expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
     np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
