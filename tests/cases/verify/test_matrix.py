@@ -144,7 +144,7 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
     cells = [c for c in solve(case()).cells if c.role == "discretisation"]
     assert [c.verdict for c in cells] == ["known difference"] * 4
     assert all(c.elements == 10 for c in cells)
-    assert "discretisation error of 10 elements, half-end masses, parent stiffness: −" in cells[0].reason
+    assert "discretisation error of 10 elements, half-end masses, body-fixed stiffness: −" in cells[0].reason
 
 
 @pytest.mark.parametrize(
