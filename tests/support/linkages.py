@@ -119,3 +119,23 @@ def random_loop(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) ->
     joints.append(mb.Joint("loop", loop, start, end, ends[0], ends[1], cut=True))
     m = mb.Mechanism(tuple(bodies), tuple(joints), hub, tuple(springs), gravity=gravity)
     return m, guess
+
+
+def ground_resonance() -> mb.Mechanism:
+    """A lagging blade on a rotor whose support is sprung: its inertia seen from the support turns with the rotor (periodic)."""
+    return mb.Mechanism(
+        (mb.Body("slide", mb.inertia(20.0)), mb.Body("rotor", mb.inertia(2.0, 0.1)), bar("blade", 1.0, 3.0)),
+        (
+            mb.Joint("X", "prismatic", "ground", "slide", mb.at(axis="x"), mb.at(axis="x")),
+            mb.Joint("shaft", "revolute", "slide", "rotor"),
+            mb.Joint("lag", "revolute", "rotor", "blade", mb.at(0.3)),
+        ),
+        (mb.Motion("shaft.rz", rate=5.0),),
+        (mb.CoordinateSpring("X.z", 800.0), mb.CoordinateSpring("lag.rz", 20.0)),
+    )
+
+
+def falling() -> mb.Mechanism:
+    """A mass on an upright rail: it has no steady state."""
+    rail = mb.Joint("rail", "prismatic", "ground", "mass")
+    return mb.Mechanism((mb.Body("mass", mb.inertia(1.0, 0.1)),), (rail,), gravity=(0, 0, -G))

@@ -26,8 +26,9 @@ from southwell.tests.support.linkages import (
     KINDS,
     LOOPS,
     G,
-    bar,
+    falling,
     four_bar,
+    ground_resonance,
     random_loop,
     slider_crank,
     spatial_loop,
@@ -156,17 +157,7 @@ def test_loops_that_move_are_refused() -> None:
 
 
 def test_a_periodic_mechanism_is_refused_by_its_own_matrices() -> None:
-    """Ground resonance: the blade's inertia seen from the support turns with the rotor."""
-    m = mb.Mechanism(
-        (mb.Body("slide", mb.inertia(20.0)), mb.Body("rotor", mb.inertia(2.0, 0.1)), bar("blade", 1.0, 3.0)),
-        (
-            mb.Joint("X", "prismatic", "ground", "slide", mb.at(axis="x"), mb.at(axis="x")),
-            mb.Joint("shaft", "revolute", "slide", "rotor"),
-            mb.Joint("lag", "revolute", "rotor", "blade", mb.at(0.3)),
-        ),
-        (mb.Motion("shaft.rz", rate=5.0),),
-        (mb.CoordinateSpring("X.z", 800.0), mb.CoordinateSpring("lag.rz", 20.0)),
-    )
+    m = ground_resonance()
     tree = compile_tree(m)
     at_rest = em.stages(tree, system(tree), np.zeros(3))
     with pytest.raises(CodeError, match="periodic"):
@@ -176,8 +167,5 @@ def test_a_periodic_mechanism_is_refused_by_its_own_matrices() -> None:
 
 
 def test_no_steady_state_is_an_error() -> None:
-    slide = mb.Mechanism(
-        (mb.Body("mass", mb.inertia(1.0, 0.1)),), (mb.Joint("rail", "prismatic", "ground", "mass"),), gravity=(0, 0, -G)
-    )
     with pytest.raises(CodeError, match="no steady state"):
-        em.CODE.solve_mechanism(slide, {})
+        em.CODE.solve_mechanism(falling(), {})
