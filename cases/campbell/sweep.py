@@ -9,6 +9,7 @@ import numpy as np
 
 from ...core import solve, velocity_transformation
 from ...core.blade import Blade
+from ...core.chain.refinement import AccuracyWarning
 from ...core.modes import Modes
 from ..input.errors import NO_STATE, rad_s, unsteady
 from ..judge.pairing import aligned, families, numbered, weights
@@ -61,7 +62,7 @@ def sweep(
     weight = weights(blade)
     rows = []
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", solve.AccuracyWarning)  # uncertainties are in the rows
+        warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
         if method == "velocity-transformation":
             found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)
         else:

@@ -11,12 +11,13 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
-from ...core.solve import mesh_modes
+from ...core.solve import mesh_modes, rigid_strain_bias
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare, Discretisation
 from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights
+from ..judge.uncertainty import widened
 from .refinement import Refining, Settled, Wanted, settle, solve
 
 SURE = 5e-5
@@ -133,8 +134,20 @@ def _converged(
             )
         return _converged(blade, omega, compare, model, weight, DEEPER * count)
     named = families(target.reference, weight)
-    settled = tuple(settle(study.answers, target, plan.order))
+    factor, unsure = rigid_strain_bias(blade, omega, plan.levels[0], count, model)
+    settled = tuple(
+        _corrected(one, factor[k], unsure[k])
+        for k, one in zip(target.indices, settle(study.answers, target, plan.order), strict=True)
+    )
     return Converged(target, settled, tuple(named[k] for k in target.indices))
+
+
+def _corrected(one: Settled, factor: float, unsure: float) -> Settled:
+    """Without the bias of rigid strains."""
+    if one.estimate is None:
+        return one
+    known = widened(one.estimate, unsure)
+    return replace(one, estimate=replace(known, value=factor * known.value))
 
 
 def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:

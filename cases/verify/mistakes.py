@@ -13,7 +13,7 @@ import numpy as np
 
 from ...core import solve
 from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
-from ...core.chain import pencil
+from ...core.chain import pencil, solution
 from ...core.chain.blocks import Tridiagonal
 from ...core.chain.lanczos import lanczos
 from ...core.chain.mode_shapes import mode_shapes
@@ -111,7 +111,7 @@ def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: E
 def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effects, softening: float) -> Modes:
     """Core with its spin softening multiplied by a factor."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
-    state = solve.balance(body, omega, STILL, model)
+    state = solution.balance(body, omega, STILL, model)
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
 
 

@@ -40,7 +40,8 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
     Raises:
         MissedModesError: the count differs.
     """
-    last, next_ = frequencies[-1], beyond[beyond > frequencies[-1]].min(initial=2.0 * frequencies[-1])
+    last = frequencies[-1]
+    next_ = beyond.min(initial=2.0 * last)  # no more than the last if that is one of an exact pair
     near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _MIN_GAP

@@ -12,7 +12,7 @@ bending. Gauss
 quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -65,6 +65,16 @@ def compliance(blade: Blade, s: Array) -> Array:
     if TORSION not in soft:
         out[:, TORSION, TORSION] = RIGID_TORSION * bend
     return out
+
+
+def softened(blade: Blade) -> Blade | None:
+    """The blade with twice the compliance that rigid axial and torsional strains keep; None where none is rigid."""
+    rigid = [i for i in (AXIAL, TORSION) if np.isinf(blade.stiffness[:, i, i]).any()]
+    if not rigid:
+        return None
+    stiffness = blade.stiffness.copy()
+    stiffness[:, rigid, rigid] = 0.5 / compliance(blade, blade.stations)[:, rigid, rigid]
+    return replace(blade, stiffness=stiffness)
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 from southwell.cases.campbell.sweep import Named
+from southwell.cases.input.schema import Compare
+from southwell.cases.verify import core_solver
 from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.chain import accuracy, mesh
+from southwell.core.chain.refinement import AccuracyWarning
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
-from southwell.core.solve import AccuracyWarning
+from southwell.references.scikit_fem.reissner import CODE
 from southwell.reports.cli.app import main
 from southwell.reports.shared.certain import certain, remarks
 from southwell.reports.shared.units import RAD_S
@@ -100,6 +104,31 @@ def test_accuracy_out_of_reach_is_told() -> None:
     assert found.uncertainty.max() > 1e-15
     with pytest.raises(ValueError, match="accuracy: 0"):
         solve.modes(cable(1e3), 30.0, count=2, accuracy=0.0)
+
+
+@pytest.mark.parametrize("omega", [5.0, 30.0, 100.0])
+def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
+    """Against scikit-fem, where a rigid strain is a constraint. The compliance that core keeps costs 5e-5 at 100 rad/s."""
+    stiff = uniform_blade("inextensible", 10.0, 1.0, EA=np.inf, GJ=1e4, EI_y=1e4, EI_z=2e4, mass=1.0)
+    coarse, fine = (CODE.solve(stiff, omega, n, 2).frequencies for n in (30, 60))
+    true = fine + (fine - coarse) / 15.0
+    unsure = np.abs(fine / coarse - 1.0) / 15.0
+    refined, given = solve.modes(stiff, omega, count=2), solve.modes(stiff, omega, 64, 2)
+    assert refined.uncertainty.max() < 1e-6
+    for one in (refined, given):
+        assert (np.abs(one.frequencies / true - 1.0) <= one.uncertainty + unsure).all()
+
+
+def test_the_reference_of_a_comparison_is_rigid_too() -> None:
+    """Core's converged column of ``verify``: the same frequencies as those of ``modes``."""
+    stiff = uniform_blade("inextensible", 10.0, 1.0, EA=np.inf, GJ=1e4, EI_y=1e4, EI_z=2e4, mass=1.0)
+    found = core_solver.converged(stiff, 30.0, Compare(modes=2), ALL_EFFECTS)
+    assert isinstance(found, core_solver.Converged)
+    frequencies = solve.modes(stiff, 30.0, count=2).frequencies
+    for one, true in zip(found.settled, frequencies, strict=True):
+        assert one.estimate is not None
+        assert one.estimate.uncertainty is not None
+        assert abs(one.estimate.value / true - 1.0) <= one.estimate.uncertainty + 1e-8 < 1e-4
 
 
 def test_a_sweep_gives_what_each_speed_gives_alone_within_its_uncertainty() -> None:

@@ -7,10 +7,11 @@ from southwell.core import eigen
 from southwell.core.blade import without_rotary_inertia
 from southwell.core.chain import blocks, steady
 from southwell.core.chain.as_mechanism import mechanism
+from southwell.core.chain.solution import balance
 from southwell.core.effects import Effects
 from southwell.core.element.discretize import discretize
 from southwell.core.multibody import linearize as lz
-from southwell.core.solve import balance, modes, sweep
+from southwell.core.solve import modes, sweep
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 

@@ -1,0 +1,205 @@
+"""Frequencies with uncertainties: meshes refined until an accuracy is met, or one mesh compared with others.
+
+A rigid axial or torsional strain keeps a little compliance (``sections``). Refined frequencies are corrected for it to
+first order, from coarser meshes with twice as much of it.
+"""
+
+import itertools
+import warnings
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blade import Blade
+from ..effects import Effects
+from ..eigen import UnstableError
+from ..element import sections
+from ..element.discretize import Mass, discretize
+from ..element.measures import Measure
+from ..modes import Modes
+from . import accuracy, mesh, steady
+from .lanczos import EigensolverError
+from .solution import MeshSolver, Solved
+from .steady import SteadyStateError
+
+Array = NDArray[np.float64]
+
+MAX_ELEMENTS = 6400
+"""Elements that a mesh is refined to, by default."""
+
+_FEWEST = 8  # elements of the coarsest mesh
+_COMPARED = 1e-6  # uncertainty of what a given mesh is compared with
+_TRIES = 5  # halvings until what is not stable is taken to be so: an under-resolved cable is not
+
+
+class AccuracyWarning(UserWarning):
+    """Frequencies are less accurate than asked for."""
+
+
+@dataclass
+class Meshes:
+    """The meshes of one blade."""
+
+    blade: Blade
+    count: int
+    mass: Mass
+    stiffness: Measure
+    load: Array | None
+    effects: Effects
+    gravity: Array
+    made: dict[tuple[int, bool], MeshSolver] = field(default_factory=dict)
+    nodes: list[Array] = field(default_factory=list)
+
+    @property
+    def order(self) -> int:
+        """Of convergence."""
+        return 4 if (self.mass, self.stiffness) == ("consistent", "corotational") else 2
+
+    @cached_property
+    def softer(self) -> Blade | None:
+        """The blade with twice the compliance of rigid strains; None where no strain is rigid."""
+        return sections.softened(self.blade)
+
+    def of(self, elements: int) -> MeshSolver:
+        """Elements of equal length."""
+        return self._solver(elements, elements)
+
+    def level(self, level: int, fastest: float) -> MeshSolver:
+        """The graded mesh, halved ``level`` times."""
+        if not self.nodes:
+            self.nodes.append(mesh.coarse(self.blade, max(_FEWEST, self.count), fastest))
+        while len(self.nodes) <= level:
+            self.nodes.append(mesh.halved(self.nodes[-1]))
+        return self._solver(-level, self.nodes[level])
+
+    def bias(self, key: int, solved: Solved) -> Array:
+        """(m,) relative change of frequencies by the compliance that rigid strains keep.
+
+        Args:
+            key: the number of equal elements, or minus the level of the graded mesh.
+            solved: the modes of that mesh.
+        """
+        if self.softer is None:
+            return np.zeros(len(solved.modes.frequencies))
+        with_twice = self._solver(key, key if key > 0 else self.nodes[-key], softer=True)
+        return with_twice.at(solved.modes.omega, solved.state.shape).modes.frequencies / solved.modes.frequencies - 1.0
+
+    def _solver(self, key: int, elements: int | Array, *, softer: bool = False) -> MeshSolver:
+        if (key, softer) not in self.made:
+            blade = self.softer if softer and self.softer else self.blade
+            body = discretize(blade, elements, self.mass, self.stiffness, self.load)
+            self.made[key, softer] = MeshSolver(body, self.count, self.effects, self.gravity)
+        return self.made[key, softer]
+
+
+def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
+    """(m,), (m,) factor that takes the bias off a frequency, and the relative uncertainty of that.
+
+    Args:
+        coarse, fine: (m,) ``Meshes.bias`` of two meshes, the second twice as fine. It is linear in the compliance but for its
+            square.
+    """
+    return 1.0 - fine, np.abs(fine - coarse) + 3.0 * fine**2
+
+
+_FAILURES = (SteadyStateError, UnstableError, ArithmeticError)
+
+
+def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Modes:
+    """Halve the elements of the graded mesh until all uncertainties are small enough."""
+    solved: list[Solved] = []
+    best: Modes | None = None
+    for level in itertools.count():
+        one = meshes.level(level, fastest)
+        if level > 2 and one.body.elements > MAX_ELEMENTS:
+            break
+        before = meshes.level(level - 1, fastest) if solved else None
+        near = steady.carried_over(before.body, solved[-1].state.shape, one.body) if before else None
+        try:
+            solved.append(one.at(omega, near))
+        except _FAILURES as error:
+            if best is not None:
+                break
+            if level >= (_TRIES if isinstance(error, UnstableError) else 2):  # coarser ones may be too coarse to hold
+                raise
+            solved = []
+            continue
+        last = solved[-1].modes
+        if len(solved) < 3 or len({len(s.modes.frequencies) for s in solved[-3:]}) > 1:
+            continue
+        found = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
+        noise = one.rounding(solved[-1])
+        factor, of_factor = without_bias(*(meshes.bias(k - level, solved[-1 - k]) for k in (2, 1)))
+        values = factor * found.values
+        order = np.argsort(values)
+        sure = (found.of_values + of_factor + noise)[order]
+        now = replace(last, frequencies=values[order], uncertainty=sure, rounding=noise, shapes=last.shapes[order])
+        if best is None or sure.max() < best.uncertainty.max():
+            best = now
+        if (sure <= wanted).all() or noise.max() > 0.5 * sure.max():  # as good as wanted, or as it gets
+            break
+    if best is None:
+        raise EigensolverError(
+            f"omega: {omega:.6g} rad/s: fewer modes on fine meshes than on coarse ones: ask for fewer modes"
+        )
+    if best.uncertainty.max() > wanted:
+        warnings.warn(
+            f"omega: {omega:.6g} rad/s: relative uncertainty {best.uncertainty.max():.1e} with {best.elements} elements, more "
+            f"than the accuracy {wanted:.1e} asked for",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    return best
+
+
+def as_given(meshes: Meshes, omega: float, elements: int, fastest: float) -> Modes:
+    """One mesh, with uncertainties from a half and a quarter of its elements where stations are nodes of all three.
+
+    Else the error varies with where the stations are, which no sequence shows: the difference from the default's answer counts.
+    """
+    one = meshes.of(elements)
+    solved = one.at(omega)
+    noise, last = one.rounding(solved), solved.modes
+    sure = None
+    if elements // 4 >= max(_FEWEST, meshes.count) and _aligned(meshes.blade, elements // 4, elements // 2, elements):
+        sure = _coarser(meshes, last)
+    if sure is None:
+        sure = _from_default(meshes, last, fastest)
+    return replace(last, uncertainty=sure + noise, rounding=noise)
+
+
+def _aligned(blade: Blade, *meshes: int) -> bool:
+    if blade.kinks:
+        return False
+    at = blade.stations[1:-1, None] / blade.length * np.array(meshes)
+    return bool((np.abs(at - np.round(at)) < 1e-6).all())
+
+
+def _coarser(meshes: Meshes, last: Modes) -> Array | None:
+    """(m,) uncertainties from a half and a quarter of the elements; None if these have no steady state."""
+    n, m = last.elements, len(last.frequencies)
+    try:
+        coarse, half = (meshes.of(k).at(last.omega) for k in (n // 4, n // 2))
+        bias = meshes.bias(n // 4, coarse)
+    except _FAILURES:
+        return None
+    few, more = coarse.modes.frequencies, half.modes.frequencies
+    if len(few) < m or len(more) < m:
+        return None
+    return accuracy.estimate(np.array([few, more, last.frequencies]), meshes.order).of_finest + np.abs(bias)
+
+
+def _from_default(meshes: Meshes, last: Modes, fastest: float) -> Array:
+    """(m,) uncertainties from the difference to refined frequencies; infinite where there are none."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # in the sum
+            true = refined(meshes, last.omega, fastest, _COMPARED)
+    except _FAILURES:
+        return np.full(len(last.frequencies), np.inf)
+    m = min(len(last.frequencies), len(true.frequencies))
+    sure = np.full(len(last.frequencies), np.inf)
+    sure[:m] = np.abs(last.frequencies[:m] / true.frequencies[:m] - 1.0) + true.uncertainty[:m]
+    return sure

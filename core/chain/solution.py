@@ -1,0 +1,79 @@
+"""One mesh's modes: the blade's steady state at a speed, the pencil about it, and its lowest eigenpairs."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects import ALL_EFFECTS, Effects
+from ..eigen import UnstableError
+from ..element.discretize import Chain
+from ..modes import Modes
+from . import accuracy, pencil, steady
+from .lanczos import EigensolverError, lanczos
+from .mode_shapes import mode_shapes
+from .pencil import Shape
+from .steady import Steady
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """One mesh's modes at one speed, and what they are modes of."""
+
+    modes: Modes
+    state: Steady
+    vectors: NDArray[np.complex128]
+
+
+@dataclass
+class MeshSolver:
+    """A chain, and its shapes at the speeds before."""
+
+    body: Chain
+    count: int
+    effects: Effects
+    gravity: Array
+    known: list[tuple[float, Shape]] = field(default_factory=list)
+
+    def at(self, omega: float, near: Shape | None = None) -> Solved:
+        """Solve at one speed, from the speeds before or else from a shape near by."""
+        begun, body = time.perf_counter(), self.body
+        guess = steady.extrapolate(self.known, omega)
+        state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
+        try:
+            found = lanczos(state.pencil, self.count)
+        except (UnstableError, EigensolverError) as error:
+            if pencil.loose(state.pencil):
+                raise UnstableError(
+                    f"omega: {omega:.6g} rad/s: nothing holds a free hinge (at rest, or lead–lag without offset): add a spring"
+                ) from error
+            raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
+        self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
+        shapes, strain = mode_shapes(body, state.shape, found.vectors), steady.largest_strain(body, state.shape)
+        seconds = time.perf_counter() - begun
+        modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
+        return Solved(modes, state, found.vectors)
+
+    def rounding(self, solved: Solved) -> Array:
+        """(m,) relative error of the frequencies by rounding."""
+        if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is not rounded
+            return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
+        state, omega = solved.state, solved.modes.omega
+        return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
+
+
+def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
+    """The steady state with the given effects, and the pencil about it."""
+    if effects.geometric and effects.prestretch:
+        state = steady.steady(body, omega, gravity, guess)
+        return (
+            state
+            if effects == ALL_EFFECTS
+            else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, effects))
+        )
+    still = pencil.undeformed(body)
+    loaded = steady.prestress_at_rest(body, omega, gravity) if effects.geometric else body
+    return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))
