@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 _VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
 _SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
 _MAX_SOLVE_ERROR = 0.3  # of a solution without refinement: beyond, K is lost to rounding
-_MAX_COUNT_ERROR = 1e-4  # of a solution: beyond, a count that differs tells of rounding
+_MAX_COUNT_ERROR = 1e-4  # of a solution: beyond, a count that differs, or a negative pivot, tells of rounding
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
 _EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
 
@@ -52,7 +52,7 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
     M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
     w = _start(2 * n)
     lost = solve_error(factor, exact, M, w)
-    if not lost < _MAX_SOLVE_ERROR:
+    if not lost < (_MAX_SOLVE_ERROR if factor.positive else _MAX_COUNT_ERROR):
         raise _lost_to_rounding(len(K.diagonal), lost)
     if not factor.positive:
         raise eigen.unstable()
