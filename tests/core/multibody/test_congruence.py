@@ -10,8 +10,8 @@ from southwell.core.multibody import congruence, dynamics, equilibrium, linear, 
 from southwell.core.multibody.kinematics import Kinematics, kinematics, projected
 from southwell.core.multibody.mechanism import at_time
 from southwell.core.multibody.tree import Tree, compile_tree
-from southwell.tests.core.multibody.test_steady_mechanisms import CASES
 from southwell.tests.support.beams import PARK, curved
+from southwell.tests.support.mechanisms import CASES
 
 Array = np.ndarray
 

@@ -28,6 +28,7 @@ from southwell.core.multibody.mechanism import (
 from southwell.core.multibody.tree import compile_tree
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import PARK
+from southwell.tests.support.four_bar import A_, B_, C_, D_, four_bar, guess, pose_of
 
 G = 9.81
 
@@ -168,37 +169,6 @@ def test_nutation_of_a_symmetric_top(weight: float) -> None:
 
 # --- linkages --------------------------------------------------------------------------------------------------------
 
-A_, B_, C_, D_ = 1.0, 3.0, 2.0, 3.0
-
-
-def four_bar(cut: str = "C", order=(0, 1, 2, 3), table_rate: float = 0.0, turned=None) -> Mechanism:
-    """Crank 1, coupler 3, rocker 2, ground 3, a torsion spring at the crank's pivot; in a vertical plane, or on a table."""
-    turned = np.eye(4) if turned is None else turned
-    joints = [
-        Joint("A", "revolute", "base", "crank"),
-        Joint("B", "revolute", "crank", "coupler", at(A_)),
-        Joint("C", "revolute", "coupler", "rocker", at(B_), at(C_)),
-        Joint("D", "revolute", "base", "rocker", at(D_)),
-    ]
-    joints = [Joint(j.name, j.kind, j.parent, j.child, j.at_parent, j.at_child, cut=j.name == cut) for j in joints]
-    return Mechanism(
-        (Body("base"), bar("crank", A_, 2.0), bar("coupler", B_, 3.0), bar("rocker", C_, 1.0)),
-        (Joint("base", "revolute", "ground", "base", turned, at(axis="y")), *(joints[k] for k in order)),
-        (Motion("base.rz", 0.0, table_rate),),
-        coordinate_springs=(CoordinateSpring("A.rz", 80.0, 0.0, 1.0),),
-        gravity=tuple(turned[:3, :3] @ np.array([0, 0, -3.0])),
-    )
-
-
-def pose_of(theta: float) -> tuple[float, float]:
-    """Directions of coupler and rocker for a crank angle, from the loop's closure, the elbow up."""
-    p = A_ * np.exp(1j * theta)
-    d = D_ - p
-    cosine = (B_**2 + abs(d) ** 2 - C_**2) / (2 * B_ * abs(d))
-    coupler = np.angle(d) + np.arccos(cosine)
-    rocker = np.angle(p + B_ * np.exp(1j * coupler) - D_)
-    return float(coupler), float(rocker)
-
 
 def test_four_bar_with_a_spring_at_rest() -> None:
     """One degree of freedom: ω² = V″/M(θ) at V′ = 0, M from the bars' angular rates; the loop solved by trigonometry.
@@ -250,42 +220,37 @@ def test_four_bar_with_a_spring_at_rest() -> None:
         m.coordinate_springs,
         gravity=(0, 0, -gravity),
     )
-    linear = lz.linearize(m, _guess())
+    linear = lz.linearize(m, guess())
     assert linear.state.q[linear.tree.coordinate("A.rz")] == pytest.approx(theta, abs=1e-8)
     assert lz.modes(linear).frequencies[0] == pytest.approx(np.sqrt(curvature / mass(theta)), rel=1e-6)
     assert len(linear.partition.redundant) == 3  # a plane loop of four revolutes is three times overdetermined in space
     assert all(name.startswith("C: ") for name in linear.partition.redundant)
 
 
-def _guess() -> dict[str, float]:
-    coupler, rocker = pose_of(0.9)
-    return {"A.rz": 0.9, "B.rz": coupler - 0.9, "C.rz": rocker - coupler, "D.rz": rocker}
-
-
 @pytest.fixture(scope="module")
 def turning() -> np.ndarray:
-    return frequencies(four_bar("C", table_rate=1.5), _guess())
+    return frequencies(four_bar("C", table_rate=1.5), guess())
 
 
 @pytest.mark.parametrize("cut", ["A", "B", "C", "D", ""])
 def test_frequencies_do_not_depend_on_the_cut(cut: str, turning) -> None:
-    np.testing.assert_allclose(frequencies(four_bar(cut, table_rate=1.5), _guess()), turning, rtol=1e-10)
+    np.testing.assert_allclose(frequencies(four_bar(cut, table_rate=1.5), guess()), turning, rtol=1e-10)
 
 
 @pytest.mark.parametrize("name", ["A.rz", "B.rz", "C.rz", "D.rz"])
 def test_frequencies_do_not_depend_on_the_independent_coordinate(name: str, turning) -> None:
-    found = frequencies(four_bar("C", table_rate=1.5), _guess(), independent=(name,))
+    found = frequencies(four_bar("C", table_rate=1.5), guess(), independent=(name,))
     np.testing.assert_allclose(found, turning, rtol=1e-10)
 
 
 def test_frequencies_do_not_depend_on_numbering(turning) -> None:
-    found = frequencies(four_bar("", order=(3, 2, 0, 1), table_rate=1.5), _guess())
+    found = frequencies(four_bar("", order=(3, 2, 0, 1), table_rate=1.5), guess())
     np.testing.assert_allclose(found, turning, rtol=1e-10)
 
 
 def test_frequencies_do_not_depend_on_a_rigid_rotation(turning) -> None:
     turned = sp.exp(np.array([0.0, 0, 0, 0.4, -0.7, 1.1]))
-    np.testing.assert_allclose(frequencies(four_bar("C", table_rate=1.5, turned=turned), _guess()), turning, rtol=1e-10)
+    np.testing.assert_allclose(frequencies(four_bar("C", table_rate=1.5, turned=turned), guess()), turning, rtol=1e-10)
 
 
 def test_slider_crank_with_a_spring() -> None:

@@ -1,55 +1,16 @@
 """Steady states that do not depend on luck: the same one from guesses near each other, of every mechanism there is."""
 
 import math
-from collections.abc import Callable
 
 import pytest
 
-from southwell import multibody as mb
-from southwell.cases.closed_forms import linkages, pendulums
-from southwell.cases.input import library
-from southwell.cases.verify import mechanism_case
 from southwell.core.multibody import equilibrium
 from southwell.core.multibody.mechanism import at_time
 from southwell.core.multibody.tree import compile_tree
-from southwell.tests.core.multibody import test_mechanism_loops as loops
-from southwell.tests.core.multibody import test_mechanisms as plain
-from southwell.tests.references.exudyn import test_exudyn_mechanism as exudyn
 from southwell.tests.support import guesses
+from southwell.tests.support.mechanisms import CASES
 
 pytestmark = pytest.mark.numerical
-
-Case = tuple[mb.Mechanism, dict[str, float]]
-
-
-def of_case(name: str) -> Case:
-    described = library.mechanism(name)
-    (turning,) = mechanism_case.case(described).variants
-    return turning.at(float(turning.speeds[-1])), described.guess
-
-
-def assembled() -> dict[str, float]:
-    """The five-bar's coordinates, those of a joint that is cut included."""
-    return mb.solve(loops.five_bar("C"), loops.GUESS).steady
-
-
-CASES: dict[str, Callable[[], Case]] = {
-    "turntable, unstable": lambda: (pendulums.turntable(6.0), {}),
-    "pendulum, hanging": lambda: (pendulums.pendulum(2.0, True), {}),
-    "pendulum, conical": lambda: (pendulums.pendulum(4.0, True), {"swing.rz": -1.0}),
-    "pendulum, conical and free": lambda: (pendulums.pendulum(4.0, False), {"swing.rz": -1.0}),
-    "top": lambda: (pendulums.top(5.0), {"nutation.rz": pendulums.TILT}),
-    "double pendulum": lambda: (pendulums.double_pendulum(2.0), {}),
-    "slider-crank": lambda: (linkages.slider_crank(3.0), {"guide.z": linkages.CRANK + linkages.CONNECTING}),
-    "parallelogram": lambda: (linkages.parallelogram(3.0), {"A.rz": 1.2, "B.rz": -1.2, "C.rz": 1.2, "D.rz": 1.2}),
-    "four-bar": lambda: (plain.four_bar("C", table_rate=1.5), plain._guess()),
-    "four-bar in gravity": lambda: (exudyn.four_bar("C"), exudyn.FOUR),
-    "five-bar that moves": lambda: (loops.five_bar(), loops.GUESS),
-    **{f"five-bar cut at {cut}": lambda cut=cut: (loops.five_bar(cut), assembled()) for cut in "BDE"},
-    "five-bar, undamped": lambda: (loops.undamped(), loops.GUESS),
-    "ring": lambda: (linkages.ring(1.5, 4), {}),
-    **{name: lambda name=name: of_case(name) for name in library.mechanisms()},
-}
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -8,7 +8,7 @@ import pytest
 
 from southwell.reports.campbell import span
 from southwell.reports.cli import app as cli
-from southwell.tests.cases.input.readers.test_readers_elastodyn import real
+from southwell.tests.support.blade_files import real
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
 BEAM = """name = "beam"

@@ -13,7 +13,7 @@ from southwell.cases.input.readers import Mount, beamdyn, elastodyn
 from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
-from southwell.tests.cases.input.readers.test_readers_elastodyn import real, same
+from southwell.tests.support.blade_files import real, same
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 BLADE, MAIN, OLD = DATA / "beamdyn_blade.dat", DATA / "beamdyn_main.dat", DATA / "beamdyn_old_main.dat"

@@ -9,8 +9,7 @@ import pytest
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount, Reading
-from southwell.tests.cases.input.readers.test_readers_elastodyn import same
-from southwell.tests.cases.input.readers.test_readers_windio_as_beamdyn import samples, written
+from southwell.tests.support.blade_files import same, samples, written
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 

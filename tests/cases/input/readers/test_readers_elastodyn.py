@@ -1,6 +1,5 @@
 """ElastoDyn blades: an invented file worked out by hand, the NREL 5-MW blade against its report, files that are wrong."""
 
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,29 +10,12 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount, elastodyn
 from southwell.cases.writers import elastodyn as elastodyn_write
-from southwell.core.blade import Blade, mass_at, uniform_blade
+from southwell.core.blade import mass_at, uniform_blade
+from southwell.tests.support.blade_files import real, same
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 BLADE, MAIN = DATA / "elastodyn_blade.dat", DATA / "elastodyn_main.dat"
-FIELDS = ("stations", "stiffness", "mass", "twist", "curve", "hub_radius", "precone", "pitch", "tip_mass", "root")
 MOUNT = Mount(length=50.0, hub_radius=2.0)
-
-
-def real(name: str) -> Path:
-    """A published blade file, where the environment says they are."""
-    folder = os.environ.get("SOUTHWELL_BLADES")
-    if not folder or not (Path(folder) / name).is_file():
-        pytest.skip(f"SOUTHWELL_BLADES has no {name}")
-    return Path(folder) / name
-
-
-def same(a: Blade, b: Blade, rtol: float = 1e-14) -> None:
-    for field in FIELDS:
-        x, y = np.array(getattr(a, field)), np.array(getattr(b, field))
-        there = np.isfinite(x)
-        np.testing.assert_array_equal(there, np.isfinite(y), err_msg=field)
-        scale = np.abs(x[there]).max(initial=0.0)
-        np.testing.assert_allclose(x[there], y[there], rtol=rtol, atol=rtol * scale, err_msg=field)
 
 
 def test_every_number_of_the_file_is_where_it_belongs() -> None:

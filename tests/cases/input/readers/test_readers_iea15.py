@@ -20,7 +20,7 @@ from southwell.cases.input.readers import Mount, text
 from southwell.cases.input.readers.hawc2_htc import is_one
 from southwell.core.blade import Blade
 from southwell.core.solve import modes
-from southwell.tests.cases.input.readers.test_readers_elastodyn import real
+from southwell.tests.support.blade_files import real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 HUB = Mount(hub_radius=3.97, precone=np.radians(-4.0))

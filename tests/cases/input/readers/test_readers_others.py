@@ -12,7 +12,7 @@ from southwell.cases.input.properties import sections
 from southwell.cases.input.readers import Mount, bmodes, elastodyn, hawc2, southwell_toml
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes
-from southwell.tests.cases.input.readers.test_readers_elastodyn import real, same
+from southwell.tests.support.blade_files import real, same
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 ST, HTC, BMI, SECTIONS = (DATA / n for n in ("hawc2_st.dat", "hawc2.htc", "bmodes.bmi", "bmodes_sections.dat"))

@@ -11,8 +11,7 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import sections
 from southwell.cases.input.readers import Mount, text, yaml_fields
-from southwell.tests.cases.input.readers.test_readers_elastodyn import real, same
-from southwell.tests.cases.input.readers.test_readers_windio_as_beamdyn import samples, written
+from southwell.tests.support.blade_files import real, same, samples, written
 
 MB = "components.blade.elastic_properties_mb.six_x_six"
 EP = "components.blade.structure.elastic_properties"
