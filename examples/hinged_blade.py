@@ -1,6 +1,6 @@
-"""A rigid blade hinged to its hub, with a damper across the lag hinge: built by hand, solved, held to closed forms.
+"""A rigid blade hinged to its hub, with a damper across the lag hinge, compared with closed forms.
 
-``hinged-blade.toml`` beside this file says the same; ``southwell mechanism hinged-blade.toml`` solves that.
+``southwell mechanism hinged-blade`` solves the same mechanism from a TOML file.
 """
 
 from math import sqrt
@@ -10,11 +10,11 @@ from southwell import multibody as mb
 OMEGA = 30.0  # rad/s
 OFFSET, LENGTH, MASS, DAMPER = 0.3, 4.0, 40.0, 600.0  # m, m, kg, N m s
 
-ACROSS = MASS * LENGTH**2 / 12  # kg m², of a slender blade about its centre
+ACROSS = MASS * LENGTH**2 / 12  # kg m², slender blade about its centre
 
 
 def hinged_blade() -> mb.Mechanism:
-    """The shaft turns; flap and lag hinge share one place, the flap hinge inboard, and are free but for the damper."""
+    """A rotating shaft, coincident flap and lag hinges with the flap hinge inboard, and a lag damper."""
     return mb.Mechanism(
         bodies=(
             mb.Body("hub"),

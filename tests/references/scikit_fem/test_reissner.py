@@ -176,7 +176,7 @@ class TestFrequencies:
         np.testing.assert_allclose(frequencies(blade, 10.0, 64), core(blade, 10.0), rtol=1e-6)
 
     @pytest.mark.parametrize("omega", [2.0, 6.0])
-    def test_what_is_rigid_is_rigid_to_the_last_digit(self, omega: float) -> None:
+    def test_rigid_strains_are_exact_constraints(self, omega: float) -> None:
         """Inextensible, shear-free, with rigid torsion and like planes: chordwise² = flapwise² − Ω², exactly."""
         stiff = {"EA": np.inf, "GJ": np.inf, "EI_y": 48.0, "EI_z": 48.0}
         blade = uniform_blade("rigid but in bending", 2.0, 0.5, mass=3.0, **stiff)
