@@ -1,5 +1,6 @@
-"""What every foreign code offers, and how it is run.
+"""The interface of foreign codes, and how they are run.
 
-``interface`` defines a code and ``registry`` finds one by name. ``worker`` runs it in a process of its own and exchanges the
-blade and the modes as JSON (``wire``). ``quadratic`` and ``damped`` solve the eigenproblem for codes that return matrices.
+``interface`` defines a code and ``registry`` finds one by name. ``worker`` runs it in a separate process and exchanges
+the blade and the modes as JSON (``wire``). ``quadratic`` and ``damped`` solve the eigenproblem for codes that return
+matrices.
 """

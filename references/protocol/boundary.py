@@ -1,6 +1,7 @@
-"""What a foreign code says, validated where it enters: types, lengths, finite, ascending, plausible.
+"""Validate the replies of foreign codes: types, lengths, finite, ascending and plausible values.
 
-Nothing in the other process is trusted to have done so. A violation is a ``NonsenseError`` that quotes it.
+The checks run in this process and do not rely on the other one. A violation raises ``NonsenseError``, which quotes the
+value.
 """
 
 import json
@@ -30,25 +31,25 @@ Seconds = Annotated[float, Meta(ge=0, le=1e9)]
 Elements = Annotated[int, Meta(ge=1, le=10**7)]
 
 LARGEST = 1e100
-"""Of any number in an answer: squares of it are finite."""
+"""Largest magnitude of any number in an answer; its square is finite."""
 
 SAME_SPEED = 1e-9
-"""Relative difference between the speed that was asked for and the one in the answer."""
+"""Largest relative difference between the requested speed and the one in the answer."""
 
 
 class NonsenseError(ValueError):
-    """An answer that cannot be one; names the field and quotes it."""
+    """Invalid answer; the message names the field and quotes its value."""
 
 
 class Failed(Struct, frozen=True, forbid_unknown_fields=True):
-    """A reply without modes."""
+    """A reply that gives a reason instead of modes."""
 
     kind: Literal["nonsense", "refused", "not installed", "unsupported", "unknown"]
     reason: str
 
 
 class Effects(Struct, frozen=True, forbid_unknown_fields=True):
-    """As ``core.effects.Effects``."""
+    """Same fields as ``core.effects.Effects``."""
 
     prestretch: bool
     coriolis: bool
@@ -57,7 +58,7 @@ class Effects(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Origin(Struct, frozen=True, forbid_unknown_fields=True):
-    """As ``interface.Independence``."""
+    """Same fields as ``interface.Independence``."""
 
     engine: Line
     theory: Line
@@ -67,7 +68,7 @@ class Origin(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Declared(Struct, frozen=True, forbid_unknown_fields=True):
-    """What a code says of itself; see ``interface.Code``."""
+    """Declarations of a code; see ``interface.Code``."""
 
     name: Name
     title: Line
@@ -107,25 +108,25 @@ class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def reply(line: bytes, number: int) -> dict[str, Any]:
-    """The reply with this number, undone from its line.
+    """Decode one line as the reply with this number.
 
     Raises:
-        NonsenseError: if the line is not one; whatever comes after it is none either.
+        NonsenseError: if the line is not that reply; the lines after it cannot be trusted either.
     """
     try:
         data = json.loads(line)
     except (ValueError, RecursionError):
         data = None
     if not isinstance(data, dict) or data.pop("run", None) != number:
-        raise NonsenseError(f"not an answer: {_quoted(line)}: does it write to the pipe of the answers?")
+        raise NonsenseError(f"not an answer: {_quoted(line)}: does the code write to the pipe for answers?")
     return data
 
 
 def failure(data: dict[str, Any]) -> Failure | None:
-    """The failure that a reply holds, if it holds one.
+    """The failure in a reply; None if the reply has no ``kind``.
 
     Raises:
-        NonsenseError: if it is none.
+        NonsenseError: if the failure is invalid.
     """
     if "kind" not in data:
         return None
@@ -134,15 +135,15 @@ def failure(data: dict[str, Any]) -> Failure | None:
 
 
 def modes(data: Any, omega: float, count: int) -> Modes:
-    """A blade's modes at speed ``omega``, at most ``count``, from plain data.
+    """Validate a blade's modes, at most ``count``, at rotor speed ``omega`` (rad/s).
 
     Raises:
-        NonsenseError: if they cannot be that.
+        NonsenseError: if the data are invalid.
     """
     found = convert(data, _Modes)
     m = len(found.frequencies)
-    _keep(1 <= m <= count, f"frequencies: {m} of them, {count} were asked for")
-    _keep(len(found.shapes) == m, f"shapes: {len(found.shapes)} of them for {m} frequencies")
+    _keep(1 <= m <= count, f"frequencies: {m} returned, {count} requested")
+    _keep(len(found.shapes) == m, f"shapes: {len(found.shapes)} for {m} frequencies")
     sizes = {(len(shape), *{len(station) for station in shape}) for shape in found.shapes}
     _keep(sizes == {(len(STATIONS), 4)}, f"shapes: each must be {len(STATIONS)} stations by 4 columns")
     for name in ("damping", "uncertainty", "rounding"):
@@ -157,24 +158,27 @@ def modes(data: Any, omega: float, count: int) -> Modes:
         _keep(min(getattr(found, name), default=0.0) >= 0.0, f"{name}: {_quoted(getattr(found, name))}: negative")
     _keep(max(np.abs(found.damping), default=0.0) <= 1.0, f"damping: {_quoted(found.damping)}: ratios above 1")
     near = abs(found.omega - omega) <= SAME_SPEED * abs(omega)
-    _keep(near, f"omega: {found.omega!r}: the speed that was asked for is {omega!r} rad/s")
+    _keep(near, f"omega: {found.omega!r}: the requested speed is {omega!r} rad/s")
     _keep(np.isnan(found.strain) or 0.0 <= found.strain <= LARGEST, f"strain: {found.strain!r}: not a strain")
     return decode_modes(data)
 
 
 def mechanism_modes(data: Any) -> MechanismModes:
-    """A mechanism's modes from plain data.
+    """Validate a mechanism's modes.
 
     Raises:
-        NonsenseError: if they cannot be that.
+        NonsenseError: if the data are invalid.
     """
     found = convert(data, _MechanismModes)
     m, k = len(found.values), len(found.coordinates)
     _keep(m >= 1, "values: none")
-    _keep(k >= 1 and len(set(found.coordinates)) == k, f"coordinates: {_quoted(found.coordinates)}: none, or one twice")
+    _keep(
+        k >= 1 and len(set(found.coordinates)) == k,
+        f"coordinates: {_quoted(found.coordinates)}: empty, or a duplicate name",
+    )
     _keep(len(found.steady) == k, f"steady: {len(found.steady)} values for {k} coordinates")
     fits = len(found.shapes) == m and all(len(shape) == k for shape in found.shapes)
-    _keep(fits, f"shapes: not {m} of {k} coordinates each")
+    _keep(fits, f"shapes: must be {m} shapes of {k} coordinates each")
     for name in ("steady", "values", "shapes"):
         _finite(name, getattr(found, name))
     values, shapes = (_complex(pairs) for pairs in (found.values, found.shapes))
@@ -183,24 +187,24 @@ def mechanism_modes(data: Any) -> MechanismModes:
 
 
 def declared(data: Any) -> Declared:
-    """What a code says of itself, from plain data.
+    """Validate the declarations of a code.
 
     Raises:
-        NonsenseError: if it cannot be that.
+        NonsenseError: if the data are invalid.
     """
     found = convert(data, Declared)
-    _keep(found.blades or found.mechanisms, "it solves neither blades nor mechanisms")
+    _keep(found.blades or found.mechanisms, "the code solves neither blades nor mechanisms")
     if found.blades:
-        _keep(len(found.levels) > 0, "levels: (): name one refinement at least")
+        _keep(len(found.levels) > 0, "levels: (): give at least one refinement")
         _keep(np.all(np.diff(found.levels) > 0), f"levels: {found.levels}: not ascending")
     return found
 
 
 def convert(data: Any, kind: type[T]) -> T:
-    """Plain data as a structure.
+    """Convert plain data to a structure.
 
     Raises:
-        NonsenseError: with msgspec's message, and the value of the field that it is about.
+        NonsenseError: with msgspec's message and the value of the invalid field.
     """
     try:
         return msgspec.convert(data, kind)

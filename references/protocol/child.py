@@ -1,4 +1,4 @@
-"""The foreign side of the conversation: one request, and answers written as they come."""
+"""The worker process's side of the protocol: read one request and write each answer as soon as it is ready."""
 
 import fcntl
 import json
@@ -12,14 +12,14 @@ from .process import raised
 Reply = dict[str, Any]
 
 HIGH = 200
-"""Least file descriptor of the answers' pipe, out of the way of codes that write to 3."""
+"""Lowest file descriptor of the pipe for answers; some codes write to descriptor 3."""
 
 
 def serve(answer: Any) -> None:
-    """Write what ``answer(request)`` yields, a line each, as soon as it is there."""
+    """Write each reply that ``answer(request)`` yields as one line, immediately."""
     request = json.loads(sys.stdin.buffer.readline())
     with answers_pipe() as pipe:
-        pipe.write("\n")  # ready: the clock of the first answer starts
+        pipe.write("\n")  # ready: the time limit of the first answer starts
         pipe.flush()
         replies: Iterator[Reply] = answer(request)
         for number, reply in enumerate(replies):
@@ -28,7 +28,8 @@ def serve(answer: Any) -> None:
 
 
 def answers_pipe() -> TextIO:
-    """Standard output for answers alone: what a foreign code prints goes to standard error, and it has nothing to read."""
+    """Reserve standard output for answers: redirect prints of the code to standard error, and its input to the null
+    device."""
     pipe = os.fdopen(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, HIGH), "w", encoding="utf-8")
     os.dup2(2, 1)
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -38,12 +39,12 @@ def answers_pipe() -> TextIO:
 
 
 def failed(kind: str, reason: str) -> Reply:
-    """A reply without an answer."""
+    """A reply that gives a reason instead of an answer."""
     return {"kind": kind, "reason": reason}
 
 
 def blunder(error: BaseException, where: str = "") -> Reply:
-    """The reply of a code that raised what no code may raise, even an exit."""
+    """The reply for an exception that a code must not raise, including ``SystemExit``."""
     return failed("nonsense", f"{where}: {raised(error)}" if where else raised(error))
 
 

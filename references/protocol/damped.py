@@ -1,4 +1,4 @@
-"""The eigenproblem λ² M + λ C + K of a few coordinates, damped or growing, all of them with mass."""
+"""The eigenproblem λ² M + λ C + K of a few coordinates with positive definite M, damped or unstable."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,10 @@ Array = NDArray[np.float64]
 
 
 def damped_modes(M: Array, C: Array, K: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """One of each conjugate pair of eigenvalues, and real ones, by modulus, with vectors (i, m)."""
+    """Eigenvalues (m,), 1/s, and vectors (n, m) of ``λ² M + λ C + K``, all (n, n).
+
+    Of each conjugate pair only the eigenvalue with positive imaginary part is returned; sorted by modulus.
+    """
     n = len(M)
     zero, one = np.zeros((n, n)), np.eye(n)
     found = np.linalg.eig(np.block([[zero, one], [-np.linalg.solve(M, np.hstack([K, C]))]]))

@@ -1,7 +1,8 @@
-"""What a code says of itself, as plain data: all that the rest of the program knows of it.
+"""Descriptions of codes as plain data, which is all that the rest of the program uses.
 
-It is imported and asked in a process of its own, and what it says is validated; a code that misbehaves has a ``failure``
-instead. The codes that come with the package are asked together, in one process, as long as none of them ends it.
+A code is imported in a separate process and its declarations are validated; if that fails, the description has a
+``failure``. The codes of the package share one process; a code that crashes it is described again alone, as are those
+after it.
 """
 
 import inspect
@@ -27,10 +28,10 @@ from .registry import UnknownCodeError
 from .wire import decode_blade, encode
 
 TOGETHER = 2
-"""Processes at a time that codes are asked in."""
+"""Processes used at the same time."""
 
 ASKING = Limits(seconds=120.0)
-"""Of each code, by default: its import, most of all."""
+"""Default limits for describing one code; most of the time is its import."""
 
 
 @dataclass(frozen=True)
@@ -38,15 +39,14 @@ class Description:
     """A code, as ``interface.Code`` and ``mechanism_interface.MechanismCode`` declare it.
 
     Attributes:
-        asked: the name or import path it was asked for, by which ``worker.answers`` finds it.
+        asked: the name or import path given to ``describe``; ``worker.answers`` accepts it too.
         name, title, shares, effects, hint, levels, order, motions, digits, bracket, independence: as declared.
-        blades, mechanisms: whether it solves them.
+        blades, mechanisms: whether the code solves them.
         version: None if it is not installed.
-        refused: for each blade that was shown to it, why it does not take it; None if it does, or gave no reason that is one
-            (a worker that is to solve the blade says so again).
+        refused: for each blade, the reason why the code does not support it; None if it does, or if the reason is
+            invalid (the worker that solves the blade reports that).
         page: its module's docstring.
-        failure: what it did instead of answering; None if it is as it should be. Of the rest only ``asked`` and ``name`` are
-            sure then.
+        failure: what went wrong; None if nothing did. If set, only ``asked`` and ``name`` are valid.
     """
 
     asked: str
@@ -70,15 +70,15 @@ class Description:
 
 
 def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits = ASKING) -> tuple[Description, ...]:
-    """Descriptions of codes by name or import path, in their order.
+    """Describe codes, in the order of ``names``.
 
     Args:
         names: as for ``registry.locate``.
-        blades: shown to each code that takes blades, for ``refused``.
-        limits: of each code.
+        blades: passed to ``unsupported`` of each code that solves blades, for ``refused``.
+        limits: for each code.
 
     Raises:
-        UnknownCodeError: if a name is not known, or an import path given as name leads to no code.
+        UnknownCodeError: if a name is unknown, or nothing that is a code is at an import path.
     """
     where = {name: registry.address(name) for name in names}
     packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}
@@ -96,7 +96,7 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
 
 
 def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits: Limits) -> list[Description]:
-    """What codes say, by name and address, all in one process; one that ends it ends it for those after it."""
+    """Describe codes, by name and address, in one process; if a code ends the process, it and all after it fail."""
     if not where:
         return []
     names, request = list(where), {"codes": list(where.values()), "blades": blades}
@@ -112,7 +112,7 @@ def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits:
 
 
 def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
-    """A code of which no more is known, under its own name if that can be one."""
+    """A description with a failure only; ``name`` is used if it is valid, ``asked`` otherwise."""
     proper = isinstance(name, str) and re.fullmatch(r"[^\W_][\w.+-]{0,59}", name)
     return Description(asked, name if proper else one_line(asked), failure=failure)
 
@@ -126,7 +126,7 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
         said = boundary.declared(data)
         refused = boundary.convert(refused, list[str | None])
         if len(refused) not in (0, blades):
-            raise NonsenseError(f"unsupported(): {len(refused)} answers of {blades}")
+            raise NonsenseError(f"unsupported(): {len(refused)} answers for {blades} blades")
     except NonsenseError as error:
         return _failed(asked, Failure("nonsense", one_line(error)), name)
     facts = {field: getattr(said, field) for field in said.__struct_fields__}
@@ -149,7 +149,7 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
 
 
 def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
-    """What a code declares, as plain data; what raises is the code's own fault."""
+    """The declarations of a code as plain data; exceptions of the code propagate."""
     solves, origin = hasattr(code, "solve"), independence(code)
     facts = {
         "name": code.name,
@@ -187,7 +187,7 @@ def _refusal(code: Any, blade: Blade) -> str | None:
 
 
 def _plain(value: Any) -> Any:
-    """As JSON has it; what JSON has not is an object that no schema takes."""
+    """A value that JSON can represent; anything else becomes an object that every schema rejects."""
     if value is None or isinstance(value, str | int | float):
         return value
     if isinstance(value, np.generic):

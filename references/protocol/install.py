@@ -1,4 +1,4 @@
-"""How to install what the codes need: from a checkout, until the package is published."""
+"""Installation hints: from a checkout, until the package is published."""
 
 
 def extra(name: str) -> str:

@@ -1,11 +1,11 @@
-"""What a code must offer to take part: a name, a version, what it can do, and modes.
+"""The interface of a code: name, version, declarations and modes.
 
-Laws every code keeps:
+Rules for every code:
 
-* it solves the blade it is given, all of it, or says in ``unsupported`` why it cannot: no property silently dropped;
-* effects it lacks by construction are declared in ``effects``, so that core can leave out the same;
-* frames and units are converted inside the adapter; what comes back is in the axes of ``core.blade``, SI;
-* ``solve`` is a pure function of its arguments: the same call gives the same answer in any order, in any process.
+* it represents every property of a blade, or ``unsupported`` returns the reason why it cannot; no property is ignored;
+* ``effects`` declares the effects it lacks by construction, and core is then compared without them;
+* the adapter converts axes and units; results are in the axes of ``core.blade`` and in SI units;
+* ``solve`` is a pure function of its arguments: the same call gives the same result in any order and any process.
 """
 
 from dataclasses import dataclass
@@ -20,26 +20,27 @@ Shares = Literal["nothing", "mechanical model", "discretisation"]
 Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
 
 MOTIONS: tuple[Motion, ...] = get_args(Motion)
-"""What the four columns of a shape are, in a blade that lies along x: motion along x, y, z, and rotation about x."""
+"""The four columns of a shape of a blade along x: displacement along x, y, z, and rotation about x."""
 
 DIGITS = 9
-"""Of a code that declares none."""
+"""Significant digits of a code that declares none."""
 
 
 @dataclass(frozen=True)
 class Independence:
-    """Where a code's answer comes from, in names that are equal where the origin is.
+    """The origin of a code's results. The same origin must have the same name in every code.
 
-    Two codes with the same ``engine``, ``theory`` or ``rotation`` are one confirmation, not two. One that has ``CORE`` anywhere
-    is no independent one: it confirms that core solves its own model. That ``sections`` or ``eigensolver`` are the same is
-    shown and not counted: all codes read the same blade, and the adapters' eigensolver, ``references.quadratic``, is verified
-    by itself, against SciPy's dense eigenvalues of the state-space matrix in ``tests/cases/judge/test_groups.py``.
+    Two codes with the same ``engine``, ``theory`` or ``rotation`` count as one confirmation. A code with ``CORE``
+    anywhere is not independent: it confirms only that core solves its model correctly. The same ``sections`` or
+    ``eigensolver`` are shown but do not count: all codes read the same blade, and the adapters' eigensolver,
+    ``references.protocol.quadratic``, is verified separately, against SciPy's dense eigenvalues of the state-space
+    matrix in ``tests/cases/judge/test_groups.py``.
 
     Attributes:
-        engine: the program that assembles the equations of motion: ``Exudyn``.
-        theory: whose derivation, discretised how, the matrices are: ``ANCF cable``.
-        rotation: where centrifugal and gyroscopic terms come from.
-        sections: where geometry and section data come from: ``blade`` (the adapter reads it itself) or core's frames.
+        engine: the program that assembles the equations of motion, e.g. ``Exudyn``.
+        theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``.
+        rotation: origin of the centrifugal and gyroscopic terms.
+        sections: origin of geometry and section data: ``blade`` (the adapter reads them) or core's frames.
         eigensolver: what solves the eigenproblem.
     """
 
@@ -51,33 +52,33 @@ class Independence:
 
 
 CORE = "core"
-"""Of a declaration: it is core's own."""
+"""An origin in ``Independence`` that is core."""
 
 
 class CodeError(RuntimeError):
-    """A code ran and could not answer; the message says why."""
+    """A code could not solve the blade; the message gives the reason."""
 
 
 class Code(Protocol):
     """One source of natural frequencies.
 
     Attributes:
-        name: short and stable, as typed on the command line: ``exudyn-ancf``.
-        title: as printed in a table: ``Exudyn, ANCF cable``.
-        shares: what it shares with core; two codes that share their mechanical model are one witness, not two.
-        effects: the physical effects it keeps.
-        levels: refinements to use, coarse to fine (elements, or terms); each at least 1.4 times the one before.
-        order: the theoretical order of convergence of its frequencies (0: spectral).
+        name: short and stable, as typed on the command line, e.g. ``exudyn-ancf``.
+        title: as printed in tables, e.g. ``Exudyn, ANCF cable``.
+        shares: what it shares with core.
+        effects: the physical effects it includes.
+        levels: refinements, coarse to fine (elements, or terms); each at least 1.4 times the one before.
+        order: theoretical order of convergence of its frequencies (0: spectral).
         hint: how to install what it needs.
 
-    Three more are optional:
+    Optional attributes:
 
-    * ``independence: Independence``, without which the code confirms nothing: see there;
-    * ``motions: tuple[Motion, ...]``, those that its shapes have, if not all four; modes that mostly move otherwise are not
-      compared, and nothing else excuses a mode without a partner;
-    * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket of the code's own, not narrowed by refinement;
-    * ``digits: int``, of a code that prints, or iterates to, fewer than nine significant digits of its frequencies. No more is
-      then asked of two answers that should be the same, as of a blade in other units.
+    * ``independence: Independence``; without it the code does not count as confirmation;
+    * ``motions: tuple[Motion, ...]``, the motions in its shapes, if not all four. Modes dominated by another motion are
+      not compared; any other mode must have a partner;
+    * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket, which refinement does not narrow;
+    * ``digits: int``, for a code that prints, or converges to, fewer than nine significant digits of its frequencies.
+      Results that should be equal, such as those of a blade in other units, are then compared to this precision.
     """
 
     name: str
@@ -93,33 +94,33 @@ class Code(Protocol):
         ...
 
     def unsupported(self, blade: Blade) -> str | None:
-        """Why this code cannot solve this blade, or None if it can."""
+        """The reason why this code cannot solve this blade; None if it can."""
         ...
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The ``count`` lowest modes (fewer only if there are fewer) at rotor speed ``omega`` (rad/s).
 
         Raises:
-            CodeError: if the code ran and could not answer (no steady state, no convergence).
+            CodeError: unsupported blade, no steady state, or no convergence.
         """
         ...
 
 
 def digits(code: Code) -> int:
-    """Significant digits that its frequencies have: its own declaration, if it has one."""
+    """Significant digits of its frequencies: as declared, or ``DIGITS``."""
     return getattr(code, "digits", DIGITS)
 
 
 def motions(code: Code) -> tuple[Motion, ...]:
-    """Motions that its shapes have: its own declaration, or all."""
+    """Motions in its shapes: as declared, or all."""
     return getattr(code, "motions", MOTIONS)
 
 
 def brackets(code: Code) -> bool:
-    """Whether it declares that it brackets its own answer."""
+    """Whether it declares that its uncertainty is a rigorous bracket."""
     return bool(getattr(code, "bracket", False))
 
 
 def independence(code: object) -> Independence | None:
-    """What it declares about itself; None if nothing."""
+    """Its declared origins; None if it declares none."""
     return getattr(code, "independence", None)

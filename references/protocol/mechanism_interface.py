@@ -1,4 +1,4 @@
-"""What a code that solves mechanisms must offer; a code may solve blades (``interface.Code``), mechanisms, or both."""
+"""The interface of a code that solves mechanisms. A code may solve blades (``interface.Code``), mechanisms, or both."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ class MechanismModes:
     """A mechanism's modes about its steady state.
 
     Attributes:
-        coordinates: names of the k coordinates the code has; cut joints' own need not be among them.
-        steady: (k,) their values, m or rad.
-        values: (m,) eigenvalues λ, 1/s, by modulus: one of each conjugate pair, and real ones.
+        coordinates: names of the code's k coordinates; those of cut joints may be missing.
+        steady: (k,) their steady values, m or rad.
+        values: (m,) eigenvalues λ, 1/s, sorted by modulus: one of each conjugate pair, and the real ones.
         shapes: (m, k) motion of the coordinates in each mode, any scale.
         seconds: wall time.
     """
@@ -43,7 +43,7 @@ class MechanismModes:
 
 
 class MechanismCode(Protocol):
-    """One source of a mechanism's modes; laws as for ``interface.Code``.
+    """One source of a mechanism's modes; the rules of ``interface`` apply.
 
     Attributes:
         name, title, shares, effects, hint: as for ``interface.Code``.
@@ -60,14 +60,14 @@ class MechanismCode(Protocol):
         ...
 
     def unsupported_mechanism(self, mechanism: "Mechanism") -> str | None:
-        """Why this code cannot solve this mechanism, or None if it can."""
+        """The reason why this code cannot solve this mechanism; None if it can."""
         ...
 
     def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
         """All modes about the steady state near ``guess``.
 
         Raises:
-            CodeError: if the code ran and could not answer (no steady state, no convergence).
+            CodeError: no steady state, or no convergence.
         """
         ...
 

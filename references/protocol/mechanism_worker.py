@@ -1,6 +1,7 @@
-"""Foreign codes that take mechanisms, each in a process of its own: as ``worker`` for blades, and with its protocol.
+"""Run codes that solve mechanisms in separate processes, with the protocol of ``worker``.
 
-The request holds the code's import path, a guess, and mechanisms; the answer is a line for each: modes, or a failure.
+The request contains the code's import path, an initial guess and the mechanisms. The answer is one line per mechanism:
+modes or a failure.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,7 +24,7 @@ Answer = MechanismModes | Failure
 
 @dataclass(frozen=True)
 class Request:
-    """What a child is asked: modes of each mechanism, near one guess."""
+    """A request for the modes of each mechanism, near one guess of the steady state."""
 
     code: str
     folder: str | None
@@ -32,22 +33,22 @@ class Request:
 
 
 def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:
-    """What a code answers to each of ``mechanisms``, in their order; arguments as for ``worker.answers``.
+    """A code's modes of each mechanism, or a failure, in their order; other arguments as for ``worker.answers``.
 
     Raises:
-        UnknownCodeError: if there is no such code.
+        UnknownCodeError: if the name is unknown.
     """
     request = encode(Request(**registry.address(name), guess=dict(guess), mechanisms=list(mechanisms)))
     return exchange(__name__, request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data))
 
 
 def encode(value: Request) -> bytes:
-    """A request as JSON."""
+    """Encode a request as JSON."""
     return msgspec.json.encode(value, enc_hook=_plain)
 
 
 def decode(data: Any) -> Request:
-    """The request that ``encode`` was given, from plain data."""
+    """Decode a request from plain data; the inverse of ``encode``."""
     return msgspec.convert(data, Request, dec_hook=lambda _, value: np.array(value, dtype=float))
 
 
@@ -69,7 +70,7 @@ def _solve(code: MechanismCode, mechanism: Mechanism, guess: Mapping[str, float]
         return {"modes": wire.encode(modes)}
     except CodeError as error:
         return failed("refused", one_line(error))
-    except BaseException as error:  # whatever a foreign code raises is its answer to this mechanism, and no other's
+    except BaseException as error:  # whatever the code raises affects this mechanism only
         return blunder(error)
 
 

@@ -1,7 +1,7 @@
-"""A conversation with a process that may do anything: limits of time, memory and output, and nothing left running.
+"""Run an untrusted process with limits on time, memory and output, and leave nothing of it running.
 
-The process is ``supervisor.py`` with a module of the package. It reads one request, a line of JSON, and writes a line for each
-answer as soon as it has it. Closing its standard input ends it and all that it has started.
+The process is ``supervisor.py`` with a module of the package. It reads one request, a line of JSON, and writes one line
+per answer as soon as it is ready. Closing its standard input ends it and all processes it has started.
 """
 
 import os
@@ -19,37 +19,37 @@ from typing import IO, Literal
 SUPERVISOR = Path(__file__).with_name("supervisor.py")
 
 KEPT = 8_192
-"""Bytes of standard error that are kept: the last ones."""
+"""Number of last bytes of standard error that are kept."""
 
 LONGEST_LINE = 16 * 2**20
-"""Bytes of one answer at most; a hundred modes are a third of a megabyte."""
+"""Largest size of one answer, bytes; a hundred modes take a third of a megabyte."""
 
 LONGEST_REASON = 400
-"""Characters of a reason."""
+"""Largest length of a reason, characters."""
 
 ADDRESS_SPACE = 8
-"""Limit of the address space over the limit of memory: libraries reserve far more than they use."""
+"""Ratio of the address space limit to the memory limit: libraries reserve far more than they use."""
 
 START = 120.0
-"""Seconds until the process is ready; no foreign code has run by then."""
+"""Time limit until the process is ready, s; no foreign code has run by then."""
 
 LOOK = 0.1
-"""Seconds between two looks at the process."""
+"""Interval at which the process is polled, s."""
 
 GRACE = 5.0
-"""Seconds that the supervisor has to kill what it watches."""
+"""Time that the supervisor has to end its processes, s."""
 
 Kind = Literal["crashed", "timed out", "nonsense", "refused", "not installed", "unsupported", "unknown", "internal"]
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one solution may take.
+    """Limits of one solution.
 
     Attributes:
-        seconds: wall time of one solution; the first has the import of the code in it.
-        memory: bytes resident, of the process and all that it has started, together (Linux). The address space of each is
-            limited to eight times as much on every platform.
+        seconds: wall time, s; the first solution includes the import of the code.
+        memory: resident memory of the process and all processes it has started, bytes (Linux). On every platform, the
+            address space of each is limited to eight times this value.
     """
 
     seconds: float = 300.0
@@ -58,13 +58,13 @@ class Limits:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why there is no answer.
+    """The reason why there is no answer.
 
     Attributes:
-        kind: ``crashed``, ``timed out``, ``nonsense`` (an answer that cannot be one), ``refused`` (the code says it
-            could not answer), ``not installed``, ``unsupported`` (the code declines the question), ``unknown`` (there is no
-            such code), ``internal`` (an error of this program, not of the code).
-        reason: one line for a table.
+        kind: ``crashed``, ``timed out``, ``nonsense`` (an invalid answer), ``refused`` (the code reports that it
+            could not solve the problem), ``not installed``, ``unsupported`` (the code declines the blade or mechanism),
+            ``unknown`` (no such code), ``internal`` (an error of this program, not of the code).
+        reason: one line, for tables.
     """
 
     kind: Kind
@@ -72,14 +72,15 @@ class Failure:
 
 
 def converse(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
-    """The lines, at most ``expected``, that a module writes in answer to a request, and why there are no more.
+    """Send a request to a module in a separate process; return its lines, at most ``expected``, and why there are no
+    more.
 
     Args:
-        module: has ``main()``, which writes an empty line when it is ready and then its answers; runs in a process that ends
-            with this call, and all that it has started with it.
+        module: has ``main()``, which writes an empty line when it is ready and then its answers. Its process, and all
+            processes it has started, end with this call.
         request: one line.
-        expected: how many answers are asked for.
-        limits: of each answer.
+        expected: number of answers.
+        limits: for each answer.
     """
     alone = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     child = subprocess.Popen(
@@ -119,7 +120,7 @@ def _listen(
             if now >= look:
                 look = now + LOOK
                 if (used := _resident(child.pid)) > limits.memory:
-                    most = f"its limit is {limits.memory / 2**30:g} GiB"
+                    most = f"the limit is {limits.memory / 2**30:g} GiB"
                     return lines[1:], Failure("crashed", f"stopped: {used / 2**30:.3g} GiB of memory: {most}"), said
             events = ready.select(0.0 if gone else min(LOOK, deadline - now))
             if gone and not any(key.fileobj is not to for key, _ in events):
@@ -160,12 +161,12 @@ def _send(to: IO[bytes], rest: memoryview) -> memoryview:
 
 
 def _end(child: subprocess.Popen[bytes]) -> None:
-    """End the process and all that it has started."""
+    """End the process and all processes it has started."""
     to, *others = _pipes(child)
     try:
         to.close()
         child.wait(GRACE)
-    except BaseException as error:  # its supervisor does not answer, or this process is told to stop
+    except BaseException as error:  # its supervisor does not respond, or this process is interrupted
         for pid in (*_below(child.pid), child.pid):
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(pid, signal.SIGKILL)
@@ -184,7 +185,7 @@ def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes], IO[byt
 
 
 def _below(pid: int) -> list[int]:
-    """All processes that a process has started, and those that they have; none where the kernel does not tell."""
+    """All descendants of a process; empty if the kernel does not list them."""
     found, todo = [], deque([pid])
     while todo:
         one = todo.popleft()
@@ -196,7 +197,7 @@ def _below(pid: int) -> list[int]:
 
 
 def _resident(pid: int) -> int:
-    """Bytes of memory that are resident, of all that a process has started."""
+    """Resident memory of all descendants of a process, bytes."""
     pages = 0
     for one in _below(pid):
         with suppress(OSError, IndexError, ValueError):
@@ -218,10 +219,10 @@ def _signal(number: int) -> str:
 
 
 def one_line(text: object) -> str:
-    """A message as one line of printable text, not too long."""
+    """A message as one line of printable text, at most ``LONGEST_REASON`` characters."""
     try:
         words = str(text)
-    except BaseException as error:  # the message of an exception is code of whoever raised it
+    except BaseException as error:  # ``__str__`` of a foreign exception may raise
         words = f"its message raised {type(error).__name__}"
     words = words[: 4 * LONGEST_REASON].encode("utf-8", "replace").decode("utf-8")
     words = "".join(c if c.isprintable() else "?" for c in " ".join(words.split()))
@@ -229,5 +230,5 @@ def one_line(text: object) -> str:
 
 
 def raised(error: BaseException) -> str:
-    """An exception in one line: what it is, and what it says."""
+    """An exception in one line: its type and message."""
     return f"{type(error).__name__}: {one_line(error)}".rstrip(": ")

@@ -1,10 +1,10 @@
-"""Free vibration of a gyroscopic system, for the codes that hand over matrices instead of frequencies.
+"""Free vibration of a gyroscopic system, for codes that return matrices instead of frequencies.
 
 ``M q̈ + C q̇ + K q = 0`` with M symmetric and positive *semi*-definite, C skew, K symmetric positive definite: with
 ``q = φ exp(iωt)`` every ω is real. The problem is solved in inverse form, whose largest eigenvalues 1/ω belong to the
-lowest modes, so that stiff and massless coordinates cost no accuracy (they crowd at 1/ω = 0).
+lowest modes, so stiff and massless coordinates do not reduce the accuracy (their eigenvalues cluster at 1/ω = 0).
 
-Core has its own solver and never uses this one.
+Core has a different solver and never uses this one.
 """
 
 from collections.abc import Callable
@@ -24,13 +24,13 @@ Solve = Callable[[Array], Array]
 Pairs = tuple[Array, NDArray[np.complex128]]
 
 DENSE = 150
-"""Size above which a few modes of full matrices are had sooner by iteration than all of them directly."""
+"""Size above which iteration for a few modes of full matrices is faster than a direct solution for all."""
 
 RESTARTS = 20
-"""Of Arnoldi's method before a larger basis is tried; what settles at all does so within ten."""
+"""Restarts of Arnoldi's method before a larger basis is tried; what converges at all does so within ten."""
 
 ASYMMETRY = 1e-6
-"""Largest departure from symmetry taken for rounding (or finite differences), relative to a unit diagonal of K."""
+"""Largest asymmetry attributed to rounding or finite differences, relative to a unit diagonal of K."""
 
 
 def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
@@ -44,7 +44,7 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
         M: (n, n) symmetric, positive semi-definite; zero rows and columns are allowed.
         C: (n, n) skew.
         K: (n, n) symmetric, positive definite.
-        count: how many; fewer come back if there are fewer.
+        count: number of modes; fewer are returned if there are fewer.
 
     Returns:
         frequencies (m,), rad/s, positive, ascending; shapes (n, m) complex, largest entry 1.
@@ -67,14 +67,14 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
         raise _unstable(matrices[2]) from None
     largest = abs(m).max()
     m = _symmetric("M", m, 1, largest)
-    # C is measured against the critical damping of the lowest modes too: at rest it is all rounding
+    # C is also compared with the critical damping of the lowest modes: at zero speed it is only rounding
     c = _symmetric("C", c, -1, max(abs(c).max(), largest**0.5))
     inverse, q = _iterated(m, c, k, solve, count) if iterate else _direct(m, c, k, count)
     return _ordered(inverse, q * scale[:, None], count)
 
 
 def _scale(K: Any) -> Array:
-    """(n,) units for the coordinates in which K has a unit diagonal."""
+    """(n,) units of the coordinates for which K has a unit diagonal."""
     diagonal = K.diagonal()
     if (diagonal <= 0).any():
         raise _unstable(K)
@@ -82,10 +82,14 @@ def _scale(K: Any) -> Array:
 
 
 def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
-    """The symmetric (sign 1) or skew (sign -1) part, which must be all but rounding of ``size``."""
+    """The symmetric (sign 1) or skew (sign -1) part; the rest must be rounding, relative to ``size``.
+
+    Raises:
+        CodeError: it is not, or the matrix is not finite.
+    """
     wrong = abs(matrix - sign * matrix.T).max()
     if not np.isfinite(wrong):
-        raise CodeError(f"{name}: not finite: the code handed over no usable linearisation")
+        raise CodeError(f"{name}: not finite: the linearisation of the code is not usable")
     if wrong > ASYMMETRY * size:
         kind = "symmetric" if sign == 1 else "skew"
         raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
@@ -93,7 +97,7 @@ def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
 
 
 def _factor(K: Any) -> Solve:
-    """How to solve with K, which must be positive definite.
+    """Factorise K, which must be positive definite, and return a function that solves with it.
 
     Raises:
         LinAlgError: it is not.
@@ -134,7 +138,7 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
     """1/ω and shapes, by Arnoldi's method on A⁻¹S with A = diag(K, M), S = [[-C, -M], [M, 0]]."""
     n = K.shape[0]
     start = np.random.default_rng(0).standard_normal(2 * n)
-    # velocities in units of a frequency near the lowest, so that both halves of a state are of a size
+    # velocities in units of a frequency near the lowest, so both halves of a state have similar magnitude
     guess = solve(M @ start[:n])
     unit = np.sqrt((guess @ (K @ guess)) / (guess @ (M @ guess)))
 
@@ -144,8 +148,8 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
         return np.concatenate([-solve(C @ q + unit * (M @ v)), q / unit])
 
     operator = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]
-    k = 2 * count + 2  # ± pairs, and one to spare
-    # a double pair may keep the restarts from settling to the last digit; a larger basis then does without them
+    k = 2 * count + 2  # ± pairs, and one spare
+    # with a double pair the restarts may not converge to the last digit; a larger basis needs no restarts
     for basis, tolerance in ((max(2 * k + 1, 40), 1e-14), (max(4 * k, 120), 1e-13), (max(8 * k, 240), 1e-12)):
         try:
             limits: dict[str, Any] = {"ncv": min(2 * n, basis), "tol": tolerance, "maxiter": RESTARTS}
@@ -154,7 +158,7 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
             continue
         values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
         return -values.imag, x[:n]  # 1/(iω) = -i/ω
-    raise CodeError(f"eigenproblem: ARPACK gave up on {k} values of {2 * n}: ask for fewer modes")
+    raise CodeError(f"eigenproblem: ARPACK did not converge for {k} eigenvalues of {2 * n}: request fewer modes")
 
 
 def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:
@@ -167,6 +171,6 @@ def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:
 
 
 def _unstable(K: Any) -> CodeError:
-    full = K.toarray() if sp.issparse(K) else K  # once, on the way out
+    full = K.toarray() if sp.issparse(K) else K  # only for the error message
     lowest = np.linalg.eigvalsh((full + full.T) / 2)[0]
     return CodeError(f"stiffness: lowest eigenvalue {lowest:.3g}: no stable steady state at this rotor speed; lower it")

@@ -1,7 +1,8 @@
-"""The codes by name: ours, those of installed packages (entry-point group ``southwell.codes``), and any by import path.
+"""Find codes by name: those of this package, those of installed packages (entry-point group ``southwell.codes``),
+import paths.
 
-``code`` and ``loaded`` import a code: foreign code runs then, and may do anything. Only a worker process calls them; everybody
-else learns of a code by ``description.describe``, and has it solve by ``worker.answers``.
+``code`` and ``loaded`` import a code, which runs foreign code. Only worker processes call them. Everything else uses
+``description.describe`` to learn about a code and ``worker.answers`` to run it.
 """
 
 import os
@@ -17,7 +18,7 @@ from .process import Failure, one_line, raised
 GROUP = "southwell.codes"
 
 BLADE_CODE = ("name", "effects", "levels", "order", "version", "unsupported", "solve")
-"""What a code that takes blades must have."""
+"""Required attributes of a code that solves blades."""
 
 OURS = {
     "exudyn-ancf": "southwell.references.exudyn.ancf:CODE",
@@ -36,7 +37,7 @@ OURS = {
     "southwell-equation": "southwell.references.theories.southwell_equation:CODE",
     "exact-beam": "southwell.references.theories.exact_beam:CODE",
 }
-"""Name → ``module:attribute`` of the codes that come with the package."""
+"""Name → ``module:attribute`` of the codes of the package that solve blades."""
 
 
 class Address(TypedDict):
@@ -50,18 +51,18 @@ ADVICE = "is it module:attribute, and installed or in this folder?"
 
 
 class UnknownCodeError(ValueError):
-    """A code that cannot be had: the message names it, the likely cause, and the remedy."""
+    """Unknown code; the message gives its name, the likely cause and the remedy."""
 
 
 FOR_MECHANISMS = {
     "exudyn-loops": "southwell.references.exudyn.mechanism:CODE",
     "pinocchio-loops": "southwell.references.linkages.mechanism:CODE",
 }
-"""Likewise, of those that take mechanisms and no blades."""
+"""Name → ``module:attribute`` of the codes of the package that solve mechanisms but not blades."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of all codes known here, ours first; installed or not."""
+    """Names of all registered codes, installed or not; those of this package first."""
     theirs = sorted(e.name for e in entry_points(group=GROUP) if e.name not in {**OURS, **FOR_MECHANISMS})
     return (*OURS, *FOR_MECHANISMS, *theirs)
 
@@ -70,10 +71,10 @@ def locate(name: str) -> str:
     """Import path ``module:attribute`` of a code.
 
     Args:
-        name: a name from ``names()``, or an import path itself (a code nobody registered).
+        name: a name from ``names()``, or an import path (of a code that is not registered).
 
     Raises:
-        UnknownCodeError: if no such name is known; the nearest is suggested.
+        UnknownCodeError: if the name is unknown; the nearest is suggested.
     """
     if ":" in name:
         return name
@@ -87,9 +88,9 @@ def locate(name: str) -> str:
 
 
 def address(name: str) -> Address:
-    """Where a worker process finds a code: its import path, and the folder that may hold its module.
+    """Where a worker process finds a code: its import path, and a folder that may contain its module.
 
-    That is the current one, searched last, of a code that is asked for by its import path; else none.
+    The folder is the current one, searched last, for a code given by its import path; None otherwise.
 
     Raises:
         UnknownCodeError: as ``locate``.
@@ -98,9 +99,9 @@ def address(name: str) -> Address:
 
 
 def loaded(request: dict[str, Any]) -> Any:
-    """The code at an ``address``, imported now, or why it cannot be, whatever it raises."""
+    """Import the code at an ``address``; a failure if that raises anything."""
     if (folder := request["folder"]) and folder not in sys.path:
-        sys.path.append(folder)  # last, so that no file in it takes the place of an installed module
+        sys.path.append(folder)  # last, so that no file in it shadows an installed module
     try:
         return code(request["code"])
     except UnknownCodeError as error:
@@ -110,11 +111,11 @@ def loaded(request: dict[str, Any]) -> Any:
 
 
 def code(name: str) -> Any:
-    """The code called ``name`` (as for ``locate``), imported now: an ``interface.Code``, a ``MechanismCode``, or both.
+    """Import the code called ``name`` (as for ``locate``): an ``interface.Code``, a ``MechanismCode``, or both.
 
     Raises:
-        UnknownCodeError: if it is not known, or the path leads nowhere or to what is not a code.
-        BaseException: what else its module raises.
+        UnknownCodeError: if the name is unknown, or there is no code at the path.
+        BaseException: anything else that its module raises.
     """
     path = locate(name)
     module, _, attribute = path.partition(":")
@@ -125,8 +126,8 @@ def code(name: str) -> Any:
     except ImportError as error:
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {error}: {ADVICE}") from error
     if not hasattr(holder, attribute):
-        told = f"module {module!r} has no attribute {attribute!r}"
-        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {told}: {ADVICE}")
+        message = f"module {module!r} has no attribute {attribute!r}"
+        raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {message}: {ADVICE}")
     found = getattr(holder, attribute)
     needed = ("name", "effects", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
     missing = [a for a in needed if not hasattr(found, a)]
@@ -144,9 +145,9 @@ CAPS = {
     "frame3dd": 100,
     "scikit-fem-reissner": 96,
 }
-"""Finest refinement that a code can be asked for, where memory or time sets it: Pinocchio keeps dense cubes of all
-freedoms, pyBModes and scikit-fem-reissner dense squares; Drake, MuJoCo, SHARPy and Frame3DD take time that
-grows as the cube."""
+"""Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes and
+scikit-fem-reissner dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
+coordinates)."""
 
 
 class Refinable(Protocol):
@@ -160,5 +161,5 @@ class Refinable(Protocol):
 
 
 def cap(code: Refinable) -> int:
-    """The finest refinement a code is taken to."""
+    """The finest refinement at which a code is run."""
     return CAPS.get(code.name, 8 * code.levels[-1])

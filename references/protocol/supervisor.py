@@ -1,8 +1,9 @@
-"""Runs one module in a process of its own and leaves nothing of it behind. Standard library only: it starts at once.
+"""Run one module in a separate process and leave no process behind. Uses only the standard library, so it starts fast.
 
-``python -P supervisor.py MODULE BYTES`` forks. The child leads a session of its own, has at most BYTES of address space, and
-calls ``MODULE.main()``. The parent is the subreaper of all that the child starts (Linux), double-forked processes included.
-When the child ends, or the other end of standard input is closed, it kills every one of them and ends as the child did.
+``python -P supervisor.py MODULE BYTES`` forks. The child leads a new session, has at most BYTES of address space, and
+calls ``MODULE.main()``. The parent is the subreaper of all processes that the child starts (Linux), including
+double-forked ones. When the child ends, or the other end of standard input is closed, the parent kills all of them and
+ends with the child's status.
 """
 
 import ctypes
@@ -19,9 +20,9 @@ SET_PARENT_DEATH_SIGNAL, SET_CHILD_SUBREAPER = 1, 36
 
 
 def main() -> None:
-    """Fork, wait, kill what is left, and end as the child did."""
+    """Fork, wait, kill the remaining processes, and end with the child's status."""
     module, space = sys.argv[1], int(sys.argv[2])
-    _limit("RLIMIT_CORE", 0)  # a crash leaves no file
+    _limit("RLIMIT_CORE", 0)  # no core file after a crash
     _prctl(SET_CHILD_SUBREAPER, 1)
     ended, bell = os.pipe()
     os.set_blocking(bell, False)
@@ -48,10 +49,10 @@ def _work(module: str, space: int) -> None:
 
 
 def _wait(child: int, ended: int) -> int:
-    """The child's wait status, once it has ended or been killed because nobody listens any more."""
+    """The child's wait status, after it has ended, or was killed because standard input closed."""
     poll = select.poll()
     poll.register(ended, select.POLLIN)
-    poll.register(0, 0)  # hang-up only: what is to be read is the child's
+    poll.register(0, 0)  # hang-up only: the child reads the data
     while True:
         for number, _ in poll.poll():
             if number == ended:
@@ -71,7 +72,7 @@ def _kill(child: int) -> None:
 
 
 def _sweep(child: int) -> None:
-    """Kill what the child has left running; who loses a parent becomes a child of this process."""
+    """Kill the processes that the child left running; orphans become children of this process."""
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(child, signal.SIGKILL)
     while True:
@@ -87,7 +88,7 @@ def _sweep(child: int) -> None:
 
 
 def _children() -> list[int]:
-    """Children of this process; none where the kernel does not tell."""
+    """Children of this process; empty if the kernel does not list them."""
     try:
         with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as file:
             return [int(pid) for pid in file.read().split()]

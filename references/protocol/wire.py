@@ -1,7 +1,7 @@
-"""Blades and modes as JSON, the one thing that crosses the border between processes.
+"""Encode blades and modes as JSON for exchange between processes.
 
-Every float survives the trip bit for bit (shortest round-trip representation); ``Infinity`` stands for a rigid strain.
-A complex array ends in an axis of length two, real and imaginary part.
+Floats are preserved exactly (shortest round-trip representation); ``Infinity`` stands for a rigid strain. A complex
+array has a last axis of length two, real and imaginary part.
 """
 
 from dataclasses import fields
@@ -15,24 +15,24 @@ from .mechanism_interface import MechanismModes
 
 
 def encode(value: Blade | Modes | MechanismModes) -> dict[str, Any]:
-    """A dictionary of plain lists, numbers and strings, ready for ``json.dumps``."""
+    """Encode as a dictionary of lists, numbers and strings, for ``json.dumps``."""
     return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
 
 
 def decode_blade(data: dict[str, Any]) -> Blade:
-    """The blade that ``encode`` was given.
+    """Decode a blade; the inverse of ``encode``.
 
     Raises:
-        BladeError: if it is not a possible blade.
+        BladeError: if the blade is invalid.
     """
     return Blade(**data)
 
 
 def decode_modes(data: dict[str, Any]) -> Modes:
-    """The modes that ``encode`` was given.
+    """Decode a blade's modes; the inverse of ``encode``.
 
     Raises:
-        ValueError: if frequencies or shapes are not finite or do not fit each other.
+        ValueError: if frequencies or shapes are not finite, or their sizes differ.
     """
     pairs = np.array(data["shapes"], dtype=float).reshape(len(data["frequencies"]), len(STATIONS), 4, 2)
     arrays = {name: np.array(data[name], dtype=float) for name in ("frequencies", "damping", "uncertainty", "rounding")}

@@ -1,11 +1,13 @@
-"""Foreign codes that take blades, each in a process of its own: ``process`` for the limits, ``boundary`` for what comes back.
+"""Run codes that solve blades in separate processes. ``process`` enforces the limits, ``boundary`` validates the
+answers.
 
 The process reads one request ::
 
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
 
-imports the code, asks for its version and whether it takes the blade, and writes one line for each run as soon as it is solved:
-``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. A crash or a limit loses only what was not finished.
+imports the code, checks its version and ``unsupported``, and writes one line per run as soon as it is solved:
+``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished runs are
+kept.
 """
 
 import json
@@ -30,16 +32,16 @@ Answer = Modes | Failure
 
 
 def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> list[Answer]:
-    """What a code answers to each of ``runs``, in their order.
+    """A code's modes for each run, or a failure, in the order of ``runs``.
 
     Args:
         name: of the code, or its import path (see ``registry.locate``).
         blade: the blade to solve.
-        runs: what to solve, in this order; put first what matters most.
-        limits: of each run.
+        runs: solved in this order; put the most important first.
+        limits: for each run.
 
     Raises:
-        UnknownCodeError: if there is no such code.
+        UnknownCodeError: if the name is unknown.
     """
     request = {**registry.address(name), "blade": encode(blade), "runs": [list(run) for run in runs]}
 
@@ -53,7 +55,8 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> lis
 def exchange(
     module: str, request: bytes, count: int, limits: Limits, made: Callable[[int, Any], T]
 ) -> list[T | Failure]:
-    """The answers to ``count`` questions, each validated by ``made(number, data)``; a failure for each that has none."""
+    """Send a request; return ``count`` answers, each validated by ``made(number, data)``, or failures in their
+    place."""
     lines, ended = converse(module, request, count, limits)
     out: list[T | Failure] = []
     for number, line in enumerate(lines):
@@ -64,17 +67,17 @@ def exchange(
             break
         try:
             out.append(boundary.failure(data) or made(number, data.get("modes")))
-        except (ValueError, TypeError) as error:  # of the schema, or of the class that is made of it
+        except (ValueError, TypeError) as error:  # from the schema, or from the class it creates
             out.append(Failure("nonsense", one_line(error)))
     return out + [ended] * (count - len(out))
 
 
 def declined(code: Any, asked: str, question: object) -> Reply | None:
-    """Why a code does not get as far as solving, if it does not: not installed, not supported, or what it raised.
+    """A reply if the code is not installed, declines the problem, or raises an exception; None otherwise.
 
     Args:
-        code: any.
-        asked: its method that says whether it takes the question: ``unsupported``.
+        code: any code.
+        asked: name of its method that returns the reason for declining, e.g. ``unsupported``.
         question: a blade or a mechanism.
     """
     try:
@@ -100,7 +103,7 @@ def _solve(code: Code, blade: Blade, run: Run) -> Reply:
         return {"modes": encode(modes)}
     except CodeError as error:
         return failed("refused", one_line(error))
-    except BaseException as error:  # whatever a foreign code raises is its answer to this run, and no other's
+    except BaseException as error:  # whatever the code raises affects this run only
         return blunder(error)
 
 
