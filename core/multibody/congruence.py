@@ -1,8 +1,8 @@
-"""M* = Bᵀ M B and its like without B: sums over the tree instead of products with a matrix that repeats its columns.
+"""M* = Bᵀ M B and similar products without forming B: sums over the tree instead of products with repeated columns.
 
-All rows of B that a coordinate moves hold its screw, hence ``(Bᵀ X B)_ij = J_iᵀ (Σ X_rs) J_j`` over the rows r that i moves
-and the rows s that j moves. The sums of 6×6 blocks pass from the outermost bodies inwards, as in the composite rigid body
-algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, sec. 6.2), which this is for X = M of bodies alone.
+All rows of B that a coordinate moves contain its screw, hence ``(Bᵀ X B)_ij = J_iᵀ (Σ X_rs) J_j`` over the rows r that i
+moves and the rows s that j moves. The sums of 6×6 blocks are accumulated from the outermost bodies inwards. For X = M of
+bodies alone this is the composite rigid body algorithm (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, sec. 6.2).
 """
 
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ def congruent(k: Kinematics, row: Index, column: Index, blocks: Array) -> tuple[
 
 
 def stretched(k: Kinematics, ends: Index, stiffness: Array) -> Iterator[tuple[Index, Array]]:
-    """Of each spring between two bodies (s, 2), −1 the ground: the c coordinates it feels, and its stiffness (c, c) on them.
+    """For each spring between two bodies (s, 2), −1 the ground: the c coordinates that strain it, and its (c, c) on them.
 
     ``B_b − B_a`` has columns only of coordinates that move one end and not the other.
     """
@@ -66,7 +66,7 @@ def _composite(before: Index, row: Index, column: Index, blocks: Array) -> Array
 
 
 def _screws(k: Kinematics, J: Array) -> Array:
-    """(g, 6, k) of each group, zero where it has fewer coordinates than the largest."""
+    """Screws (g, 6, k) of each group, padded with zeros."""
     members = k.tree.groups.members
     return np.append(J, np.zeros((6, 1)), axis=1)[:, members].transpose(1, 0, 2)
 

@@ -27,11 +27,11 @@ Array = NDArray[np.float64]
 class Cartesian:
     """Total wrench g (b + m, 6) and its linearisation M, C, K by blocks; rows as those of B, beams' internal forces last.
 
-    ``blocks`` (p, 3, 6, 6) are parts of M, C, K on rows ``row`` and columns ``column`` (p,); those of one place add up.
+    ``blocks`` (p, 3, 6, 6) are parts of M, C, K on rows ``row`` and columns ``column`` (p,); those at the same place add up.
 
-    ``size`` (b + m, 6) adds up the parts of g by their absolute values: what its rounding is in proportion to.
-    ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground: kept out of K, for
-    ``B_b − B_a`` is exact where the difference of their products would cancel.
+    ``size`` (b + m, 6) is the sum of the absolute values of the parts of g; its rounding is proportional to it.
+    ``stiffness`` (s, 6, 6) acts on ρ = ξ_b − ξ_a between two bodies ``ends`` (s, 2), −1 the ground. It is not part of K:
+    ``B_b − B_a`` is exact, while the difference of their products would cancel.
     """
 
     g: Array
@@ -69,7 +69,7 @@ class _Sum:
         self.springs: list[tuple[NDArray[np.intp], Array]] = []
 
     def add(self, ends: NDArray[np.intp], pencil: Pencil) -> None:
-        """e elements' wrenches (e, d) and matrices (e, d, d) on d/6 rows ``ends`` each; the ground takes what acts on it."""
+        """Add wrenches (e, d) and matrices (e, d, d) of e elements on d/6 rows ``ends`` each, without those on the ground."""
         self.springs.append((ends[:, :2], pencil.spring))
         for i in range(ends.shape[1]):
             acts = ends[:, i] >= 0
@@ -100,7 +100,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Args:
         tree: the mechanism.
         k: its kinematics.
-        multipliers: (w, 6) wrench each weld needs on the body, reversed on the copy; none: zero.
+        multipliers: (w, 6) wrench of each weld on the body, reversed on the copy; zero by default.
 
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
@@ -125,7 +125,7 @@ def inertias(tree: Tree, k: Kinematics) -> Array:
 
 
 def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
-    """g = M (A − a_g) + Y ×* M Y; along with the body δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇ − M a_g × ξ."""
+    """g = M (A − a_g) + Y ×* M Y; following the body, δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇ − M a_g × ξ."""
     M = inertias(tree, k)
     fall = np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     turn = sp.ad(k.Y)
@@ -151,7 +151,7 @@ def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Arr
 
 def _between(w: Array, k: Array, c: Array) -> Pencil:
     """w on b and −w on a, both at one point in one set of axes: with ρ = ξ_b − ξ_a, δw = k ρ + c ρ̇ + ξ_a ×* w."""
-    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # taken along with b: −ρ ×* w
+    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # follows b: −ρ ×* w
     damping = on_ends(c[None], c[None])
     return Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
 
@@ -163,7 +163,7 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
     d = pb - pa
     length = float(np.linalg.norm(d))
     if length == 0.0:
-        raise MechanismError(f"spring {s.body_a!r}–{s.body_b!r}: its ends coincide: it has no direction; move one")
+        raise MechanismError(f"spring {s.body_a!r}–{s.body_b!r}: its ends coincide, so it has no direction; move one")
     n = d / length
     velocity = np.hstack([np.eye(3), -sp.skew(pb)])  # of the point at p_b, from a twist at the origin
     line = np.concatenate([n, np.cross(pb, n)])  # wrench of a unit force along the spring
@@ -221,17 +221,16 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
         C = C.copy()
         C[:, :12, :12] += on_ends(d, d)
     # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
-    turn, own = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
+    turn, local = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
     turn[:, :6, :6] = turn[:, 6:12, 6:12] = sp.ad(frame)
-    own[:, :6, :6] = own[:, 6:12, 6:12] = to_a
+    local[:, :6, :6] = local[:, 6:12, 6:12] = to_a
     K = K - C @ turn + M @ turn @ turn
     C = C - 2.0 * M @ turn
-    back = np.swapaxes(own, -1, -2)
+    back = np.swapaxes(local, -1, -2)
     ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
     spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
-    out.add(
-        ends, Pencil((back @ p.residual[..., None])[..., 0], back @ M @ own, back @ C @ own, back @ K @ own, spring)
-    )
+    residual = (back @ p.residual[..., None])[..., 0]
+    out.add(ends, Pencil(residual, back @ M @ local, back @ C @ local, back @ K @ local, spring))
 
 
 def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> None:
@@ -240,13 +239,13 @@ def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> 
     if bad.any():
         beam = tree.mechanism.beams[batch.index[int(bad.argmax())]]
         raise MechanismError(
-            f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, so its ends must turn together and steadily; lump its mass, "
+            f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, but its ends do not move together steadily; lump its mass, "
             "or fix the motion between its ends"
         )
 
 
 def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
-    """Equal and opposite reactions w (6,) of a weld that follow the bodies; their variation is that of the multipliers."""
+    """Equal and opposite reactions w (6,) of a weld, which follow the bodies; only the multipliers vary."""
     out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
 
 
@@ -270,7 +269,7 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     """Analytic M*, C*, K* (n, n) of τ with respect to accelerations, velocities and coordinates.
 
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + G with G_kj = −(J_j × J_k)ᵀ f_j for j beyond k, f_j the
-    total wrench on all that coordinate j carries: the turning of the screws against the forces they pass on.
+    total wrench on all bodies that coordinate j carries: the rotation of the screws relative to the forces they transmit.
     """
     M, C, K = congruent(k, c.row, c.column, c.blocks)
     carried = tree.carries.T.astype(float) @ c.g[: len(tree.bodies)]  # f_j

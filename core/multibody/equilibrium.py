@@ -19,24 +19,24 @@ Array = NDArray[Any]
 Index = NDArray[np.intp]
 
 BALANCE_TOLERANCE = 1e-11
-"""A residual below this fraction of the forces it is the sum of is rounding; each coordinate has its own."""
+"""Rounding of a residual, as a fraction of the forces of which it is the sum; checked for each coordinate."""
 
 STIFFNESS_ROUNDING = 1e-13
-"""A stiffness below this fraction of the forces and stiffnesses it is the sum of is rounding."""
+"""Rounding of a stiffness, as a fraction of the forces and stiffnesses of which it is the sum."""
 
 _MAX_STEPS = 60
-_FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # of the path
-_MIN_FRACTION = 1e-3  # of a step
-_SMALL_CORRECTION = 0.05  # rad, or of the length: corrections so small need not contract at once
+_FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # fractions of the continuation path
+_MIN_FRACTION = 1e-3  # smallest fraction of a Newton step
+_SMALL_CORRECTION = 0.05  # rad, or fraction of the length: smaller corrections need not contract at once
 
 
 def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
-    """The steady state: prescribed coordinates in their motion, all others still or at the rates the loops give them.
+    """Find the steady state: coordinates with a motion follow it, all others are at rest or at the rates the loops impose.
 
-    Newton's method from the guess serves while its corrections contract (P. Deuflhard, *Newton Methods for Nonlinear
-    Problems*, 2004, sec. 2.1.1). Otherwise the state is followed from rest, where dead forces hold the mechanism at the guess:
-    rates and loads grow while the dead forces fade. Where a mechanism has no equilibrium at rest, as a pendulum whose weight
-    comes with the loads, only the dead forces fade. Newton's method with shortened steps is the last resort.
+    Newton's method from the guess is used as long as its corrections contract (P. Deuflhard, *Newton Methods for Nonlinear
+    Problems*, 2004, sec. 2.1.1). Otherwise continuation starts at rest, with dead forces that balance the mechanism at the
+    guess: rates and loads grow while the dead forces fade. If a mechanism has no equilibrium at rest, as a pendulum whose
+    weight grows with the loads, only the dead forces fade. Newton's method with shortened steps is the last resort.
 
     Raises:
         MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
@@ -46,7 +46,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     contradiction, found = None, None
     try:
         found = _newton(tree, q)
-    except ContradictionError as error:  # where the guess has been assembled, perhaps not where the mechanism settles
+    except ContradictionError as error:  # at the assembled guess, but perhaps not at the steady state
         contradiction = error
     for way, grow in zip(reached, (True, False), strict=True):
         if found is None:
@@ -56,10 +56,10 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     if found is None:
         found = _newton(tree, q, damped=True)
     if found is None:
-        told = ", ".join(f"{100 * part:.3g} % {way}" for way, part in reached.items())
+        progress = ", ".join(f"{100 * part:.3g} % {way}" for way, part in reached.items())
         raise MechanismError(
-            f"no steady state was found near the guess: Newton's method does not converge from it, continuation got {told}: "
-            "give a better guess, or check for a missing spring or joint"
+            "no steady state was found near the guess: Newton's method does not converge from it, continuation reached "
+            f"{progress}: give a better guess, or check for a missing spring or joint"
         )
     check_rates(tree, found.state)
     _check_balance(tree, found)
@@ -67,14 +67,14 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 
 
 def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:
-    """Bases (i, d) of the motions of the independent coordinates that K̂ does not resist, and of where it gives no force."""
+    """Bases (i, d) of the null space of K̂, over the independent coordinates, and of its left null space."""
     tangent = _tangent(tree, _residual(tree, state.q, independent=independent))
     root = np.sqrt(tangent.scale)[:, None]
     return tangent.K.null / root, tangent.K.left_null * root
 
 
 def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...]) -> tuple[State, Array, Array]:
-    """The state at coordinates q, its loops closed by those that ``follow``; the forces (i,) it is unbalanced by, their size.
+    """The state at q (n,), with loops closed by coordinates ``follow``; its unbalanced forces and their size, each (i,).
 
     Raises:
         MechanismError: if the loops do not close.
@@ -87,7 +87,7 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
 
 
 def again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:
-    """The steady state found again, by one Newton step from a point a rounding error away: how certain it is.
+    """The steady state computed again, by one Newton step from a point a rounding error away, to show its accuracy.
 
     Raises:
         MechanismError: as ``steady``.
@@ -108,12 +108,12 @@ def again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:
 
 @dataclass(frozen=True)
 class _Residual:
-    """The forces left at a configuration whose loops are closed.
+    """The unbalanced forces at a configuration with closed loops.
 
     Attributes:
-        state: of motion there.
-        part: the free coordinates over the independent ones.
-        forces: (f,) generalised forces on the free coordinates, the loops' reactions in them.
+        state: the state of motion.
+        part: partition of the free coordinates.
+        forces: (f,) generalised forces on the free coordinates, including those that loop reactions balance.
         reduced: (i,) along the independent coordinates, where reactions do no work.
     """
 
@@ -125,12 +125,12 @@ class _Residual:
 
 @dataclass(frozen=True)
 class _Tangent:
-    """The residual's derivative there, in each coordinate's own units.
+    """The derivative of the residual, with coordinates scaled by their stiffness.
 
     Attributes:
         K: scaled (i, i) derivative, decomposed.
-        scale: (i,) stiffness of each independent coordinate: its own, or its forces' over its unit.
-        rounding: (i,) size of the forces whose sum the residual is.
+        scale: (i,) stiffness of each independent coordinate, or a fraction of its forces per unit if that is larger.
+        rounding: (i,) size of the forces of which the residual is the sum.
         units: (f,) 1 rad, or the mechanism's length.
     """
 
@@ -140,18 +140,18 @@ class _Tangent:
     units: Array
 
     def step(self, here: _Residual) -> Array:
-        """Newton's step (f,) of the free coordinates; least along what nothing resists."""
+        """Newton's step (f,) of the free coordinates; of least norm along motions without stiffness."""
         root = np.sqrt(self.scale)
         return -here.part.spread(self.K.solve(here.reduced / root) / root)
 
     def balanced(self, here: _Residual) -> bool:
-        """Whether each independent coordinate is balanced but for rounding."""
+        """Whether each independent coordinate is balanced, apart from rounding."""
         return bool((np.abs(here.reduced) <= BALANCE_TOLERANCE * self.rounding).all())
 
 
 @dataclass(frozen=True)
 class _Found:
-    """Where Newton's method ended."""
+    """The result of Newton's method."""
 
     state: State
     residual: _Residual
@@ -171,7 +171,7 @@ def _residual(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tupl
 
 
 def _tangent(tree: Tree, here: _Residual) -> _Tangent:
-    """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): where loops move, what they make of rates and accelerations moves with q."""
+    """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): in moving loops, rates and accelerations change with q."""
     state, part, k = here.state, here.part, here.state.kinematics
     pick, R = np.ix_(part.free, part.free), part.R
     K = state.tangent[2][pick]
@@ -189,8 +189,8 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
     units = np.where(turns, 1.0, size_of(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
     sizes = replace(part, R=np.abs(R))
-    rounding, own = sizes.onto(size), units[np.isin(part.free, part.independent)]
-    least = (sizes.onto(_carried(state)[part.free]) + rounding) / own
+    rounding, unit = sizes.onto(size), units[np.isin(part.free, part.independent)]
+    least = (sizes.onto(_carried(state)[part.free]) + rounding) / unit
     reduced = part.onto(by_independent)
     scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
@@ -198,7 +198,7 @@ def _tangent(tree: Tree, here: _Residual) -> _Tangent:
 
 
 def _sizes(tree: Tree, state: State) -> Array:
-    """(n,) forces on each coordinate, added up by size."""
+    """(n,) sum of the absolute values of the forces on each coordinate."""
     k = state.kinematics
     out = projected(k, state.cartesian.size, np.abs(k.J))
     for s in tree.mechanism.coordinate_springs:
@@ -208,7 +208,7 @@ def _sizes(tree: Tree, state: State) -> Array:
 
 
 def _carried(state: State) -> Array:
-    """(n,) what the stiffnesses a coordinate carries would give on it at a strain of one: their rounding is in all it feels."""
+    """(n,) forces on a coordinate from a unit strain of all stiffnesses that it carries: they bound its rounding."""
     k, c = state.kinematics, state.cartesian
     units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(c.g))
     wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
@@ -219,9 +219,9 @@ def _carried(state: State) -> Array:
 def _newton(
     tree: Tree, q: Array, dead: Array | float = 0.0, far: float = np.inf, damped: bool = False
 ) -> _Found | None:
-    """Newton's method while each correction is at most half the one before; None beyond that, or ``far`` from the start.
+    """Newton's method as long as each correction is at most half the previous one; else, or ``far`` from the start, None.
 
-    ``damped``: steps that do not contract are shortened until they do, however little (Deuflhard 2004, sec. 3.3).
+    ``damped``: steps that do not contract are shortened until they do (Deuflhard 2004, sec. 3.3).
     """
     free = partition.free_coordinates(tree)
     start, here = q, _residual(tree, q, dead)
@@ -236,9 +236,9 @@ def _newton(
         part = min(1.0, 0.5 / max(length, 0.5)) if damped else 1.0
         while True:
             following, contraction = _tried(tree, q, part * step, dead, names, tangent, length)
-            if done and contraction > 0.5:  # rounding is all that is left
+            if done and contraction > 0.5:  # only rounding is left
                 return _Found(here.state, here, tangent)
-            near = max(length, length * contraction) < _SMALL_CORRECTION  # of the guess: a first correction may grow
+            near = max(length, length * contraction) < _SMALL_CORRECTION  # near the guess: a first correction may grow
             if contraction <= (1.0 - 0.25 * part if damped else 0.5) or near or length < 1e-9:
                 break
             part *= 0.5
@@ -253,7 +253,7 @@ def _newton(
 def _tried(
     tree: Tree, q: Array, step: Array, dead: Array | float, names: tuple[str, ...], tangent: _Tangent, length: float
 ) -> tuple[_Residual | None, float]:
-    """The residual after a step, and the length of the correction it asks for over that of Newton's step before."""
+    """The residual after a step, and the length of its correction divided by that of the previous Newton step."""
     free = partition.free_coordinates(tree)
     there = q.copy()
     there[free] += step
@@ -272,9 +272,9 @@ def _norm(step: Array, tangent: _Tangent) -> float:
 
 
 def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
-    """Follow the balance from the guess, where dead forces hold it, to where they are gone; with how far that got.
+    """Follow the equilibrium from the guess, which dead forces balance, until they vanish; the fraction reached, the result.
 
-    ``grow``: rates and loads grow from nothing meanwhile.
+    ``grow``: meanwhile rates, accelerations and gravity grow from zero.
     """
     free = partition.free_coordinates(tree)
 
@@ -308,7 +308,7 @@ def _follow(tree: Tree, q: Array, grow: bool) -> tuple[float, _Found | None]:
 
 
 def _loaded(tree: Tree, part: float) -> Tree:
-    """The tree with this part of its loads: accelerations and gravity as they are, rates by the root, for forces' sake."""
+    """The tree with accelerations and gravity times ``part``, and rates times its root: inertial forces scale with ``part``."""
     m = tree.mechanism
     motions = tuple(replace(x, rate=x.rate * np.sqrt(part), acceleration=x.acceleration * part) for x in m.motions)
     gravity = (m.gravity[0] * part, m.gravity[1] * part, m.gravity[2] * part)
@@ -322,6 +322,6 @@ def _check_balance(tree: Tree, found: _Found) -> None:
         worst = int(np.argmax(np.abs(here.reduced) / np.maximum(tangent.rounding, 1e-300)))
         raise MechanismError(
             f"coordinate {tree.coordinates[here.part.independent[worst]]!r}: no steady state: "
-            f"{here.reduced[worst]:.3g} N or N m "
-            "remain unbalanced and nothing resists them; hold its motion, or add a spring"
+            f"{here.reduced[worst]:.3g} N or N m remain unbalanced and no stiffness resists them; prescribe its motion, or add "
+            "a spring"
         )

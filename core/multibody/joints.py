@@ -1,7 +1,7 @@
 """Joints as sequences of screws: each coordinate moves the child along one unit twist fixed in the joint's frame.
 
 A joint places its child at ``X_child = X_parent · at_parent · Π exp(S_k q_k) · at_child⁻¹``. Every kind is a list of screws
-S_k about the joint's own axes, so one rule covers them all; rotations of a joint with three follow Cardan angles x, y, z.
+S_k along the joint's axes, so one rule covers all kinds; three rotations are the Cardan angles x, y, z.
 """
 
 from collections.abc import Mapping
@@ -41,11 +41,11 @@ class Joint:
 
     Attributes:
         name: unique; coordinates are named ``name.rz`` and so on.
-        kind: see ``SCREWS``; ``elastic`` is ``free`` under the name it has in a blade: a beam or bushing spans it.
+        kind: see ``SCREWS``; ``elastic`` has the coordinates of ``free`` and is spanned by a beam or bushing.
         parent, child: names of bodies; ``ground`` is the inertial frame.
         at_parent, at_child: (4, 4) pose of the joint's frame in either body. Its z axis is the axis of a revolute,
             prismatic or cylindrical joint and the normal of a planar one; a universal joint turns about x, then y.
-        cut: close a loop here, rather than where the spanning tree happens to.
+        cut: cut the loop at this joint; by default the spanning tree chooses.
     """
 
     name: str
@@ -58,12 +58,12 @@ class Joint:
 
 
 def coordinate_names(joint: Joint) -> list[str]:
-    """Names of the joint's coordinates, in the joint's own order."""
+    """Names of the joint's coordinates, in the order of ``SCREWS``."""
     return [f"{joint.name}.{name}" for name, _ in SCREWS[joint.kind]]
 
 
 def at(x: float = 0.0, y: float = 0.0, z: float = 0.0, *, axis: str | Array = "z") -> Array:
-    """A joint's frame (4, 4) at a point, its z axis along ``axis``: ``x``, ``y``, ``z``, ``-x`` … or a vector (3,).
+    """A joint's frame (4, 4) at a point (m), its z axis along ``axis``: ``x``, ``y``, ``z``, ``-x`` … or a vector (3,).
 
     Raises:
         ValueError: for an axis without direction or of an unknown name.
@@ -72,7 +72,7 @@ def at(x: float = 0.0, y: float = 0.0, z: float = 0.0, *, axis: str | Array = "z
     if isinstance(axis, str):
         if axis.lstrip("-") not in named:
             raise ValueError(
-                f"axis: {axis!r}: name x, y or z (with a minus sign if reversed), or give a vector of three"
+                f"axis: {axis!r}: give x, y or z (with a minus sign if reversed), or a vector of three components"
             )
         vector = np.eye(3)[named[axis.lstrip("-")]] * (-1.0 if axis.startswith("-") else 1.0)
     else:

@@ -1,9 +1,9 @@
 """The velocity transformation Y = B v of a tree and its rates (Park et al. 2010, eq. 3, 4), in the ground's axes.
 
-With twists taken at the ground's origin, passing down the tree needs no transformation: ``Y_child = Y_parent + J v``, J the
-joint's screw brought to the ground, so a body's rows of B are the J of the coordinates that carry it. A screw moves with
-the link it hangs on, hence ``J̇ = Y × J`` and ``J̈ = Ẏ × J + Y × J̇``, Y the twist of that link. B is kept as these screws and
-the tree that repeats them, and written out only where loops need it.
+With all twists at the ground's origin, no transformation is needed along the tree: ``Y_child = Y_parent + J v``, J the
+joint's screw in the ground's frame, so a body's rows of B are the J of the coordinates that carry it. A screw moves with its
+parent link, hence ``J̇ = Y × J`` and ``J̈ = Ẏ × J + Y × J̇``, Y the twist of that link. B is stored as these screws and the
+tree; the dense matrix is formed only where loops need it.
 """
 
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class Kinematics:
 
     @cached_property
     def B(self) -> Array:
-        """(b + m, 6, n) velocity transformation; the last m rows pick the internal coordinates of beams that have them."""
+        """(b + m, 6, n) velocity transformation; the last m rows select the internal coordinates of beams that have them."""
         m = len(self.tree.inner)
         pick = np.zeros((m, 6, len(self.q)))
         for k in range(6):
@@ -67,7 +67,7 @@ class Kinematics:
 
 def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
     """Poses (b, 4, 4) of the bodies and screws J (6, n) at coordinates q (n,)."""
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # turns, which the exponential's series need not follow
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # full turns, removed before the exponential's series
     amount = np.where(tree.screw[:, 3:].any(1), q - whole, q)
     steps = tree.fixed @ sp.exp(tree.screw * amount[:, None])
     groups = tree.groups
@@ -80,13 +80,13 @@ def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
         base[j] = base[before] @ series[j, -1]
     series = base[groups.before][:, None] @ series
     links = np.append(series.reshape(-1, 4, 4)[groups.place], np.eye(4)[None], axis=0)
-    # a screw is the same seen from either side of its own motion
+    # a screw is invariant under its own motion
     J = (sp.adjoint(links[:-1]) @ tree.screw[..., None])[..., 0].T
     return links[tree.link] @ tree.on_link, J
 
 
 def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
-    """Everything that follows from coordinates, velocities and accelerations, each (n,)."""
+    """Poses, screws and twists at coordinates, velocities and accelerations, each (n,)."""
     x, J = poses(tree, q)
     Y = tree.beyond @ (J * v).T  # of the links that the screws move with
     J1 = _cross(Y, J)
@@ -99,7 +99,7 @@ def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
 
 
 def projected(k: Kinematics, wrenches: Array, J: Array | None = None) -> Array:
-    """Bᵀ w (n,) of wrenches w (b + m, 6); with ``J`` (6, n) in place of the screws."""
+    """Bᵀ w (n,) for wrenches w (b + m, 6); ``J`` (6, n) replaces the screws if given."""
     b = len(k.poses)
     out = np.einsum("in,ni->n", k.J if J is None else J, k.tree.carries.T.astype(float) @ wrenches[:b])
     if len(k.tree.inner):

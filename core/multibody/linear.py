@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Linearization:
-    """M̂, Ĉ, K̂ (i, i) over the independent coordinates, and the state they hold about."""
+    """M̂, Ĉ, K̂ (i, i) over the independent coordinates, with the state and the partition they belong to."""
 
     tree: Tree
     state: State
@@ -29,12 +29,12 @@ class Linearization:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The independent coordinates."""
+        """Names of the independent coordinates."""
         return tuple(self.tree.coordinates[j] for j in self.partition.independent)
 
 
 def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linearization:
-    """Linearise about a given state."""
+    """Linearise about a given state; ``independent``: names to use as q_I, chosen numerically if not given."""
     M, C, K = state.tangent
     p = partition(tree, state.kinematics, independent)
     pick = np.ix_(p.free, p.free)

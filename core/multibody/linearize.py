@@ -1,4 +1,4 @@
-"""Linearise a mechanism about its steady state, and its modes there."""
+"""Linearisation of a mechanism about its steady state, and its modes."""
 
 from collections.abc import Mapping
 
@@ -24,16 +24,16 @@ def linearize(
 ) -> Linearization:
     """Find the steady state and linearise about it.
 
-    Where a motion follows a law of time, this is a frozen-time linearisation: the coordinates that are free are balanced,
-    and vibrate, as if positions, rates and accelerations stayed what they are at ``time``. Its modes mean something where
-    the motion changes little within their periods; stability of a periodic motion needs Floquet's theory instead. Motions
-    given by numbers claim a steady state: it is refused if M̂, Ĉ, K̂ or the balance change as they go on (``periodic``).
+    If a motion follows a law of time, this is a frozen-time linearisation: the free coordinates are in equilibrium, and
+    vibrate, as if positions, rates and accelerations were constant at their values at ``time``. Its modes are meaningful if
+    the motion changes little within their periods; stability of a periodic motion requires Floquet theory. Motions given by
+    numbers must give a steady state: the mechanism is refused if M̂, Ĉ, K̂ or the balance change along them (``periodic``).
 
     Args:
         mechanism: the mechanism.
         guess: coordinates to start from, by name.
         independent: coordinates to use as q_I; chosen numerically if not given.
-        time: s, the instant looked at; it matters where motions follow laws.
+        time: instant of the linearisation, s; used if motions follow laws.
 
     Raises:
         MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is not steady.
@@ -48,7 +48,7 @@ def linearize(
 
 
 def _check_regular(tree: Tree, state: State) -> None:
-    """Check that the number of freedoms is the same in a nearby assembled configuration."""
+    """Check that the number of degrees of freedom is the same in a nearby assembled configuration."""
     if not tree.welds:
         return
     here = partition(tree, state.kinematics)
@@ -56,11 +56,11 @@ def _check_regular(tree: Tree, state: State) -> None:
     q = state.q.copy()
     q[here.free] += 1e-3 * nudge / max(float(np.abs(nudge).max(initial=0.0)), 1e-300)
     near = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
-    beside = freedom(tree, kinematics(tree, near, state.v, state.a).B)
-    if beside < len(here.independent):
+    nearby = freedom(tree, kinematics(tree, near, state.v, state.a).B)
+    if nearby < len(here.independent):
         raise MechanismError(
-            f"joints {', '.join(tree.weld_names)}: singular configuration: {len(here.independent)} freedoms here but {beside} "
-            "beside it, so no linear model holds; start the assembly from another guess"
+            f"joints {', '.join(tree.weld_names)}: singular configuration: {len(here.independent)} degrees of freedom here but "
+            f"{nearby} nearby, so no linear model is valid; start the assembly from another guess"
         )
 
 
@@ -68,7 +68,7 @@ def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eige
     """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
 
     Raises:
-        MechanismError: a coordinate that moves nothing and that nothing holds.
+        MechanismError: a coordinate without mass, damping and stiffness.
         EigenError: if the eigenvalue solver fails.
     """
     M, C, K = 0.5 * (linear.M + linear.M.T), linear.C, linear.K
@@ -77,8 +77,8 @@ def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eige
     idle = ~(M.any(axis=1) | C.any(axis=1) | linear.K.any(axis=1))
     if idle.any():
         raise MechanismError(
-            f"coordinate {linear.names[int(idle.argmax())]!r}: nothing that it moves has mass, and no spring or damper holds "
-            "it: give its body mass, or prescribe its motion"
+            f"coordinate {linear.names[int(idle.argmax())]!r}: it moves no mass, and no spring or damper acts on it: give its "
+            "body mass, or prescribe its motion"
         )
     rigid = unresisted(linear.tree, linear.state, linear.names)
     if not _conservative(linear):
@@ -88,7 +88,7 @@ def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eige
         try:
             return eigen.gyroscopic(M, C, K, count)
         except eigen.UnstableError:
-            pass  # stable by gyroscopic forces alone, or unstable: the general solver tells
+            pass  # stable by gyroscopic forces alone, or unstable: the general solver decides
     return eigen.damped(M, C, K, count, rigid)
 
 

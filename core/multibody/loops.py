@@ -36,14 +36,14 @@ def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
     worst = int(np.argmax(np.abs(gap))) if len(gap) else 0
     if len(gap) and abs(gap[worst]) > 1e-9 * length:
         raise MechanismError(
-            f"joint {tree.weld_names[worst // 6]!r}: it does not close its loop (gap {abs(gap[worst]):.3g}); the dimensions "
-            "do not fit, or the guess is too far off: give a better one"
+            f"joint {tree.weld_names[worst // 6]!r}: its loop does not close (gap {abs(gap[worst]):.3g}): wrong dimensions, or "
+            "a poor guess? correct either"
         )
     return q
 
 
 def closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
-    """Close the loops from coordinates q (n,), changing only the ``free`` ones; with the gap (6w,) left, and the length, m.
+    """Close the loops from coordinates q (n,), changing only the ``free`` ones; also the remaining gap (6w,) and length, m.
 
     Levenberg–Marquardt steps damped by the squared gap: robust near singular configurations, and quadratic at the end.
     """

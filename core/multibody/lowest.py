@@ -1,9 +1,9 @@
 """The lowest gyroscopic modes of dense matrices: block Lanczos on the inverse problem of ``eigen``, then a count.
 
-A⁻¹S is skew in the A product, A = diag(K, M). With K = L Lᵀ and u = Lᵀ x, of which that product is the plain one, a step takes
-four products. Blocks of two vectors find the double frequencies of symmetric blades. No mode
-is missing: H(ω) = K + iωC − ω²M has as many negative eigenvalues as there are frequencies below ω (Sylvester's law of inertia).
-Where the count differs or the basis grows long, the dense solver of ``eigen`` answers.
+A⁻¹S is skew in the A product, A = diag(K, M). With K = L Lᵀ and u = Lᵀ x, for which that product is Euclidean, a step takes
+four matrix products. Blocks of two vectors find the double frequencies of symmetric blades. A count proves that no mode is
+missing: H(ω) = K + iωC − ω²M has as many negative eigenvalues as there are frequencies below ω (Sylvester's law of inertia).
+If the count differs or the basis becomes long, the dense solver of ``eigen`` is used.
 """
 
 from dataclasses import dataclass
@@ -22,11 +22,11 @@ Complex = NDArray[np.complex128]
 
 _LAPACK: Any = lapack
 
-_EXTRA = 4  # modes beyond those wanted, to find a gap in
-_FIRST_LOOK, _LOOK_EVERY = 26, 8  # vectors beyond three a mode, when to look whether the modes are there
-_LONGEST = 0.25  # of all vectors: beyond, the dense solver takes no longer
-_VECTOR_TOLERANCE = 1e-8  # of the vectors, relative; frequencies have its square
-_NEIGHBOUR_TOLERANCE = 1e-3  # of those beyond the ones wanted
+_EXTRA = 4  # modes beyond those requested, to locate a gap
+_FIRST_LOOK, _LOOK_EVERY = 26, 8  # vectors beyond three per mode at the first check of convergence; between checks
+_LONGEST = 0.25  # longest basis, as a fraction of all vectors: beyond, the dense solver takes no longer
+_VECTOR_TOLERANCE = 1e-8  # relative error of the vectors; that of the frequencies is its square
+_NEIGHBOUR_TOLERANCE = 1e-3  # relative error of the vectors beyond those requested
 _PANEL = 64  # rows of LAPACK's blocks
 
 
@@ -41,7 +41,7 @@ class Definite:
     inverse: Array
 
     def solve(self, force: Array) -> Array:
-        """K⁻¹ f (n,) in the coordinates' own units."""
+        """K⁻¹ f (n,) in the units of the coordinates before scaling."""
         return self.scale * (self.inverse.T @ (self.inverse @ (self.scale * force)))
 
 
@@ -87,7 +87,7 @@ def _lanczos(p: Definite, count: int) -> Eigen | None:
             Mw -= dual[:size, n:].T @ overlap
         gram = w[:n].T @ w[:n] + w[n:].T @ Mw
         if size >= look:
-            upper = np.triu(projected[:size, :size])  # of a skew matrix, to whose lower half steps to come belong
+            upper = np.triu(projected[:size, :size])  # of a skew matrix; only its upper half is used
             mu, z = scipy.linalg.eigh(1j * (upper - upper.T), subset_by_index=[size - more, size - 1])
             last = z[-2:]
             error = np.sqrt(np.abs(np.einsum("im,ij,jm->m", last.conj(), gram, last))) / np.abs(mu)
@@ -113,7 +113,7 @@ def _step(p: Definite, u: Array, My: Array) -> tuple[Array, Array]:
 
 
 def _proved(p: Definite, u: Complex, count: int) -> Eigen | None:
-    """Modes from vectors u (n, m), those beyond ``count`` left out, if there are as many as H has negative eigenvalues.
+    """The lowest ``count`` modes from vectors u (n, m); None if their number is not that of the negative eigenvalues of H.
 
     The frequencies are the gyroscopic Rayleigh quotients ``κ + iω x*Cx − ω² x*Mx = 0`` (Lancaster 2013).
     """
@@ -133,9 +133,9 @@ def _proved(p: Definite, u: Complex, count: int) -> Eigen | None:
 
 
 def _negative(H: Complex) -> int:
-    """Number of negative eigenvalues of a Hermitian matrix, which is overwritten: of the pivots of an LDLᴴ factorisation.
+    """Number of negative eigenvalues of a Hermitian matrix, which is overwritten, from the pivots of its LDLᴴ factorisation.
 
-    Those of two rows have one (Bunch and Kaufman 1977).
+    A pivot of two rows has one negative eigenvalue (Bunch and Kaufman 1977).
     """
     factors, pivots, info = _LAPACK.zhetrf(H.T, lwork=_PANEL * len(H), overwrite_a=True)
     if info < 0:

@@ -1,8 +1,8 @@
 """A mechanism: bodies, joints (tree and cut), prescribed motions, force elements and gravity.
 
 Poses, twists and inertias follow ``core.space.spatial``. Loops are closed by cutting a joint: its child is reached twice, once
-through the tree and once through a massless copy beyond the cut joint, and the two are welded. One kind of constraint (six
-equations Φᶜ, the joint's own coordinates kept) then serves a cut joint of every kind (Park et al. 2010, eq. 2).
+through the tree and once through a massless copy beyond the cut joint, and the two are welded. A cut joint of any kind retains
+its coordinates and gives the same six constraint equations Φᶜ (Park et al. 2010, eq. 2).
 """
 
 from dataclasses import dataclass, field, replace
@@ -52,7 +52,7 @@ def inertia(mass: float, moments: ArrayLike = 0.0, centre: ArrayLike = (0.0, 0.0
 
 @dataclass(frozen=True)
 class CoordinateSpring:
-    """A spring and damper on one joint coordinate: torque or force ``stiffness (q − neutral) + damping q̇``."""
+    """A spring and damper on one joint coordinate: force (N) or torque (N m) ``stiffness (q − neutral) + damping q̇``."""
 
     coordinate: str
     stiffness: float = 0.0
@@ -62,7 +62,10 @@ class CoordinateSpring:
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring and damper between points of two bodies: tension ``stiffness (length − free_length) + damping × its rate``."""
+    """A spring and damper between points (3,), m, of two bodies, each in the axes of its body, from its frame's origin.
+
+    The tension, N, is ``stiffness (length − free_length) + damping × rate of the length``.
+    """
 
     body_a: str
     body_b: str
@@ -90,9 +93,11 @@ class Load:
 
 @dataclass(frozen=True)
 class Beam:
-    """A batch of one beam or bushing between the frames of two bodies; see ``beams.Beams``. ``damping`` as stiffness.
+    """A batch of one beam or bushing between the frames of two bodies; see ``beams.Beams``.
 
-    Loads on the beam's points are in the axes of ``axes_of``: ``ground``, or a body whose motion is prescribed.
+    ``damping`` (6, 6) gives the force conjugate to the strain from its rate. ``at_a`` and ``at_b`` (4, 4) are the poses of
+    the end frames in the bodies. Loads on the beam's points are in the axes of ``axes_of``: ``ground``, or a body whose
+    motion is prescribed.
     """
 
     body_a: str
@@ -106,7 +111,7 @@ class Beam:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The parts of a mechanism; ``tree.compile_tree`` compiles it to arrays."""
+    """The parts of a mechanism, with gravity (3,) in m/s², in the ground's axes; ``tree.compile_tree`` makes arrays of it."""
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
@@ -119,10 +124,10 @@ class Mechanism:
 
 
 def at_time(mechanism: Mechanism, time: float) -> Mechanism:
-    """The mechanism with every motion that follows a law as it is at ``time`` (s).
+    """The mechanism with every law of motion evaluated at ``time`` (s).
 
     Raises:
-        MechanismError: a law without derivatives, or beside numbers that it would override.
+        MechanismError: a law without derivatives, or given together with numbers.
     """
     for m in mechanism.motions:
         if m.law is None:
@@ -138,14 +143,14 @@ def at_time(mechanism: Mechanism, time: float) -> Mechanism:
 
 
 def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
-    """The mechanism with the motion of one coordinate, its rotor's, at another rate (rad/s or m/s).
+    """The mechanism with the motion of one coordinate, usually the rotor's, at another rate (rad/s or m/s).
 
     Raises:
         MechanismError: if that coordinate has no motion, or follows a law.
     """
     mine = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
     if not mine:
-        raise MechanismError(f"coordinate {coordinate!r}: no motion at a rate is given for it: add one")
+        raise MechanismError(f"coordinate {coordinate!r}: it has no motion given by numbers: add one")
     motions = tuple(replace(m, rate=rate) if m in mine else m for m in mechanism.motions)
     return replace(mechanism, motions=motions)
 
@@ -173,10 +178,10 @@ def check(m: Mechanism) -> None:
             raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
     moving = [x.coordinate for x in m.motions]
     if len(set(moving)) < len(moving):
-        raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; one coordinate moves one way")
+        raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; give one per coordinate")
     for x in m.motions:
         if x.law is not None:
-            raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: take at_time(mechanism, time)")
+            raise MechanismError(f"motion {x.coordinate!r}: it follows a law of time: use at_time(mechanism, time)")
     for f in m.loads:
         if np.shape(f.force) != (3,) or not np.isfinite(f.force).all():
             raise MechanismError(f"load on {f.body!r}: force {f.force}: give three finite components in N")

@@ -1,7 +1,7 @@
 """Prescribed motion Φᴹ of a coordinate: at an instant, at a constant rate, or by a law, a given function of time.
 
-A law is called with the time (s) and gives the coordinate (m or rad); its derivatives are taken analytically, by its
-``deriv(order)``. ``numpy.polynomial.Polynomial`` is one, so are ``Harmonic`` and ``Sum`` here.
+A law is called with the time (s) and returns the coordinate (m or rad); its method ``deriv(order)`` returns its analytic
+derivatives. ``numpy.polynomial.Polynomial``, ``Harmonic`` and ``Sum`` are laws.
 """
 
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 
 @runtime_checkable
 class MotionLaw(Protocol):
-    """A smooth function of time that knows its derivatives."""
+    """A smooth function of time with analytic derivatives."""
 
     def __call__(self, time: Any, /) -> Any:
         """The value at a time, s."""
@@ -36,7 +36,7 @@ class Harmonic:
         return self.mean + self.amplitude * sin(self.frequency * time + self.phase)
 
     def deriv(self, m: int = 1) -> "Harmonic":
-        """Its m-th derivative: each turns the phase by a quarter."""
+        """Its m-th derivative: each shifts the phase by a quarter turn."""
         if m == 0:
             return self
         return Harmonic(self.amplitude * self.frequency**m, self.frequency, self.phase + 0.5 * pi * m)
@@ -69,7 +69,7 @@ class Motion:
         position: m or rad; None leaves it to the guess, or 0.
         rate: m/s or rad/s.
         acceleration: m/s² or rad/s².
-        prescribed: whether it is prescribed.
+        prescribed: whether the coordinate takes no part in vibration.
         law: a function of time instead of the three numbers.
     """
 

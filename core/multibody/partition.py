@@ -1,7 +1,7 @@
 """Coordinate partitioning of a tree closed by cut joints (Park et al. 2010, eq. 12–22).
 
-A weld makes a body and its copy one, ``Φ = log(X_copy⁻¹ X_body) = 0``; from the ground its Jacobian is ``B_body − B_copy``,
-so its rates are differences of Ḃ and B̈. Which coordinates depend on the others a pivoted QR factorisation decides.
+A weld joins a body to its copy, ``Φ = log(X_copy⁻¹ X_body) = 0``. In the ground's frame its Jacobian is ``B_body − B_copy``,
+so its rates are differences of Ḃ and B̈. A pivoted QR factorisation chooses the dependent coordinates.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Index = NDArray[np.intp]
 
 
 def misfit(tree: Tree, poses: Array) -> Array:
-    """Φ (6w,) of all welds at the ground's origin, in its axes: the whole error of pose, half-turns included."""
+    """Φ (6w,) of all welds at the ground's origin, in its axes: the complete error of the poses, up to half a turn."""
     if not tree.welds:
         return np.zeros(0)
     body, copy = np.array(tree.welds).T
@@ -67,14 +67,14 @@ class Partition:
 
 
 def prescribed(tree: Tree) -> Index:
-    """Coordinates whose motion is prescribed."""
+    """Indices of the coordinates whose motion is prescribed."""
     return np.array(
         sorted(tree.coordinate(m.coordinate) for m in tree.mechanism.motions if m.prescribed), dtype=np.intp
     )
 
 
 def free_coordinates(tree: Tree) -> Index:
-    """(f,) coordinates whose motion is not prescribed."""
+    """(f,) indices of the coordinates whose motion is not prescribed."""
     return np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
 
 
@@ -99,8 +99,8 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
         if len(chosen) != len(free) - rank or ranked(J[:, dependent]).rank < rank:
             raise MechanismError(
-                f"independent: {', '.join(independent)} do not determine the others: {len(free) - rank} are needed, free and"
-                " not tied to each other by a loop; or leave the choice to the solver"
+                f"independent: {', '.join(independent)} do not determine the others: give {len(free) - rank} that are free "
+                "and not tied to each other by a loop, or leave the choice to the solver"
             )
     R = np.zeros((len(free), len(chosen)))
     R[chosen, np.arange(len(chosen))] = 1.0
@@ -116,13 +116,13 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
 
 
 def freedom(tree: Tree, B: Array) -> int:
-    """How many ways the free coordinates can move at a configuration with velocity transformation B."""
+    """Degrees of freedom of the free coordinates at a configuration with velocity transformation B (b + m, 6, n)."""
     J = jacobian(tree, B)[:, free_coordinates(tree)]
     return J.shape[1] - ranked(J).rank
 
 
 def _redundant(tree: Tree, J: Array, rank: int) -> tuple[str, ...]:
-    """Rows that depend on others, at the copies' origins in the ground's axes."""
+    """Names of the rows of J (6w, f) that depend on others."""
     if rank == len(J):
         return ()
     parts = ("x", "y", "z", "rotation x", "rotation y", "rotation z")

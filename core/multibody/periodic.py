@@ -16,14 +16,14 @@ ADVANCES = (0.7, 1.9, 3.3, 5.1)
 """Distances (rad or m) that each moving coordinate advances; no two are related by the symmetry of a rotor."""
 
 MAX_CHANGE = 1e-8
-"""Largest change, relative to each coordinate's own size, that counts as none."""
+"""Largest change, relative to the size of each coordinate's terms, that counts as zero."""
 
 
 def check(linear: Linearization) -> None:
     """Compare M̂, Ĉ, K̂ and the balance with those at later instants of the same motion.
 
-    All prescribed motions advance together, so that each in turn covers every distance in ``ADVANCES``; free coordinates stay
-    where they are and dependent ones follow. The message names the coordinate whose motion alone causes the largest change.
+    All motions advance together, so that each in turn covers every distance in ``ADVANCES``; free coordinates do not move,
+    and dependent ones follow. The message names the coordinate whose motion alone causes the largest change.
 
     Raises:
         MechanismError: if any of them changes.
@@ -45,7 +45,7 @@ def check(linear: Linearization) -> None:
 
 
 def _change(linear: Linearization, moving: list[Motion], time: float) -> tuple[float, str]:
-    """The largest relative change when these motions alone have gone on for a time (s), and of what."""
+    """The largest relative change after these motions alone have continued for ``time`` (s), and the name of what changes."""
     tree, here = linear.tree, linear.state
     later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}
     motions = tuple(later.get(m.coordinate, m) for m in tree.mechanism.motions)
@@ -60,8 +60,8 @@ def _change(linear: Linearization, moving: list[Motion], time: float) -> tuple[f
     except MechanismError:  # a loop that cannot follow, or goes through a singularity
         return np.inf, "a loop"
     omega = max(max(abs(m.rate), np.sqrt(abs(m.acceleration))) for m in moving)
-    own = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
-    root = np.sqrt(np.maximum(own, 1e-6 * size))
+    scale = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
+    root = np.sqrt(np.maximum(scale, 1e-6 * size))
     root = np.where(root > 0, root, 1.0)
     changes = {"the balance": float((np.abs(reduced) / np.where(size > 0, size, 1.0)).max())}
     for name, power in (("M", 2), ("C", 1), ("K", 0)):

@@ -1,4 +1,4 @@
-"""The paper's reduction in its own order and symbols: from M Ẏ + Φ_Zᵀ λ = Q to M̂ v̇_I = Q̂ (Park et al. 2010, eq. 1–25).
+"""The paper's reduction, in its order and symbols: from M Ẏ + Φ_Zᵀ λ = Q to M̂ v̇_I = Q̂ (Park et al. 2010, eq. 1–25).
 
 Valid at any state, not only a steady one. ``equilibrium`` finds the state where Q̂ vanishes, and ``linearize`` varies
 M̂ v̇_I = Q̂ about it; this module gives each term, the accelerations and the reactions.
@@ -24,7 +24,7 @@ class Reduced:
     """The terms of eq. 8 and 23 at one state; n coordinates, c constraints, i independent coordinates.
 
     Attributes:
-        independent: (i,) indices of q_I; the others, loops' and prescribed ones, are q_D.
+        independent: (i,) indices of q_I; the others, which depend on loops or are prescribed, are q_D.
         v: (n,) velocities of all coordinates.
         M_star, Q_star: (n, n) and (n,) of M* v̇ + Φ_qᵀ λ = Q*.
         Phi_q: (c, n) Jacobian of Φ = [Φᶜ; Φᴹ]: cut joints, prescribed motions.
@@ -53,7 +53,7 @@ def reduced(tree: Tree, q: Array, v_I: Array, independent: tuple[str, ...] | Non
         independent: names to use as q_I; chosen numerically if not given.
 
     Raises:
-        MechanismError: names that cannot serve as independent coordinates; beams with mass that are not carried steadily.
+        MechanismError: names that cannot serve as independent coordinates; beams with mass that do not move steadily.
     """
     n = len(q)
     still = np.zeros(n)
@@ -89,7 +89,7 @@ def reduced(tree: Tree, q: Array, v_I: Array, independent: tuple[str, ...] | Non
 
 
 def accelerations(r: Reduced) -> tuple[Array, Array]:
-    """Accelerations v̇ (n,) and multipliers λ (c,), least ones where constraints are redundant."""
+    """Accelerations v̇ (n,) and multipliers λ (c,), those of least norm if constraints are redundant."""
     dv_I = np.linalg.solve(r.M_hat, r.Q_hat)  # M̂ v̇_I = Q̂ (eq. 23)
     dv = r.R @ dv_I + r.gamma_bar  # (eq. 21)
     return dv, ranked(r.Phi_q.T).solve(r.Q_star - r.M_star @ dv)  # M* v̇ + Φ_qᵀ λ = Q* (eq. 8)

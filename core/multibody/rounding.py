@@ -1,12 +1,12 @@
-"""How much rounding can change a mechanism's eigenvalues: its only numerical error, for nothing in it is discretised.
+"""Errors of a mechanism's eigenvalues due to rounding, its only numerical error since it is not discretised.
 
-Three parts, relative to an eigenvalue λ with right and left vectors x and y of Q(λ) = K̂ + λ Ĉ + λ² M̂. What the eigensolver
-left: the residual Q x, seen by y. What the matrices were rounded to: ``|y|*E|x|``, E a rounding of every term they are sums of.
-What the steady state was: the change of Q when it is found again from a place a rounding away. An eigenvalue changes by
+For an eigenvalue λ with right and left vectors x and y of Q(λ) = K̂ + λ Ĉ + λ² M̂, the error has three parts. Eigensolver: the
+residual Q x, projected on y. Matrices: ``|y|*E|x|``, with E the rounding of every term of which they are sums. Steady state:
+the change of Q when the state is computed again from a point a rounding error away. An eigenvalue changes by
 ``y* δQ x / y* Q′(λ) x`` (P. Lancaster, *Lambda-Matrices and Vibrating Systems*, 1966; F. Tisseur, Linear Algebra Appl. 309,
-2000, 339–361, for backward errors and conditions). Eigenvalues that coincide without vectors of their own (defective, as those
-of a free body seen from a turning frame) split by a root of that; their mean does not (T. Kato, *Perturbation Theory for Linear
-Operators*, 1966, ch. 2), so that their distance from it is their error.
+2000, 339–361, for backward errors and conditions). Defective eigenvalues (as those of a free body seen from a turning frame)
+split by a root of that; their mean does not (T. Kato, *Perturbation Theory for Linear Operators*, 1966, ch. 2), so their
+distance from the mean is their error.
 """
 
 from typing import cast
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FLOOR = 1e-15
-"""No eigenvalue is claimed to be more accurate, relative."""
+"""Smallest relative error that is claimed for an eigenvalue."""
 
 _EPS = float(np.finfo(float).eps)
 _SAFETY = 3.0
@@ -32,9 +32,9 @@ _TOGETHER = 1e-6  # relative distance of eigenvalues that rounding may mix
 
 
 def rounding(linear: Linearization, found: eigen.Eigen | eigen.Damped) -> Array:
-    """(m,) relative error of the eigenvalues: of the frequencies, and as much, absolute, of the damping ratios.
+    """(m,) error of the eigenvalues due to rounding: relative for frequencies, absolute for damping ratios.
 
-    Infinite where nothing can be said; 0 for rigid modes, which are exact.
+    Infinite if it cannot be estimated; 0 for rigid modes, which are exact.
     """
     values: Complex = np.asarray(found.values if isinstance(found, eigen.Damped) else 1j * found.frequencies, complex)
     if not len(values):
@@ -78,7 +78,7 @@ def _vectors(Q: Complex, count: int) -> tuple[Complex, Complex]:
 
 
 def _sizes(linear: Linearization) -> tuple[Array, Array, Array]:
-    """|M̂|, |Ĉ|, |K̂| (i, i) with the terms that they are sums of added up by size."""
+    """|M̂|, |Ĉ|, |K̂| (i, i), each the sum of the absolute values of its terms."""
     p = linear.partition
     M, C, K = (np.abs(a[np.ix_(p.free, p.free)]) for a in linear.state.tangent)
     R, R1, R2 = np.abs(p.R), np.abs(p.R1), np.abs(p.R2)

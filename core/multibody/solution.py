@@ -29,10 +29,10 @@ class Solution:
         shapes: (m, n) motion of all coordinates in each mode, the largest 1; zero where motion is prescribed.
         coordinates: names of the n coordinates.
         steady: their values in the steady state, m or rad, by name.
-        independent: the coordinates chosen to vibrate about it; the others follow.
+        independent: names of the independent coordinates; the others follow from them.
         redundant: redundant constraint equations, as ``joint: component``.
-        linear: M̂, Ĉ, K̂ over the independent coordinates, and all that led to them.
-        found: the modes over the independent coordinates, as the eigenvalue solver gave them.
+        linear: M̂, Ĉ, K̂ over the independent coordinates, with the steady state and the partition.
+        found: the modes over the independent coordinates, as returned by the eigenvalue solver.
     """
 
     values: Complex
@@ -46,15 +46,15 @@ class Solution:
 
     @cached_property
     def uncertainty(self) -> Array:
-        """(m,) relative, of the frequencies, and absolute, of the damping ratios: rounding, see ``rounding``.
+        """(m,) uncertainty due to rounding: relative for frequencies, absolute for damping ratios (see ``rounding``).
 
-        Computed when first asked for: that takes as long as the modes.
+        Computed at the first access, which takes as long as the modes.
         """
         return rounding(self.linear, self.found)
 
     @property
     def frequencies(self) -> Array:
-        """(m,) undamped natural frequencies |λ|, rad/s, ascending; of a real eigenvalue, its modulus."""
+        """(m,) undamped natural frequencies |λ|, rad/s, ascending; for a real eigenvalue, its modulus."""
         return np.abs(self.values)
 
     @property
@@ -65,10 +65,10 @@ class Solution:
 
     @property
     def leading(self) -> tuple[str, ...]:
-        """For each mode the independent coordinate with the largest share in its kinetic energy."""
+        """For each mode, the independent coordinate with the largest fraction of the kinetic energy."""
         x = self.shapes[:, self.linear.partition.independent]
-        share = np.real(x.conj() * (x @ self.linear.M.T))
-        return tuple(self.independent[row.argmax()] for row in share)
+        energies = np.real(x.conj() * (x @ self.linear.M.T))
+        return tuple(self.independent[row.argmax()] for row in energies)
 
 
 def solve(
@@ -84,9 +84,9 @@ def solve(
     Args:
         mechanism: the mechanism.
         guess: coordinates to start from, by name; others start at 0.
-        count: how many modes, from the lowest; all by default.
+        count: number of modes, from the lowest; all by default.
         independent: independent coordinates; chosen numerically if not given.
-        time: s, where motions follow laws of time: the instant frozen (see ``linearize``).
+        time: instant of the frozen-time linearisation, s, for motions that follow laws of time (see ``linearize``).
 
     Raises:
         MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is periodic; the message gives the cause.
@@ -115,7 +115,7 @@ def solve(
 def straight_beam(length: float, **section: Any) -> Beams:
     """One uniform beam element along x, for a ``Beam``; ``section`` as for ``blade.uniform_blade``: EA, GJ, EI_y, EI_z, mass …
 
-    Its mass is inside it, consistent: its ends must then rotate together in the steady state. Without ``mass`` it is massless.
+    Its mass is consistent, so its ends must move together in the steady state. Without ``mass`` it is massless.
     """
     massless = not section.get("mass")
     section["mass"] = section.get("mass") or 1.0

@@ -20,7 +20,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class State:
-    """A steady state: coordinates, velocities, accelerations (n,), multipliers (w, 6), and what follows from them."""
+    """A state of motion: coordinates, velocities, accelerations (n,), multipliers (w, 6), and quantities derived from them."""
 
     q: Array
     v: Array
@@ -31,7 +31,7 @@ class State:
 
     @cached_property
     def tangent(self) -> tuple[Array, Array, Array]:
-        """M*, C*, K* (n, n) there; see ``dynamics.tangent``."""
+        """M*, C*, K* (n, n) at this state; see ``dynamics.tangent``."""
         return dynamics.tangent(self.kinematics.tree, self.kinematics, self.cartesian)
 
 
@@ -40,12 +40,12 @@ class ContradictionError(MechanismError):
 
 
 def given(tree: Tree) -> list[int]:
-    """Coordinates with a motion, prescribed or not."""
+    """Indices of the coordinates with a motion, prescribed or not."""
     return [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
 
 
 def state_at(tree: Tree, q: Array) -> State:
-    """Velocities and accelerations that the motions and, through the loops, all other coordinates have (eq. 18, 20)."""
+    """The state at coordinates q (n,), with the rates that the motions impose, also through the loops (eq. 18, 20)."""
     n = len(q)
     v, a = np.zeros(n), np.zeros(n)
     moved = given(tree)
@@ -73,7 +73,11 @@ def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
 
 
 def check_rates(tree: Tree, state: State) -> None:
-    """Check that the prescribed motions determine the rates of all moving loops."""
+    """Check that the motions determine the rates of all moving loops.
+
+    Raises:
+        MechanismError: a coordinate of a moving loop has no determined rate.
+    """
     if not moving(tree, state).any():
         return
     following = np.setdiff1d(np.arange(len(state.q)), given(tree))
@@ -82,6 +86,6 @@ def check_rates(tree: Tree, state: State) -> None:
     if free.any():
         name = tree.coordinates[following[int(free.argmax())]]
         raise MechanismError(
-            f"coordinate {name!r}: its loop moves, but the motions do not say at which rate: give it one too "
+            f"coordinate {name!r}: its loop moves, but the motions do not determine its rate: give it a rate too "
             "(prescribed = false if it is to vibrate)"
         )

@@ -17,17 +17,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Batch:
-    """Beams that are treated at once: of one measure, with mass at as many points each, or at none.
+    """Beams that are processed together: of one strain measure, with the same number of points with mass.
 
     Attributes:
         index: (e,) which of the mechanism's beams.
         ends: (e, 2) body indices, −1 for the ground.
         inner: (e,) the first of six internal coordinates, −1 if there are none.
-        inside: (e,) row of the internal coordinates behind the bodies', −1 if there are none.
+        inside: (e,) row of the internal coordinates, after those of the bodies, −1 if there are none.
         beams: the elements.
         at_a, at_b: (e, 4, 4) poses of their end frames in the bodies.
-        axes: (e,) body in whose axes the loads on the points are, −1 for the ground.
-        damping: (e, 6, 6) on the strain's rate.
+        axes: (e,) index of the body in whose axes the loads on the points are given, −1 for the ground.
+        damping: (e, 6, 6) forces conjugate to the strain, from its rate.
     """
 
     index: NDArray[np.intp]
@@ -43,13 +43,13 @@ class Batch:
 
 @dataclass(frozen=True)
 class Groups:
-    """Coordinates that move the same rows of B: those of a joint with several, or of joints in series without mass between.
+    """Groups of coordinates that move the same rows of B: several of one joint, or of joints in series without mass between.
 
     Attributes:
-        before: (g,) the group each hangs on, −1 for the ground; always one of those before it.
-        members: (g, k) its coordinates, as many as the largest group has; −1 where it has fewer.
+        before: (g,) parent group of each, −1 for the ground; always a lower index.
+        members: (g, k) coordinates of each group, padded with −1.
         row: (b + m,) the outermost group that moves each row of B, −1 for none.
-        place: (n,) where each coordinate is in ``members``, flattened.
+        place: (n,) position of each coordinate in the flattened ``members``.
     """
 
     before: NDArray[np.intp]
@@ -59,13 +59,13 @@ class Groups:
 
 
 def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.intp]) -> Groups:
-    """From the link before each link, the link each row of B rides on, and the first link of each beam's internal six."""
+    """Groups from each link's parent, the link that carries each row of B, and the first link of each beam's internal six."""
     n = len(before)
     on = before.copy()
     for j in inner:  # the internal coordinates of a beam move its one row together
         on[j + 1 : j + 6] = np.arange(j, j + 5)
     alone = np.bincount(on[on >= 0], minlength=n) == 1
-    alone[link[link >= 0]] = False  # links that carry nothing but one other link
+    alone[link[link >= 0]] = False  # links that carry only one other link
     group, first, members = np.empty(n, np.intp), [], []
     for j in range(n):
         if on[j] >= 0 and alone[on[j]]:
@@ -84,25 +84,25 @@ def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.
 
 @dataclass(frozen=True)
 class Tree:
-    """A mechanism's spanning tree as arrays, one link a coordinate.
+    """A mechanism's spanning tree as arrays, one link per coordinate.
 
-    The internal coordinates of beams with mass come last, as links that move nothing.
+    The internal coordinates of beams with mass come last, as links that move no body.
 
     Attributes:
-        mechanism: where it comes from.
+        mechanism: the mechanism.
         coordinates: (n) names.
-        before: (n,) the link each coordinate's link hangs on, −1 for the ground.
-        fixed: (n, 4, 4) pose of the screw's frame in that link.
+        before: (n,) parent link of each coordinate's link, −1 for the ground.
+        fixed: (n, 4, 4) pose of the screw's frame in the parent link.
         screw: (n, 6) unit twist in that frame.
         bodies: (b) names, copies beyond cut joints last.
-        link: (b,) link each body rides on, −1 for the ground.
+        link: (b,) link that carries each body, −1 for the ground.
         on_link: (b, 4, 4) pose of the body's frame in its link.
-        inertia: (b, 6, 6) in the bodies' own frames.
-        welds: pairs (body, copy) of body indices that a cut joint makes one.
+        inertia: (b, 6, 6) in the bodies' frames.
+        welds: pairs (body, copy) of body indices that a cut joint welds together.
         weld_names: the cut joints' names.
         inner: (i,) the first of the six internal coordinates of each beam that has them.
         batches: the beams.
-        above: (n, n) above[j, k]: link k lies on the way from the ground to link j, or is j.
+        above: (n, n) above[j, k]: link k is on the path from the ground to link j, or is j.
         carries: (b, n) carries[i, k]: coordinate k moves body i.
     """
 
@@ -129,7 +129,7 @@ class Tree:
 
     @cached_property
     def beyond(self) -> Array:
-        """(n, n) beyond[j, k] = 1: link j hangs on link k, or further out."""
+        """(n, n) beyond[j, k] = 1: link j is a descendant of link k; else 0."""
         return self.above.astype(float) - np.eye(len(self.above))
 
     @cached_property
@@ -144,10 +144,10 @@ class Tree:
         """Index of a coordinate.
 
         Raises:
-            MechanismError: if there is none of that name.
+            MechanismError: if no coordinate has that name.
         """
         if name not in self._number:
-            raise MechanismError(f"coordinate {name!r}: no joint has it; there are {', '.join(self.coordinates)}")
+            raise MechanismError(f"coordinate {name!r} is unknown; there are {', '.join(self.coordinates)}")
         return self._number[name]
 
 
@@ -159,7 +159,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     """
     check(mechanism)
     names = [b.name for b in mechanism.bodies]
-    own = dict(zip(names, (b.inertia for b in mechanism.bodies), strict=True))
+    inertia = dict(zip(names, (b.inertia for b in mechanism.bodies), strict=True))
     place: dict[str, tuple[int, Array]] = {GROUND: (-1, np.eye(4))}
     before: list[int] = []
     fixed: list[Array] = []
@@ -167,7 +167,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     coordinates: list[str] = []
 
     def hang(joint: Joint, forward: bool) -> tuple[int, Array]:
-        """Lay the joint's screws from whichever end is placed; return where its other end sits."""
+        """Append the joint's screws, from the end that is already placed; return the link and pose of the other end."""
         near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
         link, pose = place[joint.parent if forward else joint.child]
         pose = pose @ near
@@ -194,13 +194,13 @@ def compile_tree(mechanism: Mechanism) -> Tree:
             place[ready.child] = hang(ready, True)
         else:
             place[ready.parent] = hang(ready, False)
-    lost = [n for n in names if n not in place]
-    if lost:
+    unreached = [n for n in names if n not in place]
+    if unreached:
         raise MechanismError(
-            f"body {lost[0]!r}: no joint leads to it from the ground; add one (a free joint if it is loose)"
+            f"body {unreached[0]!r}: no joint connects it to the ground; add one (a free joint if it floats)"
         )
     bodies, welds = list(names), []
-    inertias = [own[n] for n in names]
+    inertias = [inertia[n] for n in names]
     links = [place[n] for n in names]
     for joint in cuts:
         links.append(hang(joint, True))
@@ -250,7 +250,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
 
 
 def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
-    """Loads turn with axes whose motion is given: those of a body that vibrates would make the load a follower force."""
+    """Check that loads turn with axes of prescribed motion: those of a vibrating body would make them follower forces."""
     given = {m.coordinate for m in mechanism.motions if m.prescribed}
     axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
     for name in sorted(axes):
@@ -263,13 +263,13 @@ def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
 
 
 def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
-    """Beams that are alike together; ``inner``: of each beam the first internal coordinate, or −1."""
+    """Beams in batches of one kind; ``inner``: the first internal coordinate of each beam, or −1."""
     rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
-    alike: dict[tuple[str, int], list[int]] = {}
+    by_kind: dict[tuple[str, int], list[int]] = {}
     for k, beam in enumerate(mechanism.beams):
-        alike.setdefault((beam.beams.law.measure, len(beam.beams.points.element)), []).append(k)
+        by_kind.setdefault((beam.beams.law.measure, len(beam.beams.points.element)), []).append(k)
     out = []
-    for index in alike.values():
+    for index in by_kind.values():
         some = [mechanism.beams[k] for k in index]
         ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in some]
         out.append(
