@@ -3,8 +3,8 @@
 The paper places its rigid bodies at the sections. Here the body of each segment follows its element (see ``condensation``),
 which converges two orders faster in bending at no cost; the sections are massless.
 
-A complex stiffness element is linear in its own axes: the steady tension stiffens bending, as in any beam of ``core``, but not
-torsion (a section that twists under tension shortens too). A solid does show that; it grows as Ω².
+A complex stiffness element is linear in its axes: the steady tension stiffens bending, as in any beam of ``core``, but not
+torsion (a section that twists under tension also shortens). A solid model shows that stiffening, which grows as Ω².
 """
 
 from collections.abc import Sequence
@@ -80,29 +80,29 @@ def chain_modes(
 def segment_modes(
     segments: Sequence[Segment], root: Array, omega: float, count: int = 10, *, allow_large_strain: bool = False
 ) -> Modes:
-    """The lowest modes of segments end to end, with their relative uncertainties as a model of the blade they are cut from.
+    """The lowest modes of segments end to end, with the relative uncertainties due to their number.
 
-    These are told from the same blade with a half and a quarter of the segments, each two joined; infinite for fewer than
-    four. Torsion and stretch converge with second order, bending with fourth; the slower counts.
+    The uncertainties are estimated from the same blade with a half and a quarter of the segments, joined in pairs; they are
+    infinite for fewer than four. Torsion and stretch converge with second order, bending with fourth; second is assumed.
 
     Args:
         segments: as for ``chain_from_segments``.
-        root: likewise.
-        omega: rad/s.
-        count: how many modes (fewer if there are fewer).
+        root: as for ``chain_from_segments``.
+        omega: rotor speed, rad/s.
+        count: number of modes (fewer if there are fewer).
         allow_large_strain: accept steady strains above ``solve.LARGEST_STRAIN``.
 
     Raises:
         CondensationError: no segments.
         SteadyStateError: no steady state at this speed.
-        LargeStrainError: one with strains that linear elements do not describe.
+        LargeStrainError: steady strains above ``solve.LARGEST_STRAIN``.
         UnstableError: the steady state is not stable.
     """
     fine = chain_modes(chain_from_segments(segments, root), omega, count)
     if fine.strain > solve.LARGEST_STRAIN and not allow_large_strain:
         raise solve.LargeStrainError(
-            f"omega: {omega:.6g} rad/s: steady strain {fine.strain:.0%}: linear elements do not describe it: the speed is too "
-            "high or the blade too soft; check units, or allow large strains"
+            f"omega: {omega:.6g} rad/s: steady strain {fine.strain:.0%}: too large for linear elements: the speed is too high "
+            "or the blade too soft; check units, or allow large strains"
         )
     m = len(fine.frequencies)
     unknown = replace(fine, uncertainty=np.full(m, np.inf))
@@ -123,7 +123,7 @@ def _centred(inertia: Array) -> tuple[Array, Array]:
 
 
 def _samples(undeformed: Array) -> Points:
-    """Points at which mode shapes are read; the strain is constant between two sections."""
+    """Points at which mode shapes are sampled; the strain is constant between two sections."""
     length = np.append(0.0, np.cumsum(np.linalg.norm(undeformed[:, :3, 3], axis=1)))
     at = STATIONS * length[-1]
     element = np.clip(np.searchsorted(length, at, side="right") - 1, 0, len(undeformed) - 1)

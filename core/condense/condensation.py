@@ -2,14 +2,14 @@
 
 Static condensation eliminates all freedoms but the twists of the frames that sections are tied to: with ``K u + Gᵀλ = 0``
 inside and the ties' equations as constraints G, the stiffness between two end sections is 12×12 (R. J. Guyan, AIAA Journal
-3 (1965) 380). It has six rigid-body modes, so a 6×6 says the same: the wrench ``k ρ`` on b, with ρ = ξ_b − ξ_a in a's axes,
+3 (1965) 380). It has six rigid-body modes, so a 6×6 is equivalent: the wrench ``k ρ`` on b, with ρ = ξ_b − ξ_a in a's axes,
 the complex stiffness element of ``core.element.beams``.
 
-A segment's mass becomes one rigid body with its mass, centre and inertia, which rides on the element: it moves as the
-segment's mass does on average (by least squares, so momenta are kept) in the static displacements. What is left out is the
-kinetic energy of its own deformation. In bending that is (βl)⁴/720 of the whole, l its length and β the wave number: fourth
-order, as with consistent mass. In torsion and stretch the mass moves as the segment's middle does, and frequencies come out
-too high by (βl)²/12: 5·10⁻⁴ for the lowest with 20 segments.
+A segment's mass becomes one rigid body with its mass, centre and inertia, which follows the element: it moves as the
+segment's mass does on average (by least squares, so momenta are preserved) in the static displacements. The kinetic energy
+of the segment's deformation is neglected. In bending it is (βl)⁴/720 of the whole, l the segment's length and β the wave
+number: fourth order, as with consistent mass. In torsion and stretch the mass moves as the segment's middle does, and
+frequencies are too high by (βl)²/12: 5·10⁻⁴ for the lowest with 20 segments.
 """
 
 from collections.abc import Sequence
@@ -29,19 +29,19 @@ from .ties import CondensationError, FiniteElements, Tie
 
 Array = NDArray[Any]
 
-MAX_ASYMMETRY = 0.1  # largest departure from symmetry, of a unit diagonal, of a flexibility read in place
+MAX_ASYMMETRY = 0.1  # of a flexibility measured in place and scaled to a unit diagonal
 
 
 @dataclass(frozen=True)
 class Condensed:
-    """Stiffness (6m, 6m) between m tied frames, twists in their own axes, and what unit twists move: all freedoms (n, 6m)."""
+    """Stiffness (6m, 6m) of m tied frames, twists in their axes, and displacements (n, 6m) of all freedoms by unit twists."""
 
     stiffness: Array
     displacements: Array
 
 
 def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
-    """Eliminate statically all but the twists of the tied frames.
+    """Eliminate statically all freedoms but the twists of the tied frames.
 
     Raises:
         CondensationError: a freedom in two rigid ties, or unsupported freedoms.
@@ -51,23 +51,23 @@ def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
     rigidly_tied = np.zeros(n, bool)
     means = []
     for k, t in enumerate(tied):
-        own = slice(6 * k, 6 * k + 6)
+        columns = slice(6 * k, 6 * k + 6)
         if t.kind == "average":
             row = np.zeros((6, n))
             row[:, t.freedoms] = t.mean
-            means.append((row, own))
+            means.append((row, columns))
         elif rigidly_tied[t.freedoms].any():
             raise CondensationError(
-                f"section {t.name!r}: shares nodes with another rigid tie; a node can follow one frame"
+                f"section {t.name!r}: shares nodes with another rigid tie; a node can follow only one frame"
             )
         else:
-            follow[t.freedoms, own], rigidly_tied[t.freedoms] = t.motion, True
+            follow[t.freedoms, columns], rigidly_tied[t.freedoms] = t.motion, True
     K, free = fe_model.stiffness, np.flatnonzero(~rigidly_tied)
     unit = float(abs(K).max())
     G = np.concatenate([row for row, _ in means]) if means else np.zeros((0, n))
     ask = unit * G @ follow
-    for k, (_, own) in enumerate(means):
-        ask[6 * k : 6 * k + 6, own] -= unit * np.eye(6)
+    for k, (_, columns) in enumerate(means):
+        ask[6 * k : 6 * k + 6, columns] -= unit * np.eye(6)
     g = ss.csr_array(unit * G[:, free])
     A = ss.csc_array(ss.block_array([[K[free][:, free], g.T], [g, None]]))
     B = np.concatenate([(K @ follow)[free], ask])
@@ -86,7 +86,7 @@ def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
 
 
 def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:
-    """One segment of a blade alone, between its end sections.
+    """Condense one isolated segment of a blade, between its end sections.
 
     Raises:
         CondensationError: as ``condense`` and ``between``, or a model without mass.
@@ -102,27 +102,27 @@ def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:
 
 
 def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Array) -> list[Segment]:
-    """Every segment of a blade in its place between its neighbours, so that sections warp and contract as they do there.
+    """Condense every segment of a blade in place between its neighbours, so that sections warp and contract as in the blade.
 
-    The blade is clamped at its first tie and loaded at its last by six wrenches; between, average ties read how far each
-    section turns and moves past the one before: a segment's flexibility is its ρ over the wrench that passes through it.
-    What the ties add or lack is felt at the two ends of the blade only.
+    The blade is clamped at its first tie and loaded at its last by six wrenches. Between them, average ties measure the
+    motion of each section relative to the previous one: a segment's flexibility is its ρ divided by the wrench that it
+    transmits. Errors of the ties affect only the two ends of the blade.
 
     Args:
         fe_model: the whole blade.
-        tied: m + 1 sections from the root on: rigid at a root that is clamped, average everywhere else.
-        masses: (m, n) lumped mass of each segment at the model's freedoms; at a section between two, each has its share.
+        tied: m + 1 sections from the root to the tip: rigid at a clamped root, average at all others.
+        masses: (m, n) lumped mass of each segment at the model's freedoms; two segments share that of their common section.
 
     Raises:
-        CondensationError: as ``condense``; a section in between that is not average; no mass; a flexibility that is not one.
+        CondensationError: as ``condense``; an inner section that is not average; no mass; an invalid flexibility.
     """
     if bad := [t.name for t in tied[1:-1] if t.kind != "average"]:
         raise CondensationError(
-            f"section {bad[0]!r}: a rigid tie stops the warping it should let pass; use an average one"
+            f"section {bad[0]!r}: a rigid tie prevents warping inside the blade; use an average one"
         )
     if np.shape(masses) != (len(tied) - 1, len(fe_model.directions)):
         raise CondensationError(
-            f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(fe_model.directions))}: a row a segment"
+            f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(fe_model.directions))}: one row per segment"
         )
     c = condense(fe_model, (tied[0], tied[-1]))
     displacements, tip = (
@@ -141,7 +141,7 @@ def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Arr
         wrong = np.abs(unit - unit.T).max()
         if wrong > MAX_ASYMMETRY or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
             raise CondensationError(
-                f"segment {a.name!r} to {b.name!r}: its flexibility is {wrong:.1e} from symmetric, or not positive: "
+                f"segment {a.name!r} to {b.name!r}: its flexibility is not symmetric (by {wrong:.1e}), or not positive: "
                 "sections too close together for the mesh, or ties of another model?"
             )
         J, mean = _body(fe_model, masses[k], a.frame, displacements)
@@ -158,6 +158,6 @@ def _body(fe_model: FiniteElements, mass: Array, frame: Array, displacements: Ar
     size = np.sqrt(np.abs(np.diagonal(J)))
     if (size <= 0).any() or np.linalg.eigvalsh(J / np.outer(size, size))[0] < 1e-12:
         raise CondensationError(
-            f"{fe_model.name}: no mass, or none with moments of inertia about all axes: give the freedoms' lumped mass"
+            f"{fe_model.name}: no mass, or no moment of inertia about some axis: give the lumped mass of its freedoms"
         )
     return J, np.linalg.solve(J, (R.T * mass) @ displacements)

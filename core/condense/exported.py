@@ -26,7 +26,7 @@ class Exported:
 
     Attributes:
         name: of the file.
-        matrix: both triangles.
+        matrix: with both triangles.
         nodes: (n,) labels; empty if the file does not name its freedoms.
         directions: (n,) 0–5, see ``ties.FiniteElements``; empty if the file does not name them.
     """
@@ -43,17 +43,17 @@ def model(
     """A finite element model from exported matrices and the places of their nodes.
 
     Args:
-        stiffness: with its freedoms named.
+        stiffness: with named freedoms.
         place: node label → (3,) coordinates, m.
         mass: in the same freedoms, in any order; its row sums over each direction are the lumped mass.
-        name: what to call it in a message; by default the file.
+        name: label in messages; by default that of the file.
 
     Raises:
         MatrixFileError: freedoms not named, a node without a place, or a mass with other freedoms.
     """
     if not len(stiffness.nodes):
         raise MatrixFileError(
-            f"{stiffness.name}: does not name its freedoms: set nodes and directions in the file's order"
+            f"{stiffness.name}: does not name its freedoms: set nodes and directions, in the order of the file's rows"
         )
     lost = [n for n in stiffness.nodes.tolist() if n not in place]
     if lost:
@@ -61,25 +61,27 @@ def model(
     lumped = np.zeros(len(stiffness.nodes))
     if mass is not None:
         at = {key: k for k, key in enumerate(zip(mass.nodes.tolist(), mass.directions.tolist(), strict=True))}
-        own = list(zip(stiffness.nodes.tolist(), stiffness.directions.tolist(), strict=True))
-        if set(at) != set(own):
-            raise MatrixFileError(f"{mass.name}: its freedoms are not those of {stiffness.name}: export both alike")
-        alike = mass.directions[:, None] == np.arange(6)
-        sums = (mass.matrix @ alike.astype(float))[np.arange(len(at)), mass.directions]
-        lumped = sums[[at[key] for key in own]]
+        keys = list(zip(stiffness.nodes.tolist(), stiffness.directions.tolist(), strict=True))
+        if set(at) != set(keys):
+            raise MatrixFileError(
+                f"{mass.name}: its freedoms are not those of {stiffness.name}: export both with the same freedoms"
+            )
+        along = mass.directions[:, None] == np.arange(6)
+        sums = (mass.matrix @ along.astype(float))[np.arange(len(at)), mass.directions]
+        lumped = sums[[at[key] for key in keys]]
     points = np.array([place[n] for n in stiffness.nodes.tolist()], float)
     return FiniteElements(name or stiffness.name, points, stiffness.directions, stiffness.matrix, lumped)
 
 
 def assembled(name: str, rows: Index, columns: Index, values: Array, mirror: bool | None = None) -> Exported:
-    """The matrix of entries at ``rows`` and ``columns`` (e, 2), each node and component; freedoms in ascending order.
+    """Assemble entries at ``rows`` and ``columns`` (e, 2), each node and component; freedoms in ascending order.
 
     Args:
         name: of the file.
         rows: (e, 2) freedoms.
         columns: (e, 2) freedoms.
         values: (e,).
-        mirror: whether entries whose counterpart is missing have it; None: only if all have none (one triangle).
+        mirror: whether to mirror entries without a counterpart; None: only if no entry has one (a single triangle).
 
     Raises:
         MatrixFileError: an entry given twice, or a component that is not a motion of a point.

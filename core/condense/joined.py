@@ -1,7 +1,8 @@
-"""Two segments in a row as one: what the same sections, every other left out, would have been condensed to.
+"""Neighbouring segments joined in pairs: the result of condensation with every other section omitted.
 
-The stiffness loses nothing: flexibilities add. The rigid body is that of both, moving as their masses do on average in the
-static displacements, as a segment's own does (see ``condensation``). Fewer segments show what the number of them costs.
+The stiffness is exact: flexibilities add. The rigid body is that of both segments, moving as their masses do on average in
+the static displacements, as for a single segment (see ``condensation``). Results with fewer segments show the error due to
+their number.
 """
 
 from collections.abc import Sequence
@@ -13,19 +14,19 @@ from .segments import Segment
 
 
 def joined(segments: Sequence[Segment]) -> list[Segment]:
-    """Every two neighbours in one, from the root; of an odd number the last stays."""
+    """Join every two neighbours, from the root; an odd last segment is unchanged."""
     pairs = [_pair(a, b) for a, b in zip(segments[::2], segments[1::2], strict=False)]
     return [*pairs, *segments[2 * len(pairs) :]]
 
 
 def _pair(a: Segment, b: Segment) -> Segment:
-    """In the first frame's axes throughout."""
+    """One segment from two; all in the axes of a's first frame."""
     out, back = sp.adjoint(a.undeformed), sp.adjoint(sp.inverse(a.undeformed))
     first = np.linalg.inv(a.stiffness)  # ρ of a, from a wrench at the far end
     second = out @ np.linalg.inv(b.stiffness) @ out.T
     far = back.T @ b.inertia @ back
     inertia = a.inertia + far
-    turned = first + out @ b.ride @ back @ second  # twist of b's body
-    mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + far @ turned)
+    twist_b = first + out @ b.ride @ back @ second  # of b's body
+    mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + far @ twist_b)
     stiffness = np.linalg.inv(first + second)
     return Segment(a.undeformed @ b.undeformed, 0.5 * (stiffness + stiffness.T), inertia, mean @ stiffness)

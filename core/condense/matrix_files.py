@@ -11,7 +11,7 @@ Formats, recognised by content (the last by name):
   are square (1) or symmetric (6, either triangle), exponents with ``E``, ``D`` or a bare sign;
 * Matrix Market, coordinate or array (no freedoms named), see ``matrix_market``;
 * CalculiX ``*FREQUENCY, SOLVER=MATRIXSTORAGE`` by ``stored``: ``row column value`` in ``.sti`` and ``.mas``, with the freedoms
-  ``node.component`` of the rows beside them in ``.dof``.
+  ``node.component`` of the rows in ``.dof``.
 
 Freedoms 1–3 are displacements along x, y, z and 4–6 rotations about them.
 """
@@ -36,12 +36,12 @@ def read(path: Path, what: str = "stiffness") -> Exported:
     """Read one matrix.
 
     Args:
-        path: of the file, of a form listed above.
+        path: of the file, in one of the formats above.
         what: which matrix, where the file has several: the TYPE of a user element's ``*MATRIX`` (stiffness, mass), or the
             name of a DMIG (KAAX, MAAX). A file with one matrix is read whatever its name.
 
     Raises:
-        MatrixFileError: not one of these forms, broken off, or without that matrix.
+        MatrixFileError: not one of these formats, truncated, or without that matrix.
         OSError: if there is no such file.
     """
     text = read_bytes(path, LARGEST_DATA).decode("utf-8-sig", errors="replace")
@@ -60,21 +60,21 @@ def read(path: Path, what: str = "stiffness") -> Exported:
 
 
 def stored(path: Path) -> Exported:
-    """A matrix that CalculiX stored, with the freedoms from the ``.dof`` file beside it.
+    """A matrix stored by CalculiX, with the freedoms from the ``.dof`` file in the same folder.
 
     Raises:
-        MatrixFileError: as ``read``, or another number of freedoms than of rows.
+        MatrixFileError: as ``read``, or if the numbers of freedoms and rows differ.
         OSError: if either file is missing.
     """
     matrix: Any = read(path).matrix
-    beside = path.with_suffix(".dof")
-    words = [w.split(".") for w in read_bytes(beside, LARGEST_DATA).decode(errors="replace").split()]
+    dof = path.with_suffix(".dof")
+    words = [w.split(".") for w in read_bytes(dof, LARGEST_DATA).decode(errors="replace").split()]
     rows = matrix.shape[0]
     if len(words) != rows:
-        raise MatrixFileError(f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: of another run?")
+        raise MatrixFileError(f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: from another run?")
     if any(len(w) != 2 for w in words):
-        raise MatrixFileError(f"{beside.name}: not node.component in each line: of another program?")
-    freedoms = np.array([[whole(beside.name, k, v) for v in w] for k, w in enumerate(words, 1)])
+        raise MatrixFileError(f"{dof.name}: expected node.component on each line: from another program?")
+    freedoms = np.array([[whole(dof.name, k, v) for v in w] for k, w in enumerate(words, 1)])
     return labelled(path.name, matrix, freedoms)
 
 
@@ -111,7 +111,7 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
     n, values = len(freedoms), triangles[key]
     if len(values) != n * (n + 1) // 2:
         raise MatrixFileError(
-            f"{name}: {len(values)} values, expected {n * (n + 1) // 2} for the triangle of {n} freedoms: broken off?"
+            f"{name}: {len(values)} values, expected {n * (n + 1) // 2} for the triangle of {n} freedoms: truncated?"
         )
     dense = np.zeros((n, n))
     dense[np.tril_indices(n)] = values
@@ -128,13 +128,13 @@ def _triplets(name: str, lines: list[str]) -> Exported:
         width = len(labels[0]) + 1 if labels else len(words)
         if len(words) != width or width not in (3, 5):
             raise MatrixFileError(
-                f"{name}, line {number}: {len(words)} columns: each line has row, column, value, or node, freedom, node, "
-                "freedom, value; broken off, or another form?"
+                f"{name}, line {number}: {len(words)} columns, expected row, column, value, or node, freedom, node, "
+                "freedom, value: truncated, or another format?"
             )
         labels.append([whole(name, number, w) for w in words[:-1]])
         values.append(real(name, number, words[-1]))
     if not labels:
-        raise MatrixFileError(f"{name}: no matrix in it: see core.condense.matrix_files for the forms that are read")
+        raise MatrixFileError(f"{name}: no matrix found: see core.condense.matrix_files for the supported formats")
     at = np.array(labels, dtype=np.intp)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], np.array(values))
@@ -188,7 +188,7 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
 
 def _chosen(name: str, kind: str, there: list[str], what: str) -> str:
     if not there:
-        raise MatrixFileError(f"{name}: no {kind} in it: was the output broken off?")
+        raise MatrixFileError(f"{name}: no {kind} found: is the file truncated?")
     if what not in there and len(there) > 1:
-        raise MatrixFileError(f"{name}: {kind} {what} is not in it; there are {', '.join(there)}")
+        raise MatrixFileError(f"{name}: {kind} {what} not found; there are {', '.join(there)}")
     return what if what in there else there[0]

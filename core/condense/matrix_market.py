@@ -1,8 +1,7 @@
 """Matrix Market files of real square matrices: coordinate or array; general, symmetric or skew-symmetric.
 
-Read here, line by line, since a parser in C may crash where a file was cut off inside a number, and allocates what a
-header of two numbers asks for. Source: R. Boisvert, R. Pozo, K. Remington, *The Matrix Market exchange formats*, NISTIR
-5935 (1996).
+Files are parsed line by line in Python: a parser in C may crash at a number that was cut off, and allocates whatever size a
+header states. Source: R. Boisvert, R. Pozo, K. Remington, *The Matrix Market exchange formats*, NISTIR 5935 (1996).
 """
 
 import numpy as np
@@ -12,51 +11,53 @@ from .exported import Exported, MatrixFileError
 from .matrix_words import real, whole
 
 MOST_ROWS = 1_000_000
-"""Of a matrix of entries; one that is written whole has as many as the file's length allows."""
+"""Largest number of rows; the length of the file limits a dense matrix further."""
 
 SIGN = {"general": 0.0, "symmetric": 1.0, "skew-symmetric": -1.0}
-"""Of the entries' counterparts; 0: the file has them itself."""
+"""Sign of the mirrored entries; 0: the file contains all entries."""
 
 
 def read(name: str, text: str) -> Exported:
-    """The matrix (n, n) in the text of a file; no freedoms are named.
+    """The matrix (n, n) in the text of a file; the format does not name freedoms.
 
     Args:
-        name: of the file.
-        text: all of it.
+        name: of the file, for messages.
+        text: its content.
 
     Raises:
-        MatrixFileError: another kind of matrix, not square, broken off, or with an entry that it has no place for.
+        MatrixFileError: another kind of matrix, not square, truncated, or with an entry outside it.
     """
     lines = text.splitlines()
     words = lines[0].lower().split()
     if len(words) != 5 or words[2] not in ("coordinate", "array") or words[3] not in ("real", "integer", "double"):
         raise MatrixFileError(f"{name}: not a Matrix Market file of real numbers: its first line is {lines[0][:80]!r}")
     if words[4] not in SIGN:
-        raise MatrixFileError(f"{name}: {words[4][:40]!r}: general, symmetric and skew-symmetric matrices are read")
-    rest = [(k, line.split()) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("%")]
+        raise MatrixFileError(f"{name}: {words[4][:40]!r}: only general, symmetric or skew-symmetric matrices are read")
+    content = [(k, line.split()) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("%")]
     sparse = words[2] == "coordinate"
-    if not rest or len(rest[0][1]) != (3 if sparse else 2):
-        raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: broken off?")
-    number, size = rest[0]
+    if not content or len(content[0][1]) != (3 if sparse else 2):
+        raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: truncated?")
+    number, size = content[0]
     rows, columns, *_ = (whole(name, number, word) for word in size)
     if rows != columns:
         raise MatrixFileError(f"{name}: a matrix of {rows} × {columns}: a stiffness is square")
     if not 0 < rows <= MOST_ROWS:
-        raise MatrixFileError(f"{name}, line {number}: {rows} rows: 1 to {MOST_ROWS} are read")
+        raise MatrixFileError(f"{name}, line {number}: {rows} rows: only 1 to {MOST_ROWS} are read")
     sign = SIGN[words[4]]
     if sparse:
-        return _entries(name, rest[1:], rows, whole(name, number, size[2]), sign)
-    return _whole(name, rest[1:], rows, sign)
+        return _entries(name, content[1:], rows, whole(name, number, size[2]), sign)
+    return _whole(name, content[1:], rows, sign)
 
 
 def _entries(name: str, lines: list[tuple[int, list[str]]], n: int, count: int, sign: float) -> Exported:
     if len(lines) != count:
-        raise MatrixFileError(f"{name}: {len(lines)} entries, expected {count}: broken off?")
+        raise MatrixFileError(f"{name}: {len(lines)} entries, expected {count}: truncated?")
     at, values = np.zeros((count, 2), dtype=np.intp), np.zeros(count)
     for k, (number, words) in enumerate(lines):
         if len(words) != 3:
-            raise MatrixFileError(f"{name}, line {number}: {len(words)} columns: row, column, value: broken off?")
+            raise MatrixFileError(
+                f"{name}, line {number}: {len(words)} columns, expected row, column, value: truncated?"
+            )
         at[k], values[k] = [whole(name, number, word) for word in words[:2]], real(name, number, words[2])
         if not (1 <= at[k, 0] <= n and 1 <= at[k, 1] <= n):
             raise MatrixFileError(
@@ -67,19 +68,19 @@ def _entries(name: str, lines: list[tuple[int, list[str]]], n: int, count: int, 
         raise MatrixFileError(f"{name}: an entry is given twice: two matrices in one file?")
     other = np.flatnonzero(i != j) if sign else np.zeros(0, dtype=np.intp)
     if sign and len(np.unique(np.minimum(i, j) * n + np.maximum(i, j))) != count:
-        raise MatrixFileError(f"{name}: both triangles, though its first line announces one: correct that line")
+        raise MatrixFileError(f"{name}: both triangles, but its first line declares one: correct that line")
     values = np.concatenate([values, sign * values[other]])
     rows, columns = np.concatenate([i, j[other]]), np.concatenate([j, i[other]])
     return Exported(name, ss.csr_array((values, (rows, columns)), shape=(n, n)))
 
 
 def _whole(name: str, lines: list[tuple[int, list[str]]], n: int, sign: float) -> Exported:
-    """Column by column; of one triangle the lower, without the diagonal of a skew-symmetric one."""
+    """A dense matrix column by column; of a symmetric one the lower triangle, of a skew-symmetric one without diagonal."""
     count = n * n if not sign else n * (n + 1) // 2 if sign > 0 else n * (n - 1) // 2
     if len(lines) != count:
-        raise MatrixFileError(f"{name}: {len(lines)} values, expected {count} for {n} rows: broken off?")
+        raise MatrixFileError(f"{name}: {len(lines)} values, expected {count} for {n} rows: truncated?")
     if wrong := next((k for k, words in lines if len(words) != 1), None):
-        raise MatrixFileError(f"{name}, line {wrong}: one value in each line of an array: correct it")
+        raise MatrixFileError(f"{name}, line {wrong}: an array has one value per line: correct it")
     values = [real(name, k, words[0]) for k, words in lines]
     matrix = np.zeros((n, n))
     if not sign:

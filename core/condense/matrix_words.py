@@ -5,7 +5,7 @@ import re
 from .exported import MatrixFileError
 
 LARGEST_LABEL = 2**31
-"""Of a node, row or column."""
+"""Limit for the label of a node, row or column."""
 
 LARGEST_ENTRY = 1e30
 """Magnitude of a matrix entry; beyond it, products overflow."""
@@ -14,12 +14,12 @@ _FORM = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+|[+-]\d+)?")
 
 
 def whole(name: str, number: int, word: str) -> int:
-    """A label or an index, positive or negative.
+    """Parse a label or an index, positive or negative.
 
     Args:
         name: of the file.
         number: of the line.
-        word: as it stands there.
+        word: to parse.
 
     Raises:
         MatrixFileError: naming the line.
@@ -27,12 +27,12 @@ def whole(name: str, number: int, word: str) -> int:
     if not re.fullmatch(r"[+-]?\d{1,20}", word):
         raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a whole number: columns shifted?")
     if abs(value := int(word)) >= LARGEST_LABEL:
-        raise MatrixFileError(f"{name}, line {number}: {value}: no node or row has so large a number: columns shifted?")
+        raise MatrixFileError(f"{name}, line {number}: {value}: too large for a node or row: columns shifted?")
     return value
 
 
 def real(name: str, number: int, word: str) -> float:
-    """A number of at most ``LARGEST_ENTRY``; also as 1.5D+03 and 1.5+3.
+    """Parse a number of at most ``LARGEST_ENTRY``; also as 1.5D+03 and 1.5+3.
 
     Raises:
         MatrixFileError: naming the line.

@@ -1,6 +1,6 @@
-"""A segment of a blade: a complex stiffness element and the rigid body that rides on it (Park et al. 2010, figs 1 and 2).
+"""A segment of a blade: a complex stiffness element and the rigid body that follows it (Park et al. 2010, figs 1 and 2).
 
-A 12×12 stiffness between two frames that has six rigid-body modes says no more than a 6×6: the wrench ``k ρ`` on b, with
+A 12×12 stiffness between two frames that has six rigid-body modes is equivalent to a 6×6: the wrench ``k ρ`` on b, with
 ρ = ξ_b − ξ_a in a's axes. That is the complex stiffness element of ``core.element.beams``.
 """
 
@@ -27,13 +27,13 @@ MOTIONS = tuple(f"{kind} {axis}" for kind in ("translation along", "rotation abo
 
 @dataclass(frozen=True)
 class Segment:
-    """A complex stiffness element from frame a to frame b, and the rigid body that rides on it; in a's axes throughout.
+    """A complex stiffness element from frame a to frame b, and the rigid body that follows it; in a's axes throughout.
 
     Attributes:
         undeformed: (4, 4) pose of b in a's frame.
-        stiffness: (6, 6) wrench on b from the twist of b seen from a, both about a's origin.
+        stiffness: (6, 6) wrench on b from the twist of b relative to a, both about a's origin.
         inertia: (6, 6) of the body, about a's origin.
-        ride: (6, 6) the body's twist seen from a, from that of b.
+        ride: (6, 6) the body's twist relative to a, from that of b.
     """
 
     undeformed: Array
@@ -46,13 +46,13 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     """The 6×6 of a complex stiffness element from the 12×12 between its end frames.
 
     Args:
-        stiffness: (12, 12) wrenches on a, then on b, from their twists, each in its own axes.
+        stiffness: (12, 12) wrenches on a, then on b, from their twists, each in the axes of its frame.
         undeformed: (4, 4) pose of b in a's frame.
-        name: what to call it in a message.
+        name: label in messages.
 
     Raises:
-        CondensationError: wrong size, not finite, not symmetric, not positive semi-definite, or not with just six
-            rigid-body modes.
+        CondensationError: wrong size, not finite, not symmetric, not positive semi-definite, or not exactly six rigid-body
+            modes.
     """
     k = np.asarray(stiffness, float)
     where = f"stiffness of {name!r}"
@@ -66,14 +66,14 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     if (diagonal <= 0).any():
         i = int(diagonal.argmin())
         raise CondensationError(
-            f"{where}: diagonal {i} is {diagonal[i]:g}: not positive semi-definite, or nothing resists the "
+            f"{where}: diagonal {i} is {diagonal[i]:g}: not positive semi-definite, or no stiffness against "
             f"{MOTIONS[i % 6]} of frame {'ab'[i // 6]}; wrong sign, order of freedoms, or a freedom without stiffness?"
         )
     unit = k / np.sqrt(np.outer(diagonal, diagonal))
     wrong = np.abs(unit - unit.T).max()
     if wrong > SYMMETRY_TOLERANCE:
         raise CondensationError(
-            f"{where}: {wrong:.1e} from symmetric: one triangle only, or rows and columns in two orders?"
+            f"{where}: not symmetric (by {wrong:.1e}): one triangle only, or rows and columns in different orders?"
         )
     lowest = np.linalg.eigvalsh(unit)[0]
     if lowest < -SYMMETRY_TOLERANCE:
@@ -87,8 +87,8 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     left = np.abs(unit @ carried).max(0) / (np.abs(unit) @ np.abs(carried)).max(0)
     if left.max() > SYMMETRY_TOLERANCE:
         raise CondensationError(
-            f"{where}: {MOTIONS[int(left.argmax())]} as a rigid body is resisted ({left.max():.1e} of the forces in it): "
-            "no six rigid-body modes; a support left in the model, or frames not where the matrix has its nodes (units?)"
+            f"{where}: {MOTIONS[int(left.argmax())]} as a rigid body causes forces ({left.max():.1e} of their terms): fewer "
+            "than six rigid-body modes; a support left in the model, or frames not at the nodes of the matrix (units?)"
         )
     back = sp.adjoint(sp.inverse(undeformed))
     k = back.T @ (0.5 * (k + k.T))[6:, 6:] @ back
@@ -103,16 +103,16 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
 
 
 def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, name: str = "segment") -> Segment:
-    """A segment of which only the 12×12 and the rigid body are known, as when another code has condensed it.
+    """A segment from its 12×12 stiffness and its rigid body, as condensed by another code.
 
-    The body rides as the mass of a straight uniform beam of the same flexibility does. Of such a beam the sections'
-    compliance c follows from ``f = ∫ Ad c Adᵀ dt`` over its length, linear in c.
+    The body moves as the mass of a straight uniform beam of the same flexibility f. The compliance c of that beam's sections
+    solves ``f = ∫ Ad c Adᵀ dt`` over its length, which is linear in c.
 
     Args:
         stiffness: (12, 12), see ``between``.
         undeformed: (4, 4) pose of b in a's frame.
         inertia: (6, 6) about a's frame and in its axes; see ``mechanism.inertia``.
-        name: what to call it in a message.
+        name: label in messages.
 
     Raises:
         CondensationError: as ``between``; frames that coincide.
@@ -120,7 +120,7 @@ def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, nam
     k = between(stiffness, undeformed, name)
     if not undeformed[:3, 3].any():
         raise CondensationError(
-            f"undeformed: the end frames of {name!r} coincide: a segment has a length; give b's place seen from a"
+            f"undeformed: the end frames of {name!r} coincide: a segment needs a length; give the pose of b in a's frame"
         )
     t, weight, within = sections.collocation(sections.GAUSS)
     slices = np.repeat(np.eye(4)[None], len(t), axis=0)
@@ -130,8 +130,6 @@ def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, nam
     c = np.linalg.solve(spread, np.linalg.inv(k).ravel()).reshape(6, 6)
     twists = np.einsum("qp,pij->qij", within, lever @ c @ np.swapaxes(lever, -1, -2)) @ k
     line = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-    line[3:, 3:] = np.outer(
-        undeformed[:3, 3], undeformed[:3, 3]
-    )  # turning about the line itself is averaged on its own
+    line[3:, 3:] = np.outer(undeformed[:3, 3], undeformed[:3, 3])  # rotation about the line is averaged separately
     masses = weight[:, None, None] * transformed(np.repeat(line[None], len(t), axis=0), slices)
     return Segment(undeformed, k, inertia, np.linalg.solve(masses.sum(0), (masses @ twists).sum(0)))

@@ -4,13 +4,13 @@ A freedom is a displacement along, or a rotation about, a coordinate axis at a p
 (in its own axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:
 
 * ``rigid`` (RBE2, MPC beam): every freedom of the section follows its frame. Warping and the contraction of the section
-  are prevented: right where the section really is stiff (a flange, a bulkhead, the clamp of a test rig) and a bound from
-  above everywhere else;
+  are prevented: correct where the section really is stiff (a flange, a bulkhead, the clamp of a test rig), and an upper
+  bound of the stiffness otherwise;
 * ``average`` (RBE3, distributing coupling): the frame moves as the section does on average, by weighted least squares,
-  ``mean = (RᵀWR)⁻¹RᵀW``; its wrench acts on the section as tractions ``WR(RᵀWR)⁻¹``, even for a force, linear for a
-  moment. That is St Venant's own distribution for tension and bending, so these are exact whatever the length; for shear
-  and torsion it is not, and the section is too soft within about its own size. With part of the model on either side
-  (``condensation.segments_in_place``) it only reads the mean, and all is right.
+  ``mean = (RᵀWR)⁻¹RᵀW``; its wrench acts on the section as tractions ``WR(RᵀWR)⁻¹``, uniform for a force, linear for a
+  moment. That is St Venant's distribution for tension and bending, which are exact for any length. For shear and torsion
+  it is not, and the blade is too soft within about the size of the section. Inside a model, with elements on both sides
+  (``condensation.segments_in_place``), the tie only measures the mean and causes no such error.
 """
 
 from dataclasses import dataclass
@@ -26,9 +26,9 @@ Array = NDArray[Any]
 Index = NDArray[np.intp]
 Kind = Literal["rigid", "average"]
 
-ASYMMETRY = 1e-5  # of a stiffness with a unit diagonal: what seven printed digits leave
-ON_SECTION = 1e-6  # distance from its plane, of the model's size
-FARTHEST = 1e6  # m, of a point: what is beyond is no blade, and its products overflow
+ASYMMETRY = 1e-5  # largest asymmetry of a stiffness with a unit diagonal: rounding to seven printed digits
+ON_SECTION = 1e-6  # largest distance of a section's node from its plane, as a fraction of the model's size
+FARTHEST = 1e6  # largest coordinate of a point, m: larger ones are implausible, and their products overflow
 
 
 class CondensationError(ValueError):
@@ -37,10 +37,10 @@ class CondensationError(ValueError):
 
 @dataclass(frozen=True)
 class FiniteElements:
-    """What condensation needs of a finite element model of n freedoms. SI, all in one set of axes.
+    """A finite element model of n freedoms, as far as condensation needs it. SI, all in one set of axes.
 
     Attributes:
-        name: what to call it in a message.
+        name: label in messages.
         points: (n, 3) where each freedom acts.
         directions: (n,) 0, 1, 2: displacement along x, y, z; 3, 4, 5: rotation about them.
         stiffness: (n, n) symmetric, of the model without supports.
@@ -74,12 +74,12 @@ class FiniteElements:
         wrong = float(abs(scaled - scaled.T).max()) if n else 0.0
         if wrong > ASYMMETRY:
             raise CondensationError(
-                f"{self.name}: stiffness is {wrong:.1e} from symmetric: only one triangle read, or follower loads in it?"
+                f"{self.name}: stiffness is not symmetric (by {wrong:.1e}): only one triangle read, or follower loads in it?"
             )
 
 
 def motion(points: Array, directions: Index, frame: Array) -> Array:
-    """(n, 6): freedoms moved by a unit twist of ``frame`` (4, 4), in its own axes, that they follow rigidly."""
+    """Displacements (n, 6) of freedoms that follow unit twists of ``frame`` (4, 4), in its axes, rigidly."""
     axis = np.eye(3)[directions % 3]
     turning = directions >= 3
     lever = np.where(turning[:, None], axis, np.cross(points - frame[:3, 3], axis))
@@ -91,7 +91,7 @@ class Tie:
     """A section's freedoms tied to a frame; made by ``rigid``, ``average`` or ``section``.
 
     Attributes:
-        name: what to call it in a message.
+        name: label in messages.
         kind: how they are tied.
         frame: (4, 4) pose in the model's axes.
         freedoms: (k,) indices.
@@ -108,29 +108,29 @@ class Tie:
 
 
 def rigid(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str) -> Tie:
-    """Every freedom given follows the frame.
+    """Tie in which every given freedom follows the frame.
 
     Raises:
-        CondensationError: no freedoms, or too few to tell the six motions of a frame.
+        CondensationError: no freedoms, or too few to determine the six motions of a frame.
     """
     return _tie(fe_model, freedoms, frame, name, "rigid", np.ones(len(freedoms)))
 
 
 def average(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
-    """The frame moves as the given freedoms do on average; rotations are left free, but not where a section is one node.
+    """Tie in which the frame moves as the given freedoms do on average; rotations are free, unless a section is one node.
 
     Args:
         fe_model: the model.
         freedoms: (k,) indices.
         frame: (4, 4) pose in the model's axes.
-        name: what to call it in a message.
-        weights: (k,) share of the section's area each freedom stands for, by default its lumped mass; or (k, k), the
-            section's ∫NᵀN of its shape functions N. Shares do for nodes whose shares also integrate y·N: those of Simpson's
-            rule (9 nodes a face). Faces of 8 nodes have corners of negative share and need the matrix; even weights
-            concentrate the load at their corners, and were seen to soften a square bar's tension by a quarter.
+        name: label in messages.
+        weights: (k,) share of the section's area that each freedom represents, by default its lumped mass; or (k, k), the
+            matrix ∫NᵀN of the section's shape functions N. Shares suffice if they also integrate y·N, as those of Simpson's
+            rule do (9 nodes per face). Corners of 8-node faces have negative shares and need the matrix; uniform weights
+            concentrate the load at the corners: a square bar in tension became softer by a quarter.
 
     Raises:
-        CondensationError: no freedoms, too few to tell the six motions of a frame, or no usable weights.
+        CondensationError: no freedoms, too few to determine the six motions of a frame, or no usable weights.
     """
     moves = fe_model.directions[freedoms] < 3
     if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
@@ -138,17 +138,17 @@ def average(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, 
     shares = (fe_model.mass[freedoms] if weights is None else weights)[moves]
     if shares.ndim == 1 and not (shares > 0).all():
         raise CondensationError(
-            f"section {name!r}: weights {'are the lumped masses, which ' if weights is None else ''}reach down to "
-            f"{shares.min(initial=0.0):g}: give each freedom's share of the section, or ∫NᵀN where corners have a negative one"
+            f"section {name!r}: smallest weight {shares.min(initial=0.0):g}{' (lumped mass)' if weights is None else ''}: give "
+            "each freedom's positive share of the section, or the matrix ∫NᵀN if corners have negative shares"
         )
     return _tie(fe_model, freedoms[moves], frame, name, "average", shares if shares.ndim == 1 else shares[:, moves])
 
 
 def section(fe_model: FiniteElements, frame: Array, name: str, kind: Kind = "average") -> Tie:
-    """Tie the nodes in the frame's own yz plane.
+    """Tie the nodes in the frame's yz plane.
 
     Raises:
-        CondensationError: if there are none (the message says where the nearest lie), or too few.
+        CondensationError: no nodes (the message gives the distance of the nearest), or too few.
     """
     away = (fe_model.points - frame[:3, 3]) @ frame[:3, 0]
     near = np.abs(away) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
@@ -173,8 +173,8 @@ def _tie(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, kin
     size = np.sqrt(np.diagonal(gram))
     if (size <= 0).any() or np.linalg.eigvalsh(gram / np.outer(size, size))[0] < 1e-12:
         raise CondensationError(
-            f"section {name!r}: its {len(freedoms)} freedoms cannot tell six motions of a frame: "
-            "they lie on one line or point; take all nodes of the section, or of a beam model each node's six freedoms"
+            f"section {name!r}: its {len(freedoms)} freedoms do not determine the six motions of a frame: they lie on one line "
+            "or point; take all nodes of the section, or, in a beam model, the six freedoms of the node"
         )
     return Tie(name, kind, frame, freedoms, R, np.linalg.solve(gram, weighed))
 

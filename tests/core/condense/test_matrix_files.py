@@ -204,7 +204,7 @@ HEADER = f"DMIG    {'KAAX':8}{0:8d}"
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("", "no matrix in it"),
+        ("", "no matrix found"),
         ("1, 1, 1, 1, 2.0\n1, 1, 2, 1", "line 2: 4 columns"),
         ("hello world", "line 1: 2 columns"),
         ("1 1 2.0\n1 one 2.0", "line 2: 'one' is not a whole number"),
@@ -213,10 +213,10 @@ HEADER = f"DMIG    {'KAAX':8}{0:8d}"
         ("1 1 2.0\n3 3 3.0", "not all from 1 to the last"),
         ("1, 0, 1, 0, 2.0", "freedom 0 of node 1: only 1 to 6"),
         ("%%MatrixMarket matrix coordinate real general\n2 3 1\n1 1 1.0\n", "2 × 3: a stiffness is square"),
-        ("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1.0\n", "1 entries, expected 2: broken off"),
-        (user_element(("STIFFNESS",))[:-40], "values, expected 171 for the triangle of 18 freedoms: broken off"),
+        ("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1.0\n", "1 entries, expected 2: truncated"),
+        (user_element(("STIFFNESS",))[:-40], "values, expected 171 for the triangle of 18 freedoms: truncated"),
         (user_element(()), "no .MATRIX, TYPE in it"),
-        (user_element(("MASS", "DAMPING")), "TYPE STIFFNESS is not in it; there are MASS, DAMPING"),
+        (user_element(("MASS", "DAMPING")), "TYPE STIFFNESS not found; there are MASS, DAMPING"),
         (HEADER + f"{2:8d}{2:8d}", "DMIG KAAX has form 2, type 2"),
         (HEADER + f"{6:8d}{4:8d}", "DMIG KAAX has form 6, type 4"),
         (f"DMIG*   {'KAAX':16}{2:16d}{1:16d}", "column of KAAX before its header"),

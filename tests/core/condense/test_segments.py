@@ -221,17 +221,17 @@ def put(k: Array, entry: tuple[int, int], value: float) -> Array:
     [
         (lambda k: k[:11, :11], r"shape \(11, 11\), expected \(12, 12\)"),
         (lambda k: put(k, (3, 4), np.nan), r"not finite at index \[3, 4\]"),
-        (lambda k: put(k, (1, 5), 1.1 * k[1, 5]), "from symmetric: one triangle only"),
-        (lambda k: np.triu(k), "from symmetric"),
+        (lambda k: put(k, (1, 5), 1.1 * k[1, 5]), "not symmetric .*: one triangle only"),
+        (lambda k: np.triu(k), "not symmetric"),
         (lambda k: -k, "diagonal .* not positive semi-definite"),
         (
             lambda k: put(put(k, (1, 7), 2 * k[1, 7]), (7, 1), 2 * k[7, 1]),
             "not positive semi-definite .lowest eigenvalue",
         ),
-        (lambda k: k + np.diag([1e-3 * k[0, 0]] + [0.0] * 11), "translation along x as a rigid body is resisted"),
+        (lambda k: k + np.diag([1e-3 * k[0, 0]] + [0.0] * 11), "translation along x as a rigid body causes forces"),
         (
             lambda k: k + np.diag([0.0] * 9 + [0.1 * k[9, 9]] + [0.0] * 2),
-            "rotation about x as a rigid body is resisted",
+            "rotation about x as a rigid body causes forces",
         ),
     ],
     ids=["size", "nan", "asymmetric", "one triangle", "sign", "indefinite", "grounded", "grounded in rotation"],
@@ -246,7 +246,7 @@ def test_a_matrix_of_another_place_is_refused() -> None:
     k, _, undeformed = beam_segment(0.5)
     wrong = undeformed.copy()
     wrong[0, 3] *= 1e3
-    with pytest.raises(CondensationError, match=r"as a rigid body is resisted .*units"):
+    with pytest.raises(CondensationError, match=r"as a rigid body causes forces .*units"):
         between(k, wrong, "segment")
 
 
@@ -258,7 +258,7 @@ def test_a_mechanism_between_sections_is_refused() -> None:
     free[3, 4] = free[4, 3] = 1.0
     with pytest.raises(CondensationError, match="'segment': more than six motions without force"):
         between(D.T @ free @ D, undeformed, "segment")
-    with pytest.raises(CondensationError, match="nothing resists the rotation about x of frame a"):
+    with pytest.raises(CondensationError, match="no stiffness against rotation about x of frame a"):
         between(D.T @ np.diag([1.0, 1, 1, 0, 1, 1]) @ D, undeformed, "segment")
 
 
@@ -278,15 +278,15 @@ def lump(**changes) -> FiniteElements:
         (lambda: ties.rigid(lump(), np.zeros(0, int), np.eye(4), "tip"), "section 'tip': a tie with no nodes"),
         (lambda: ties.average(lump(), np.zeros(0, int), np.eye(4), "tip"), "section 'tip': a tie with no nodes"),
         (lambda: ties.section(lump(), at(0.5), "0.5 m"), "section '0.5 m': no nodes .* nearest are -0.1 m"),
-        (lambda: ties.average(lump(), np.arange(12), at(0.4), "two"), "6 freedoms cannot tell six motions"),
+        (lambda: ties.average(lump(), np.arange(12), at(0.4), "two"), "6 freedoms do not determine the six motions"),
         (
             lambda: ties.average(lump(mass=np.zeros(42)), np.arange(42), at(0.4), "bare"),
-            "weights are the lumped masses",
+            r"smallest weight .* \(lumped mass\)",
         ),
-        (lambda: ties.average(lump(), np.arange(42), at(0.4), "edge", -np.ones(42)), "weights reach down to -1"),
+        (lambda: ties.average(lump(), np.arange(42), at(0.4), "edge", -np.ones(42)), "smallest weight -1"),
         (lambda: lump(stiffness=ss.csr_array(np.eye(41))), r"stiffness has shape \(41, 41\), expected \(42, 42\)"),
         (lambda: lump(points=np.zeros((42, 2))), r"points has shape \(42, 2\)"),
-        (lambda: lump(stiffness=ss.csr_array(np.tri(42))), "from symmetric"),
+        (lambda: lump(stiffness=ss.csr_array(np.tri(42))), "not symmetric"),
         (lambda: lump(stiffness=ss.csr_array(np.full((42, 42), np.inf))), "not finite"),
         (lambda: chain_from_segments([], np.eye(4)), "segments: none given"),
     ],
