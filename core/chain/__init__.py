@@ -1,7 +1,7 @@
 """The fast solver for a blade: a chain of elements with block-tridiagonal matrices.
 
 A ``Chain`` and a rotor speed come in. ``steady.steady`` finds the steady state, ``pencil.linearize`` the matrices about it and
-``lanczos.lanczos`` the lowest modes, whose shapes ``mode_shapes.mode_shapes`` reads. ``as_mechanism`` gives the same chain to
+``lanczos.lanczos`` the lowest modes, whose shapes ``mode_shapes.mode_shapes`` samples. ``as_mechanism`` converts a chain for
 ``multibody``.
 """
 

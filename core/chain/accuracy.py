@@ -1,7 +1,7 @@
-"""How far frequencies are from those of ever finer meshes, from a few meshes, and from rounding.
+"""Errors of frequencies due to discretisation, estimated from three meshes, and due to rounding.
 
-With all modes of every mesh proved to be there (``completeness``), the k-th lowest of one mesh belongs to the k-th lowest of
-another, whatever their shapes: eigenvalues in order are continuous functions of the matrices. (Roache, *Verification and
+Since no mode of any mesh is missing (``completeness``), the k-th lowest of one mesh corresponds to the k-th lowest of
+another, whatever their shapes: ordered eigenvalues are continuous functions of the matrices. (Roache, *Verification and
 Validation in Computational Science and Engineering*, 1998, for Richardson's extrapolation and the safety factors.)
 """
 
@@ -20,17 +20,17 @@ from .steady import Steady
 Array = NDArray[np.float64]
 
 FLOOR = 1e-13
-"""No frequency is claimed to be more accurate, relative."""
+"""Smallest relative error that is claimed for a frequency."""
 
 _NEAR_THEORY = 0.1  # relative distance from the theoretical order that counts as the asymptotic range
-_FIRM, _WARY = 1.25, 3.0  # safety factors there, and elsewhere
-_CHANCE = 0.1  # of a lower mode's uncertainty, the least: changes may cancel by chance
-_SLOWEST = 0.5  # order of convergence taken for granted, of a sequence that converges at all
+_FIRM, _WARY = 1.25, 3.0  # safety factors within that range, and outside it
+_CHANCE = 0.1  # smallest fraction of a lower mode's uncertainty: changes may cancel by chance
+_SLOWEST = 0.5  # smallest order of convergence that is assumed for a converging sequence
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """From three meshes, each (m,): the extrapolated frequencies, and relative uncertainties of these and of the finest's."""
+    """Frequencies (m,) extrapolated from three meshes, and relative uncertainties (m,) of these and of the finest mesh's."""
 
     values: Array
     of_values: Array
@@ -38,14 +38,15 @@ class Estimate:
 
 
 def estimate(f: Array, order: int) -> Estimate:
-    """From frequencies (3, m) of meshes each twice as fine as the one before, of a theoretical ``order``.
+    """Extrapolate frequencies (3, m) of meshes each twice as fine as the previous one, with a theoretical ``order``.
 
-    Where the observed order is the theoretical one, the error of the finest is Richardson's, and that of the extrapolated
-    value is bounded by its change from the extrapolation of the first two. Elsewhere the finest is not extrapolated, and the
-    slower of both orders counts; a sequence that does not converge has three times its spread.
+    Where the observed order agrees with the theoretical one, the error of the finest mesh is Richardson's estimate, and that
+    of the extrapolated value is bounded by its change from the extrapolation of the first two meshes. Otherwise the finest
+    value is not extrapolated, and the lower of the two orders is used; for a sequence that does not converge, the
+    uncertainty is three times its spread.
     """
     before, last = f[1] - f[0], f[2] - f[1]
-    quiet = np.abs(before) <= 1e3 * FLOOR * f[2]  # rounding, of which there is no order
+    quiet = np.abs(before) <= 1e3 * FLOOR * f[2]  # rounding, which has no order
     with np.errstate(divide="ignore", invalid="ignore"):
         observed = np.log2(before / last)
     converging = np.isfinite(observed) & (observed > _SLOWEST) & ~quiet
@@ -64,9 +65,10 @@ def estimate(f: Array, order: int) -> Estimate:
 def rounding(
     body: Chain, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
 ) -> Array:
-    """(m,) relative error by rounding: three times the change that a rounding of the relative poses makes.
+    """(m,) relative error due to rounding: three times the change caused by rounding the relative poses.
 
-    What rigid or nearly rigid strains do to the tension is in it. The vectors stay; their own error counts squared.
+    It includes the effect of rigid or nearly rigid strains on the tension. The vectors are unchanged: their error enters
+    squared.
     """
     shape = state.shape
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)

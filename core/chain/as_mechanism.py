@@ -1,7 +1,7 @@
 """A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
 
-A joint at the root is an elastic connection too, without length: it lies along the root's axes, the coordinates that it
-clamps are prescribed to stay at zero (Φᴹ), and its springs are on the others.
+A joint at the root is an elastic connection too, without length, along the root's axes: its clamped coordinates are
+prescribed as zero (Φᴹ), and its springs act on the others.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = 
     """
     n, between = len(chain.nodes) - 1, chain.between
     bodies = (Body("hub"), *(Body(f"body {k}", chain.lumps[k]) for k in range(n + 1)))
-    frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both of their ends
+    frames = np.broadcast_to(np.eye(4), (n, 4, 4)).copy()  # of the connections, in the bodies at both ends
     clamped: list[str] = []
     springs: list[CoordinateSpring] = []
     if chain.clamped.size:

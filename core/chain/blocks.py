@@ -1,7 +1,7 @@
 """Block-tridiagonal matrices of a chain of bodies.
 
-A block holds the internal coordinates β of one element and then the six of the node beyond it, so a block is coupled to the
-next only through its last six rows.
+A block contains the internal coordinates β of one element and then the six of the node at its end, so a block is coupled to
+the next only through its last six rows.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Tridiagonal:
 def from_elements(on_ends: Array, lever: Array, on_nodes: Array) -> Tridiagonal:
     """Sum element matrices (n, d+6, d+6), ordered a, b, β, and nodal ones (n+1, 6, 6); node 0 is clamped and dropped.
 
-    ``lever`` (n, 6, 6) takes twists of b from its own axes to those of a, in which the element matrices are.
+    ``lever`` (n, 6, 6) transforms twists of b from the axes of b to those of a, in which the element matrices are given.
     """
     n, d = len(on_ends), on_ends.shape[-1] - 6
     out = Tridiagonal(np.empty((n, d, d)), np.empty((n - 1, 6, d)), np.empty((n - 1, d, 6)))
@@ -141,11 +141,11 @@ def _put(a: Six, out: Array, v: int, at: int) -> None:
 
 @compiled
 def times(t: Transposed, x: Array, out: Array) -> None:
-    """The matrix times the vectors that the rows of x (k, dn or more) begin with, to where those of ``out`` begin."""
+    """Multiply the matrix by vectors at the start of the rows of x (k, dn or more), into the start of the rows of ``out``."""
     n, d = t.diagonal.shape[:2]
     for i in range(n):
         at = d * i
-        for v in range(0, len(x), 2):  # two at a time; the last one of an odd number with itself
+        for v in range(0, len(x), 2):  # two at a time; an odd last one is paired with itself
             w = min(v + 1, len(x) - 1)
             for h in range(0, d, 6):
                 a, b = _ZERO, _ZERO
@@ -169,9 +169,9 @@ class Factor(NamedTuple):
     """Block LU factors, every block transposed.
 
     Attributes:
-        pivots: (n, d, d) inverses of the diagonal blocks, less what was eliminated.
+        pivots: (n, d, d) inverses of the diagonal blocks after elimination.
         lower, upper: (n−1, 6, d) and (n−1, d, 6) the blocks below and above.
-        positive: whether all pivots are: of a symmetric matrix, whether it is positive definite.
+        positive: whether all pivots are positive: a symmetric matrix then is positive definite.
     """
 
     pivots: Array
@@ -199,7 +199,7 @@ def _eliminate(pivots: Array, lower: Array, upper: Array) -> int:
     n, d = pivots.shape[:2]
     between, less, kind = np.empty((6, 6)), np.empty((6, d)), 2
     for k in range(n):
-        if k > 0:  # less the block below times the last six of the pivot's inverse times the block above
+        if k > 0:  # minus the block below times the last six of the pivot's inverse times the block above
             for i in range(6):
                 for j in range(6):
                     between[i, j] = pivots[k - 1, d - 6 + i, d - 6 + j]

@@ -2,9 +2,9 @@
 
 For K positive definite, M positive semi-definite and C skew, the Hermitian matrix H(ω) = K + iωC − ω²M has as many negative
 eigenvalues as there are natural frequencies between 0 and ω: its eigenvalues are positive at ω = 0, and each one that
-crosses zero does so downwards, for x*H′x = −(x*Kx + ω²x*Mx)/ω < 0 wherever H x = 0. A block LDLᴴ factorisation gives the signs
-without an eigenvalue. (Sylvester 1852; Parlett, *The Symmetric Eigenvalue Problem*, 1998, sec. 3.3; Wittrick and Williams,
-Quart. J. Mech. Appl. Math. 24, 1971, 263, for the count.)
+crosses zero does so downwards, since x*H′x = −(x*Kx + ω²x*Mx)/ω < 0 wherever H x = 0. A block LDLᴴ factorisation gives their
+signs without computing them. (Sylvester 1852; Parlett, *The Symmetric Eigenvalue Problem*, 1998, sec. 3.3; Wittrick and
+Williams, Quart. J. Mech. Appl. Math. 24, 1971, 263, for the count.)
 """
 
 import numpy as np
@@ -16,8 +16,8 @@ from .pencil import ChainPencil
 Array = NDArray[np.float64]
 
 _MIN_GAP, _MIN_DISTANCE, _MAX_DISTANCE = 1e-3, 1e-6, 0.03
-"""Relative distances: the least gap in which to count; otherwise the distance of the count from a frequency, at least and at
-most."""
+"""Relative distances: the smallest gap in which to count; in smaller ones, the least and the largest distance of the count
+from a frequency."""
 
 
 class MissedModesError(ArithmeticError):
@@ -27,21 +27,21 @@ class MissedModesError(ArithmeticError):
 def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
     """Prove that the frequencies are the lowest ones with their multiplicities.
 
-    The count is taken in the gap above the last frequency. If that frequency belongs to a cluster that ``count`` cuts, the
-    count may exceed what was found; then the count below the cluster must not.
+    The count is taken in the gap above the last frequency. If that frequency belongs to a cluster of which only some modes
+    were requested, the count may exceed the number found; then the count below the cluster must agree.
 
     Args:
         p: the pencil.
         frequencies: (m,) ascending.
-        beyond: (k,) estimates of the next frequencies, from above, which show the gap.
-        rounding: relative error of the pencil by rounding; frequencies closer than ten times that, or 3 %, are not told
-            apart.
+        beyond: (k,) estimates of the next frequencies, from above, which locate the gap.
+        rounding: relative error of the pencil due to rounding; frequencies closer than ten times that (at most 3 %) are not
+            distinguished.
 
     Raises:
         MissedModesError: the count differs.
     """
     last = frequencies[-1]
-    next_ = beyond.min(initial=2.0 * last)  # no more than the last if that is one of an exact pair
+    next_ = beyond.min(initial=2.0 * last)  # not above the last if that is one of an exact pair
     near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _MIN_GAP
@@ -53,7 +53,7 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
         counted = below(p, shift)
     if counted != found:
         raise MissedModesError(
-            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: ask for "
+            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: request "
             "another number of modes or elements, and report this blade"
         )
 
@@ -75,7 +75,7 @@ def _negative(K: Array, K_upper: Array, C: Array, C_upper: Array, M: Array, M_up
         for i in range(d):  # the lower half
             for j in range(i + 1):
                 H[i, j] = complex(K[k, i, j] - square * M[k, i, j], omega * C[k, i, j])
-        if k > 0:  # less Uᴴ Δ⁻¹ U of the block before
+        if k > 0:  # minus Uᴴ Δ⁻¹ U of the previous block
             for m in range(6):
                 for i in range(d):
                     scaled = U[m, i].conjugate() / pivots[first + m]

@@ -21,7 +21,7 @@ class Operator(NamedTuple):
     Attributes:
         M, C, K: transposed block-tridiagonal matrices.
         factor: LU factors of K.
-        exact: K by way of the element strains, for iterative refinement.
+        exact: K from the element strains, for iterative refinement.
         refinements: number of refinement steps for each solution.
     """
 
@@ -55,7 +55,7 @@ def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> flo
 
 @compiled
 def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
-    """w = A⁻¹S v, A w = S v, and M y (k, n), of rows v (k, 2n)."""
+    """w = A⁻¹S v, A w = S v, and M y (k, n), for rows v (k, 2n)."""
     k, n = len(v), v.shape[1] // 2
     here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
     My, both = np.empty((k, n)), np.empty((2 * k, n))
@@ -85,7 +85,7 @@ def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
 
 @compiled
 def _dual(a: Operator, w: Array, My: Array) -> Array:
-    """A w, of rows w (k, 2n) with M y (k, n)."""
+    """A w for rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
     out = np.empty(w.shape)
     if a.refinements:
@@ -110,14 +110,14 @@ def extend(
 
     Args:
         a: the operator.
-        w: (k, 2n) result of the last step; changed.
-        basis: (limit, 2n), of which ``size`` rows are filled, those of the last step from ``before`` on; filled further.
-        projected: (limit, limit) the operator on the basis, zero beyond what is filled; filled further.
+        w: (k, 2n) result of the last step; overwritten.
+        basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``before`` on; extended in place.
+        projected: (limit, limit) the operator on the basis, zero beyond the filled part; extended in place.
         size, before: see ``basis``; both 0 at the start.
-        look: number of vectors wanted.
+        look: requested number of vectors.
 
     Returns:
-        w orthogonal to the basis, its Gram matrix (k, k), size and before as they are now, and whether the basis is exhausted.
+        w orthogonal to the basis, its Gram matrix (k, k), the new size and before, and whether the basis is exhausted.
     """
     n = w.shape[1] // 2
     My = np.empty((len(w), n))  # M y of w
@@ -159,9 +159,9 @@ def extend(
 def _orthogonalise(
     a: Operator, w: Array, My: Array, basis: Array, projected: Array, size: int, before: int
 ) -> tuple[Array, float]:
-    """Make w, M y of which is ``My``, orthogonal to the basis in the A product; what is taken out goes to the projection.
+    """Orthogonalise w, with M y = ``My``, against the basis in the A product; the overlaps are added to ``projected``.
 
-    Returns w's Gram matrix (k, k) and the largest overlap of the last pass.
+    Returns the Gram matrix (k, k) of w and the largest overlap of the last pass.
     """
     gram, largest = np.zeros((len(w), len(w))), 0.0
     n = My.shape[1]
@@ -210,7 +210,7 @@ def _axes(gram: Array) -> tuple[Array, Array]:
 
 @compiled
 def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
-    """i times the skew matrix (size, size) whose upper half is given."""
+    """i times the skew matrix (size, size) with the given upper triangle."""
     out = np.zeros((size, size), np.complex128)
     for i in range(size):
         for j in range(i + 1, size):
@@ -220,7 +220,7 @@ def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
 
 @compiled
 def quotients(a: Operator, x: Array) -> Array:
-    """(3, m) of complex vectors x (m, 2, n), real and imaginary parts: x*Kx, x*Mx, and ½ i x*Cx, which is real."""
+    """x*Kx, x*Mx and ½ i x*Cx, which is real, as (3, m), for complex vectors x (m, 2, n) by real and imaginary parts."""
     m, _, n = x.shape
     out = np.zeros((3, m))
     Kx, Cx, Mx = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))

@@ -1,4 +1,4 @@
-"""The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve a step.
+"""The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve per step.
 
 A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
 and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of two
@@ -20,24 +20,24 @@ from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_VECTOR_TOLERANCE = 1e-9  # of the vectors, relative; frequencies have its square
+_VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
 _SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
-_MAX_SOLVE_ERROR = 0.3  # of a solution without refinement: beyond, K is lost to rounding
-_MAX_COUNT_ERROR = 1e-4  # of a solution: beyond, a count that differs, or a negative pivot, tells of rounding
-_FIRST_LOOK, _LOOK_EVERY = 26, 12  # when to look whether the modes are there
-_EXTRA_MODES = 4  # modes beyond those wanted, to find a gap in
+_MAX_SOLVE_ERROR = 0.3  # error of a solution without refinement above which K is lost to rounding
+_MAX_COUNT_ERROR = 1e-4  # error of a solution above which a wrong count or a negative pivot is due to rounding
+_FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
+_EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 
 
 class EigensolverError(ArithmeticError):
-    """The eigensolver failed: nothing is known about the stability of the blade."""
+    """The eigensolver failed: whether the blade is stable is not known."""
 
 
 def lanczos(p: ChainPencil, count: int) -> Eigen:
     """The ``count`` lowest modes of a chain about a state where K is symmetric.
 
-    With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with K by way of
-    the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
-    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of theirs (Lancaster 2013).
+    With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with products
+    from the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
+    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of that of the vectors (Lancaster 2013).
 
     Raises:
         UnstableError: if K is not positive definite.
@@ -76,23 +76,21 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
             break
     positive = mu > 1e-12 * mu.max(initial=0.0)
     if not positive.any() or not np.isfinite(mu).all():
-        raise EigensolverError("Lanczos found no mode: the stiffness is all but singular")
+        raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
     if error[positive].max() > 1e-6:
-        raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: ask for fewer modes")
+        raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: request fewer modes")
     z = z[:, positive].T
     x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
     x = x.reshape(len(z), 2, n)
     kappa, inertia, half = quotients(a, x)
-    frequencies = kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)  # of a loose joint κ is rounding
+    frequencies = kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)  # κ of a free joint is rounding
     if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
-        raise EigensolverError(
-            "Lanczos lost its basis: frequencies and Rayleigh quotients disagree; ask for fewer modes"
-        )
+        raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
     order = np.argsort(frequencies)
     try:
         completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()], lost)
     except completeness.MissedModesError as error:
-        if lost > _MAX_COUNT_ERROR:  # the count is of the assembled K, rounded
+        if lost > _MAX_COUNT_ERROR:  # the count uses the assembled K, which is rounded
             raise _lost_to_rounding(len(K.diagonal), lost) from error
         raise
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
@@ -101,7 +99,7 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
 
 def _lost_to_rounding(elements: int, error: float) -> EigensolverError:
     return EigensolverError(
-        f"the stiffness of {elements} elements is lost to rounding (relative error of a solution {error:.1e}): give "
+        f"the stiffness of {elements} elements is lost to rounding (relative error of a solution {error:.1e}): use "
         "fewer elements, or check units"
     )
 

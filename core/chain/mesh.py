@@ -8,9 +8,9 @@ from ..blade import Blade, mass_at, stiffness_at
 
 Array = NDArray[np.float64]
 
-_GROWTH = 1.5  # of an element over the one before, outwards from the root
-_JUMP = 1e-4  # of the blade's length: stations nearer to each other are one step of the properties
-_MAX_STATIONS = 200  # more are not told apart
+_GROWTH = 1.5  # largest ratio of the lengths of successive elements, from the root outwards
+_JUMP = 1e-4  # fraction of the blade's length: stations closer than this are one step of the properties
+_MAX_STATIONS = 200  # with more stations, these are not made nodes
 
 
 def coarse(blade: Blade, elements: int, omega: float) -> Array:
@@ -25,16 +25,16 @@ def coarse(blade: Blade, elements: int, omega: float) -> Array:
     ends = np.append(0.0, np.cumsum(sizes)) * blade.length / sum(sizes)
     number = np.arange(len(ends), dtype=float)
     stations = blade.stations[1:-1] if len(blade.stations) <= _MAX_STATIONS else np.empty(0)
-    kept = [0.0, *blade.kinks, blade.length]
+    required = [0.0, *blade.kinks, blade.length]
     for s in stations:
-        if np.abs(np.array(kept) - s).min() > _JUMP * blade.length:
-            kept.append(float(s))
-    kept.sort()
-    at = np.interp(kept, ends, number)
+        if np.abs(np.array(required) - s).min() > _JUMP * blade.length:
+            required.append(float(s))
+    required.sort()
+    at = np.interp(required, ends, number)
     pieces = np.maximum(np.ceil(np.diff(at) - 1e-9).astype(int), 1)
     inside = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(at[:-1], at[1:], pieces, strict=True)]
     nodes = np.interp(np.append(np.concatenate(inside), at[-1]), number, ends)
-    nodes[np.append(0, np.cumsum(pieces))] = kept
+    nodes[np.append(0, np.cumsum(pieces))] = required
     return nodes
 
 

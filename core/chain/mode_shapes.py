@@ -1,4 +1,4 @@
-"""Mode shapes of a chain at the common stations, read at massless points of its elements (see ``beams``)."""
+"""Mode shapes of a chain at the common stations, sampled at massless points of its elements (see ``beams``)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,10 @@ def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> N
     p = body.samples
     beta = shape.beta if shape.beta.size else np.zeros((len(shape.beta), 6))
     _readings(p.element, p.zeta0, p.shape, p.bubble, shape.nodes, body.corner, beta, body.beams.law.eta, read)
-    own = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
-    first = own[e - 1, -6:]
+    blocks = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)
+    first = blocks[e - 1, -6:]
     first[e == 0] = 0.0  # the clamped node
-    found = read @ np.concatenate([first, own[e, -6:], own[e, :-6]], axis=1)  # of (ξ_a, ξ_b, β)
+    found = read @ np.concatenate([first, blocks[e, -6:], blocks[e, :-6]], axis=1)  # of (ξ_a, ξ_b, β)
     return found.view(np.complex128).transpose(2, 0, 1)
 
 
@@ -35,10 +35,10 @@ def _readings(
     nodes: Array,
     corner: Array,
     beta: Array,
-    eta_at_rest: Array,
+    eta_undeformed: Array,
     out: Array,
 ) -> None:
-    """(q, 4, 12 or 18) a point's displacement and rotation about x in the hub's axes, from (ξ_a, ξ_b, β) in the nodes' own."""
+    """(q, 4, 12 or 18) a point's displacement and rotation about x in the hub's axes, from (ξ_a, ξ_b, β) in the nodes'."""
     back, node, x, position = np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4)), np.empty((4, 4))
     eta, change, zeta = np.empty(6), np.empty(6), np.empty(6)
     inverse, lever, T, slope, H = (
@@ -58,7 +58,7 @@ def _readings(
         rigid.log(x, eta)
         rigid.tangent_inverse(eta, inverse)
         for i in range(6):
-            change[i] = eta[i] - eta_at_rest[e, i]
+            change[i] = eta[i] - eta_undeformed[e, i]
         ride(zeta0[q], shape[q], bubble[q], change, inverse, beta[e], zeta, slope, T, H)
         rigid.exp(zeta, position)
         for i in range(6):  # the twist in a's axes, at a

@@ -1,8 +1,8 @@
-"""The rotating chain: the Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a shape of it.
+"""The rotating chain: its Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a given shape.
 
 With elastic connections only, every node moves freely: the velocity transformation B of the general solver is square and
-invertible, so the modes follow from the bodies' own twists, for which the matrices are block-tridiagonal. Twists and wrenches
-of node k are in its own axes.
+invertible, so the modes follow from the twists of the bodies, for which the matrices are block-tridiagonal. Twists and
+wrenches of node k are in the axes of node k.
 """
 
 from dataclasses import dataclass
@@ -34,9 +34,8 @@ class ChainPencil:
     """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
 
     ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses, the identity for a joint at the root, whose
-    springs are on the twist of node 1; ``clamped`` as in ``Chain``,
-    at this shape. A clamped direction has a unit stiffness of its own and neither mass nor load: it stays where it is and
-    contributes no mode.
+    springs act on the twist of node 1; ``clamped`` is as in ``Chain``, at this shape. A clamped direction has a unit
+    stiffness and neither mass nor load: it does not move and contributes no mode.
     """
 
     residual: Array
@@ -100,11 +99,11 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     """Residual and pencil at a shape.
 
     Args:
-        chain: the blade.
-        shape: where it is.
+        chain: the chain.
+        shape: its configuration.
         omega: rotor speed, rad/s.
-        gravity: (3,) free-fall acceleration in the hub's axes, turning with it.
-        effects: effects kept.
+        gravity: (3,) free-fall acceleration in the hub's axes, turning with it, m/s².
+        effects: effects included.
     """
     n, d = len(shape.nodes), 6 + chain.beams.inner
     frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
@@ -115,7 +114,7 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
     inertia.carried(chain.lumps, frame, fall, push, effects.geometric, g, C, K)
     residual, clamped = np.empty((n - 1, d)), chain.clamped
-    if clamped.size:  # the joint takes the first element's place
+    if clamped.size:  # the joint replaces the first element
         p.residual[0], p.remainder[0, :, :12], p.remainder[0, :12], lever[0] = 0.0, 0.0, 0.0, np.eye(6)
     _balance(p.residual, lever, g, residual)
     if clamped.size:
@@ -172,7 +171,7 @@ def _place(
 
 @compiled
 def _balance(on_ends: Array, lever: Array, on_nodes: Array, out: Array) -> None:
-    """Forces (n, d) on β and nodes 1 … n in their own axes, from elements (n, d + 6), ordered a, b, β, and nodes (n+1, 6)."""
+    """Forces (n, d) on β and nodes 1 … n in their axes, from elements (n, d + 6), ordered a, b, β, and nodes (n+1, 6)."""
     inner = out.shape[1] - 6
     for k in range(len(out)):
         for i in range(inner):
@@ -199,7 +198,7 @@ def _clamp(t: Tridiagonal, clamped: Array, unit: float) -> Tridiagonal:
 
 
 def loose(p: ChainPencil) -> bool:
-    """Whether the root joint lets the blade move as a rigid body without stiffness, apart from rounding."""
+    """Whether the root joint allows a rigid-body motion of the blade without stiffness, apart from rounding."""
     if not p.clamped.size:
         return False
     free = np.linalg.svd(np.eye(6) - p.clamped)[0][:, : 6 - round(float(np.trace(p.clamped)))]

@@ -1,7 +1,7 @@
 """Frequencies with uncertainties: meshes refined until an accuracy is met, or one mesh compared with others.
 
-A rigid axial or torsional strain keeps a little compliance (``sections``). Refined frequencies are corrected for it to
-first order, from coarser meshes with twice as much of it.
+A rigid axial or torsional strain has a small compliance (``sections``). Refined frequencies are corrected for it to first
+order, by means of coarser meshes with twice the compliance.
 """
 
 import itertools
@@ -27,20 +27,20 @@ from .steady import SteadyStateError
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 6400
-"""Elements that a mesh is refined to, by default."""
+"""Largest number of elements of a refined mesh, by default."""
 
 _FEWEST = 8  # elements of the coarsest mesh
-_COMPARED = 1e-6  # uncertainty of what a given mesh is compared with
-_TRIES = 5  # halvings until what is not stable is taken to be so: an under-resolved cable is not
+_COMPARED = 1e-6  # accuracy of the refined frequencies with which a given mesh is compared
+_TRIES = 5  # halvings before instability is reported: an under-resolved cable appears unstable
 
 
 class AccuracyWarning(UserWarning):
-    """Frequencies are less accurate than asked for."""
+    """Frequencies are less accurate than requested."""
 
 
 @dataclass
 class Meshes:
-    """The meshes of one blade."""
+    """The meshes of one blade, each made at its first use."""
 
     blade: Blade
     count: int
@@ -54,20 +54,20 @@ class Meshes:
 
     @property
     def order(self) -> int:
-        """Of convergence."""
+        """Order of convergence."""
         return 4 if (self.mass, self.stiffness) == ("consistent", "corotational") else 2
 
     @cached_property
     def softer(self) -> Blade | None:
-        """The blade with twice the compliance of rigid strains; None where no strain is rigid."""
+        """The blade with twice the compliance of rigid strains; None if no strain is rigid."""
         return sections.softened(self.blade)
 
     def of(self, elements: int) -> MeshSolver:
-        """Elements of equal length."""
+        """Solver on elements of equal length."""
         return self._solver(elements, elements)
 
     def level(self, level: int, fastest: float) -> MeshSolver:
-        """The graded mesh, halved ``level`` times."""
+        """Solver on the mesh graded for the speed ``fastest`` (rad/s), halved ``level`` times."""
         if not self.nodes:
             self.nodes.append(mesh.coarse(self.blade, max(_FEWEST, self.count), fastest))
         while len(self.nodes) <= level:
@@ -75,7 +75,7 @@ class Meshes:
         return self._solver(-level, self.nodes[level])
 
     def bias(self, key: int, solved: Solved) -> Array:
-        """(m,) relative change of frequencies by the compliance that rigid strains keep.
+        """(m,) relative change of frequencies due to the compliance of rigid strains.
 
         Args:
             key: the number of equal elements, or minus the level of the graded mesh.
@@ -95,11 +95,11 @@ class Meshes:
 
 
 def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
-    """(m,), (m,) factor that takes the bias off a frequency, and the relative uncertainty of that.
+    """Factor (m,) that removes the bias from a frequency, and its relative uncertainty (m,).
 
     Args:
-        coarse, fine: (m,) ``Meshes.bias`` of two meshes, the second twice as fine. It is linear in the compliance but for its
-            square.
+        coarse, fine: (m,) ``Meshes.bias`` of two meshes, the second twice as fine. The bias is linear in the compliance,
+            except for a quadratic term.
     """
     return 1.0 - fine, np.abs(fine - coarse) + 3.0 * fine**2
 
@@ -122,7 +122,7 @@ def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Mode
         except _FAILURES as error:
             if best is not None:
                 break
-            if level >= (_TRIES if isinstance(error, UnstableError) else 2):  # coarser ones may be too coarse to hold
+            if level >= (_TRIES if isinstance(error, UnstableError) else 2):  # coarser meshes may fail by coarseness
                 raise
             solved = []
             continue
@@ -138,16 +138,16 @@ def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Mode
         now = replace(last, frequencies=values[order], uncertainty=sure, rounding=noise, shapes=last.shapes[order])
         if best is None or sure.max() < best.uncertainty.max():
             best = now
-        if (sure <= wanted).all() or noise.max() > 0.5 * sure.max():  # as good as wanted, or as it gets
+        if (sure <= wanted).all() or noise.max() > 0.5 * sure.max():  # accurate enough, or limited by rounding
             break
     if best is None:
         raise EigensolverError(
-            f"omega: {omega:.6g} rad/s: fewer modes on fine meshes than on coarse ones: ask for fewer modes"
+            f"omega: {omega:.6g} rad/s: fewer modes on fine meshes than on coarse ones: request fewer modes"
         )
     if best.uncertainty.max() > wanted:
         warnings.warn(
-            f"omega: {omega:.6g} rad/s: relative uncertainty {best.uncertainty.max():.1e} with {best.elements} elements, more "
-            f"than the accuracy {wanted:.1e} asked for",
+            f"omega: {omega:.6g} rad/s: relative uncertainty {best.uncertainty.max():.1e} with {best.elements} elements "
+            f"exceeds the requested accuracy {wanted:.1e}",
             AccuracyWarning,
             stacklevel=3,
         )
@@ -155,9 +155,10 @@ def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Mode
 
 
 def as_given(meshes: Meshes, omega: float, elements: int, fastest: float) -> Modes:
-    """One mesh, with uncertainties from a half and a quarter of its elements where stations are nodes of all three.
+    """Modes of one mesh, with uncertainties from a half and a quarter of its elements if stations are nodes of all three.
 
-    Else the error varies with where the stations are, which no sequence shows: the difference from the default's answer counts.
+    Otherwise the error depends on the positions of the stations and follows no order of convergence: the uncertainty is the
+    difference from the refined frequencies.
     """
     one = meshes.of(elements)
     solved = one.at(omega)
@@ -192,10 +193,10 @@ def _coarser(meshes: Meshes, last: Modes) -> Array | None:
 
 
 def _from_default(meshes: Meshes, last: Modes, fastest: float) -> Array:
-    """(m,) uncertainties from the difference to refined frequencies; infinite where there are none."""
+    """(m,) uncertainties from the difference to refined frequencies; infinite if refinement fails."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", AccuracyWarning)  # in the sum
+            warnings.simplefilter("ignore", AccuracyWarning)  # the sum below contains that uncertainty
             true = refined(meshes, last.omega, fastest, _COMPARED)
     except _FAILURES:
         return np.full(len(last.frequencies), np.inf)

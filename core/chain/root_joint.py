@@ -1,9 +1,9 @@
 """The joint at a chain's root: a sequence of screws along the root's axes x, y, z, then about x, y, z.
 
-Each screw is prescribed to stay at zero, free, or on a spring of its own coordinate: the potential of the springs is
-``½ Σ k_i q_i²``. Node 1 moves by the joint's coordinates q only. Two hinges do not commute: the twists F_i(q) of node 1
-depend on how far the joint has turned, and with a wrench w that turning is a stiffness of its own, ``w · ∂F_i/∂q_j``.
-Without it K is not symmetric, and the steady state depends on the steps that led there.
+Each coordinate q_i is clamped at zero, free, or on a spring: the potential of the springs is ``½ Σ k_i q_i²``. Node 1 moves
+only by the joint's coordinates. Rotations about two hinges do not commute: the twists F_i(q) of node 1 depend on the joint's
+angles, so that a wrench w contributes the geometric stiffness ``w · ∂F_i/∂q_j``. Without it K is not symmetric, and the
+steady state depends on the path of the iteration.
 """
 
 from typing import NamedTuple
@@ -21,13 +21,13 @@ _SCREWS = np.array([screw for _, screw in SCREWS["elastic"]])
 
 
 class Response(NamedTuple):
-    """What the joint does to node 1, in that node's own axes.
+    """Contribution of the joint to the balance of node 1, in that node's axes.
 
     Attributes:
         clamped: (6, 6) projector on the twists that the joint clamps.
         wrench: (6,) residual of its springs.
         stiffness: (6, 6) of its springs.
-        turning: (6, 6) geometric stiffness of the wrench that node 1 bears.
+        turning: (6, 6) geometric stiffness due to the wrench on node 1.
     """
 
     clamped: Array
@@ -37,7 +37,7 @@ class Response(NamedTuple):
 
 
 def clamped_freedoms(chain: Chain) -> NDArray[np.bool_]:
-    """(6,) which of the joint's coordinates are clamped."""
+    """(6,) whether each of the joint's coordinates is clamped."""
     turn = _root_to_section(chain)
     return np.diagonal(turn.T @ chain.clamped @ turn) > 0.5
 
@@ -49,9 +49,9 @@ def springs(chain: Chain) -> Array:
 
 
 def put(chain: Chain, nodes: Array, first: Array) -> tuple[Array, Array]:
-    """Node poses (n+1, 4, 4) with node 1 where the joint allows it, its clamped coordinates zero; the blade is carried along.
+    """Set the joint's clamped coordinates to zero, and move node 1 and the blade beyond it accordingly.
 
-    ``first`` is the pose (4, 4) of node 1 in the frame of node 0; it is returned too.
+    ``first`` is the pose (4, 4) of node 1 in the frame of node 0. Returns the node poses (n+1, 4, 4) and the new ``first``.
     """
     fixed = clamped_freedoms(chain)
     if not fixed.any():
@@ -68,12 +68,12 @@ def put(chain: Chain, nodes: Array, first: Array) -> tuple[Array, Array]:
 
 
 def response(chain: Chain, first: Array, wrench: Array) -> Response:
-    """The joint's part of node 1's balance.
+    """The contribution of the joint to the balance of node 1.
 
     Args:
         chain: a chain on a joint.
         first: (4, 4) pose of node 1 in the frame of node 0.
-        wrench: (6,) residual of node 1 without the joint, in its own axes.
+        wrench: (6,) residual of node 1 without the joint, in the node's axes.
     """
     fixed = clamped_freedoms(chain)
     q = np.where(fixed, 0.0, _coordinates(chain, first))
@@ -82,7 +82,7 @@ def response(chain: Chain, first: Array, wrench: Array) -> Response:
         F[:, i] = sp.adjoint(outer) @ _SCREWS[i]
         outer = outer @ sp.exp(-_SCREWS[i] * q[i])
     F = (_root_to_section(chain) @ F)[:, ~fixed]
-    back = np.linalg.pinv(F)  # q̇ of a twist
+    back = np.linalg.pinv(F)  # q̇ from a twist
     k = springs(chain)[~fixed]
     second = -np.einsum("k,jkl,li->ij", wrench, sp.ad(F.T), F)  # w · ∂F_i/∂q_j = −w · (F_j × F_i), j beyond i
     return Response(
@@ -94,12 +94,12 @@ def response(chain: Chain, first: Array, wrench: Array) -> Response:
 
 
 def _root_to_section(chain: Chain) -> Array:
-    """(6, 6) twists in the root's axes to the first section's."""
+    """(6, 6) from twists in the root's axes to those in the first section's."""
     return sp.adjoint(sp.pose(chain.root_axes, np.zeros(3)))
 
 
 def _coordinates(chain: Chain, first: Array) -> Array:
-    """(6,) of the joint's screws, from the pose of node 1 seen from node 0: displacements, and Cardan angles x, y, z."""
+    """Joint coordinates (6,) from the pose of node 1 in the frame of node 0: displacements, and Cardan angles x, y, z."""
     frame = sp.pose(chain.root_axes, np.zeros(3))
     x = frame.T @ first @ frame
     angles = np.arctan2(-x[1, 2], x[2, 2]), np.arcsin(np.clip(x[0, 2], -1.0, 1.0)), np.arctan2(-x[0, 1], x[0, 0])

@@ -1,4 +1,4 @@
-"""One mesh's modes: the blade's steady state at a speed, the pencil about it, and its lowest eigenpairs."""
+"""Modes of one mesh: the blade's steady state at a speed, the pencil about it, and its lowest eigenpairs."""
 
 import time
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Solved:
-    """One mesh's modes at one speed, and what they are modes of."""
+    """Modes of one mesh at one speed, with the steady state and the eigenvectors."""
 
     modes: Modes
     state: Steady
@@ -30,7 +30,7 @@ class Solved:
 
 @dataclass
 class MeshSolver:
-    """A chain, and its shapes at the speeds before."""
+    """A chain, and its steady shapes at previous speeds."""
 
     body: Chain
     count: int
@@ -39,7 +39,7 @@ class MeshSolver:
     known: list[tuple[float, Shape]] = field(default_factory=list)
 
     def at(self, omega: float, near: Shape | None = None) -> Solved:
-        """Solve at one speed, from the speeds before or else from a shape near by."""
+        """Solve at one speed (rad/s), starting from the shapes at previous speeds or else from the shape ``near``."""
         begun, body = time.perf_counter(), self.body
         guess = steady.extrapolate(self.known, omega)
         state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
@@ -48,7 +48,8 @@ class MeshSolver:
         except (UnstableError, EigensolverError) as error:
             if pencil.loose(state.pencil):
                 raise UnstableError(
-                    f"omega: {omega:.6g} rad/s: nothing holds a free hinge (at rest, or lead–lag without offset): add a spring"
+                    f"omega: {omega:.6g} rad/s: a free hinge has no stiffness (at rest, or lead–lag without offset): add a "
+                    "spring"
                 ) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
         self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
@@ -58,8 +59,8 @@ class MeshSolver:
         return Solved(modes, state, found.vectors)
 
     def rounding(self, solved: Solved) -> Array:
-        """(m,) relative error of the frequencies by rounding."""
-        if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is not rounded
+        """(m,) relative error of the frequencies due to rounding."""
+        if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is exact
             return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
         state, omega = solved.state, solved.modes.omega
         return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)

@@ -22,9 +22,9 @@ Array = NDArray[np.float64]
 
 _MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # of the rounding energy: accept a stalled step; accept any step
-_MIN_REDUCTION = 1e-2  # least factor between the energies of steps that converge
-ORDER = 3  # of the extrapolation along the speeds
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: accept a stalled step; any step
+_MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
+ORDER = 3  # of the extrapolation over speeds
 _MIN_RAMP = 2.0**-8
 
 
@@ -33,7 +33,7 @@ class SteadyStateError(ValueError):
 
 
 class LargeStrainError(SteadyStateError):
-    """The steady state is strained beyond what linear elastic sections describe."""
+    """The strains of the steady state are too large for linear elastic sections."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,12 @@ class Steady:
 
 
 def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
-    """The steady state, by Newton from ``start``; if that fails, from the undeformed shape with the speed ramped up.
+    """The steady state at ``omega`` (rad/s) under ``gravity`` (3,), m/s², in the hub's axes.
+
+    Newton's method starts from ``start``; if that fails, from the undeformed shape with the speed ramped up.
 
     Raises:
-        SteadyStateError: if there is none near the undeformed blade.
+        SteadyStateError: if none is found near the undeformed blade.
     """
     if start is not None:
         try:
@@ -67,19 +69,19 @@ def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = Non
             step *= 0.5
             if step < _MIN_RAMP:
                 raise SteadyStateError(
-                    f"omega: no steady state at {omega:.6g} rad/s; the loads were followed up to {done:.0%} of Ω²: the "
-                    "centrifugal force outgrows the axial stiffness there, or the blade is far too soft; check units or "
+                    f"omega: no steady state at {omega:.6g} rad/s; the loads were raised up to {done:.0%} of Ω²: the "
+                    "centrifugal force exceeds the axial stiffness there, or the blade is far too soft; check units or "
                     "lower the speed"
                 ) from None
     return found
 
 
 def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
-    """Newton's method down to rounding.
+    """Newton's method, converged to rounding.
 
     The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
-    nodes' poses, below which a step is meaningless. The size of a step is no
-    criterion: those of an almost inextensible blade are tiny.
+    nodes' poses, below which a step is meaningless. The size of a step is not a criterion: the steps of an almost
+    inextensible blade are tiny.
     """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.inf
@@ -93,12 +95,12 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
         if p.clamped.size:
-            step[0, -6:] -= p.clamped @ step[0, -6:]  # a unit stiffness under the reaction's rounding
+            step[0, -6:] -= p.clamped @ step[0, -6:]  # due to rounding of the reaction
         change = float(np.abs(step[:, -6:] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
-        stalled = energy > _MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        stalled = energy > _MIN_REDUCTION * before  # if not, continue: rounding may be much less than its bound
         if energy <= _CONVERGED_FACTOR * rounding or (stalled and energy <= _STALL_FACTOR * rounding):
             return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
@@ -107,7 +109,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
 
 
 def rounding_energy(p: ChainPencil, shape: Shape) -> float:
-    """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: smaller energies of a step are rounding."""
+    """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: a step with less energy is rounding."""
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
     weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
     return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.spring, weight**2)))
@@ -119,15 +121,15 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
     Bending strains are not included: they need the sections' thickness, which a blade does not state.
     """
     length = np.linalg.norm(chain.beams.law.eta[:, :3], axis=1)
-    real = length > 1e-9 * chain.scale  # not a root's joint
-    kept = 3 if chain.beams.law.measure == "corotational" else 1
+    real = length > 1e-9 * chain.scale  # not a root joint
+    components = 3 if chain.beams.law.measure == "corotational" else 1
     found = measures.response(chain.beams.law, shape.relative @ chain.corner, shape.beta)
-    strain = found.strain[real, :kept] / length[real, None]
+    strain = found.strain[real, :components] / length[real, None]
     return float(np.linalg.norm(strain, axis=1).max(initial=0.0))
 
 
 def displaced(shape: Shape, step: Array) -> Shape:
-    """The shape after a step (n, 6 or 12): changes of β, and twists of nodes 1 … n in their own axes."""
+    """The shape after a step (n, 6 or 12): changes of β, and twists of nodes 1 … n in their axes."""
     nodes, relative = shape.nodes.copy(), shape.relative.copy()
     _displace(step, nodes[1:], relative)
     return Shape(nodes, shape.beta + step[:, :-6], relative)
@@ -150,7 +152,7 @@ def _displace(step: Array, nodes: Array, relative: Array) -> None:
 
 @compiled
 def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
-    """Add to the steps (n, d) the weighted twists that bring nodes (n, 4, 4) from where they are to where others are."""
+    """Add to the steps (n, d) the weighted twists that move nodes from poses ``now`` to ``other``, each (n, 4, 4)."""
     inner, back, between, twist = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4)), np.empty(6)
     for k in range(len(now)):
         rigid.inverse(now[k], back)
@@ -161,7 +163,7 @@ def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
 
 
 def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
-    """Extrapolate the shape to ``omega`` (rad/s) by a polynomial in Ω² through those at the last few speeds."""
+    """Extrapolate the shape to ``omega`` (rad/s) by a polynomial in Ω² through the last few; None if none is known."""
     latest: dict[float, Shape] = {}
     for speed, shape in reversed(known):
         if len(latest) <= ORDER:
@@ -178,14 +180,14 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
-    """A guess of a shape on a finer mesh of the same blade: its nodes' motions in the hub's axes, interpolated along the blade.
+    """An initial guess on a finer mesh of the same blade: the nodes' motions in the hub's axes, interpolated along the blade.
 
     Args:
         chain: the coarser mesh.
         shape: its shape.
         finer: the finer mesh.
     """
-    first = 1 if chain.clamped.size else 0  # behind the joint at the root, which has no length
+    first = 1 if chain.clamped.size else 0  # without the joint at the root, which has no length
     twists = sp.log(shape.nodes[first:] @ sp.inverse(chain.nodes[first:]))
     at = CubicSpline(_lengths(chain)[first:], twists)(_lengths(finer)[first:])
     nodes = finer.nodes.copy()
@@ -194,13 +196,13 @@ def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
 
 
 def _lengths(chain: Chain) -> Array:
-    """(n+1,) m, along the chords between the nodes, of their sum."""
+    """(n+1,) positions of the nodes along the chords between them, as fractions of the sum."""
     steps = np.linalg.norm(chain.between[:, :3, 3], axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
 
 
 def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
-    """The undeformed chain carrying the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
+    """The undeformed chain with the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
     still = Effects(geometric=False)
     residual = linearize(chain, undeformed(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))

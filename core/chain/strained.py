@@ -1,4 +1,4 @@
-"""Products of a chain's stiffness with vectors by way of the element strains, free of cancellation."""
+"""Products of a chain's stiffness with vectors, computed from the element strains to avoid cancellation."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ class Strained(NamedTuple):
     """K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a, with the clamped directions decoupled.
 
     Attributes:
-        remainder: the part on its own, for products.
+        remainder: the remainder, with transposed blocks.
         spring, lever: (n, 6, 6), see ``chain.pencil.ChainPencil``.
         clamped: (6, 6) projector of node 1's twist; zero if nothing is clamped.
     """
