@@ -27,12 +27,12 @@ class Points:
     """Points that follow the elements' ends, sorted by element; every element has the same number of points with mass.
 
     Attributes:
-        element: (q,) the element each rides on.
+        element: (q,) index of the element that each point follows.
         zeta0: (q, 6) ζ₀, logarithm of the undeformed pose in the frame of end a.
         shape: (q, 6, 6) L, ζ from η.
         bubble: (q, 6, 6) ζ from the element's internal coordinates β.
-        mass: (q, 6, 6) inertia in the point's own frame, quadrature weight included.
-        force: (q, 3) steady load on it, N, in the axes of the rotating frame; none by default.
+        mass: (q, 6, 6) inertia in the point's frame, quadrature weight included.
+        force: (q, 3) steady load on the point, N, in the axes of the rotating frame; zero by default.
     """
 
     element: Index
@@ -56,9 +56,9 @@ class Beams:
     """A batch of n elements.
 
     Attributes:
-        law: how they measure strain.
-        stiffness: (n, 6, 6) for that measure.
-        points: the inertia inside, as many points in each element (see ``alike``).
+        law: their strain law.
+        stiffness: (n, 6, 6) for the strain of that law.
+        points: the inertia inside; every element has the same number of points (see ``alike``).
         preload: (n, 6) force conjugate to the strain, at zero strain.
         inner_preload: (n, 6) force conjugate to β, at β = 0.
     """
@@ -76,7 +76,7 @@ class Beams:
 
     @property
     def inner(self) -> int:
-        """How many internal coordinates an element has: six where it has mass inside, else none."""
+        """Number of internal coordinates of an element: six if it has mass inside, else none."""
         return 6 if len(self.points.element) else 0
 
 
@@ -84,9 +84,9 @@ class Beams:
 class Pencil:
     """Residual (n, d) on ends a, b and internal coordinates β, and its linearisation M, C, K, each (n, d, d); d = 12 or 18.
 
-    Twists and wrenches are in a snapshot of each element's frame a; variations of wrenches are taken along with the body
-    they act on, and ξ is seen in the rotating frame. K is split into ``remainder`` (n, d, d) and the ``spring`` (n, 6, 6) that
-    acts on ρ = ξ_b − ξ_a: kept apart, its energy loses no digits to cancellation.
+    Twists and wrenches are in each element's frame a, frozen at the state. Variations of wrenches follow the body they act
+    on; ξ is relative to the rotating frame. K is split into ``remainder`` (n, d, d) and the ``spring`` (n, 6, 6) that acts on
+    ρ = ξ_b − ξ_a: stored separately, its energy loses no digits to cancellation.
     """
 
     residual: Array
@@ -104,7 +104,7 @@ class Pencil:
 
 
 def end_stiffness(measure: Measure, undeformed: Array, twist_stiffness: Array) -> Array:
-    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b seen from a, about the undeformed pose."""
+    """Stiffness (n, 6, 6) for a strain measure from that for the twist of b relative to a, about the undeformed pose."""
     a = sp.tangent(sp.log(undeformed)) if measure == "corotational" else sp.adjoint(undeformed)
     return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
 
@@ -153,7 +153,7 @@ def bushing(
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
-    """Force (n, 6) conjugate to the strain that small twists ρ (n, 6) of b seen from a cause, about the undeformed pose."""
+    """Force (n, 6) conjugate to the strain due to small twists ρ (n, 6) of b relative to a, about the undeformed pose."""
     rate = measures.response(beams.law, beams.undeformed, np.zeros((len(rho), 6))).rate[..., :6]
     return (beams.stiffness @ rate @ rho[..., None])[..., 0]
 
@@ -180,14 +180,14 @@ def pencil(
         beta: (n, 6) internal coordinates; (n, 0) for elements without mass inside.
         frame: (n, 6) twist of the rotating frame, in a's axes.
         gravity: (n, 6) free-fall acceleration as a twist, in a's axes.
-        effects: the effects kept (``geometric`` matters here).
+        effects: the effects included (``geometric`` matters here).
         axes: (n, 3, 3) from the rotating frame's axes to a's; needed if there are loads on the points.
 
     Raises:
         ValueError: loads without axes.
     """
     if axes is None and beams.points.force.any():
-        raise ValueError("axes: not given, but there are loads on the points in the rotating frame's axes")
+        raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
     n, d = len(x), 12 + beams.inner
     out = Pencil(np.empty((n, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, 6, 6)))
     assemble(

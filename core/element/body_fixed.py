@@ -70,7 +70,7 @@ def _angles(r: Array, out: Array) -> None:
 
 @compiled
 def _rate(angles: Array, i: int, j: int, out: Array) -> None:
-    """(α̇, β̇, γ̇) from the angular velocity in the fixed axes; ``out`` zero before."""
+    """(α̇, β̇, γ̇) from the angular velocity in the fixed axes; ``out`` must be zero."""
     sa, ca = np.sin(angles[0]), np.cos(angles[0])
     sb, cb = np.sin(angles[1]), np.cos(angles[1])
     out[i, j], out[i, j + 1], out[i, j + 2] = 1.0, sa * sb / cb, -ca * sb / cb
@@ -80,7 +80,7 @@ def _rate(angles: Array, i: int, j: int, out: Array) -> None:
 
 @compiled
 def _rate_transpose_derivative(angles: Array, m: Array, i: int, j: int, out: Array) -> None:
-    """Derivative of ``_rate(θ)ᵀ m`` with respect to θ at constant m; ``out`` zero before."""
+    """Derivative of ``_rate(θ)ᵀ m`` with respect to θ at constant m; ``out`` must be zero."""
     sa, ca = np.sin(angles[0]), np.cos(angles[0])
     sb, cb = np.sin(angles[1]), np.cos(angles[1])
     lever = (m[0] * sb - m[2]) / cb  # (Aᵀm)_y = sα lever + cα m1,  (Aᵀm)_z = −cα lever + sα m1

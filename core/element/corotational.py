@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class StrainLawArrays(NamedTuple):
-    """``measures.StrainLaw`` for compiled code; ``corotational`` tells which measure it has."""
+    """``measures.StrainLaw`` for compiled code; ``corotational`` is false for the body-fixed measure."""
 
     corotational: bool
     undeformed: Array
@@ -45,7 +45,7 @@ def strains(law: StrainLawArrays, k: int, eta: Array, beta: Array, strain: Array
             r[i] += by[i, 6 + j] * beta[j]
             undo[i, j] = J[i, j] / 12.0
         undo[i, i] += 1.0
-    for j in range(6):  # G has all of the axial strain's part of Magnus' term, but β's
+    for j in range(6):  # G contains the axial part of Magnus' term, except that of β
         undo[0, j] = 1.0 if j == 0 else 0.0
         r[0] += delta[j] * bow[j]
     invert(undo)  # near the unit matrix

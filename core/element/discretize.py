@@ -27,16 +27,16 @@ class Chain:
 
     Attributes:
         nodes: (n+1, 4, 4) undeformed poses in the hub's axes.
-        lumps: (n+1, 6, 6) inertia of the rigid body at each node, in its own axes.
+        lumps: (n+1, 6, 6) inertia of the rigid body at each node, in the node's axes.
         beams: the n elements, from node k to node k+1.
-        samples: where mode shapes are read, at ``modes.STATIONS``; massless.
+        samples: massless points at ``modes.STATIONS``, where mode shapes are evaluated.
         scale: the blade's length, m.
         force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
-        corner: (n, 4, 4) pose of each element's end b in the frame of the node there: the identity, but where the blade has a
-            kink, whose node has the frame of the section beyond it. All are by default.
-        clamped: (6, 6) projector of node 1's twist, in its own axes, on the directions that the root joint clamps; the first
-            element then is that joint and has no length. Empty for a clamped root.
-        root_axes: (3, 3) the root's axes, along which the joint lies, in those of the first section.
+        corner: (n, 4, 4) pose of each element's end b in the frame of its node: the identity (the default), except at a kink,
+            where the node has the frame of the section on the tip side.
+        clamped: (6, 6) projector of node 1's twist, in the node's axes, on the directions that the root joint clamps; the
+            first element then is that joint and has no length. Empty for a clamped root.
+        root_axes: (3, 3) axes of the root joint, in those of the first section.
     """
 
     nodes: Array
@@ -55,12 +55,12 @@ class Chain:
 
     @property
     def between(self) -> Array:
-        """(n, 4, 4) undeformed pose of each node but the first in the frame of the one before."""
+        """(n, 4, 4) undeformed poses of nodes 1 … n, each in the frame of the previous node."""
         return self.beams.undeformed @ sp.inverse(self.corner)
 
     @property
     def elements(self) -> int:
-        """How many beam elements."""
+        """Number of beam elements."""
         return len(self.beams.undeformed) - (1 if self.clamped.size else 0)
 
 
@@ -75,16 +75,16 @@ def discretize(
 
     Args:
         blade: the blade.
-        elements: how many, of equal arc length apart from kinks (see ``divide``); or the arc lengths (n+1,) of their ends, m,
-            including every kink.
-        mass: ``consistent`` keeps the mass where it is (fourth order); ``half_end`` lumps each element's halves at its
-            ends, as Park et al. 2010 do (second order).
+        elements: number of elements, of equal arc length apart from kinks (see ``divide``); or the arc lengths (n+1,) of
+            their ends, m, including every kink.
+        mass: ``consistent`` distributes the mass along the element (fourth order); ``half_end`` lumps each element's halves
+            at its ends, as Park et al. 2010 do (second order).
         stiffness: strain measure, see ``measures``.
         load: (m, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them; linear between
             the stations.
 
     Raises:
-        ValueError: if there is not at least one element, or the load is not one row of three per station.
+        ValueError: fewer than one element, or a load that is not one row of three per station.
     """
     if isinstance(elements, np.ndarray):
         s = elements
@@ -141,10 +141,10 @@ MIN_SHARED = 16
 
 
 def divide(blade: Blade, elements: int) -> Array:
-    """Arc lengths (n+1,) of the nodes: every kink is one, and the pieces between have elements in proportion to their lengths.
+    """Arc lengths (n+1,) of the nodes, m: every kink is a node, and pieces have elements in proportion to their lengths.
 
-    At least one each, so there may be more than asked for. Twice as many elements are the same ones halved (from twice
-    ``MIN_SHARED`` on), so that refinement converges regularly.
+    Each piece has at least one, so there may be more elements than requested. From twice ``MIN_SHARED`` on, twice as many
+    elements are the same elements halved, so that refinement converges regularly.
     """
     if not blade.kinks:
         return np.linspace(0.0, blade.length, elements + 1)
@@ -158,7 +158,7 @@ def divide(blade: Blade, elements: int) -> Array:
 
 
 def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
-    """Number of elements of each piece (p,): one each, and every further one goes to the piece with the longest elements."""
+    """Number of elements of each piece (p,): one each; every further one goes to the piece with the longest elements."""
     number = np.ones(len(lengths), dtype=np.intp)
     for _ in range(elements - len(lengths)):
         number[np.argmax(lengths / number)] += 1
@@ -219,7 +219,7 @@ def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
 
 
 def _half_end(blade: Blade, nodes: Array) -> Array:
-    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, transformed to it along the span."""
+    """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
     node, s, weight = _halves(blade, nodes)
     turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
     turn[:, :3, 3] = 0.0
@@ -229,7 +229,7 @@ def _half_end(blade: Blade, nodes: Array) -> Array:
 
 
 def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]:
-    """Of Gauss points in the elements' halves: the nearest node, the arc length and the weight (q,)."""
+    """Nearest node, arc length and weight, each (q,), of the Gauss points in the elements' halves."""
     middle = 0.5 * (nodes[1:] + nodes[:-1])
     points = sections.quadrature(blade, nodes, middle)
     node = points.element[:, None] + (points.s > middle[points.element][:, None])

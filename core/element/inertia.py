@@ -1,7 +1,7 @@
 """Inertial wrench of bodies in steady rotation, and its linearisation.
 
-With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y; letting the body move by a small
-twist ξ(t) seen in the rotating frame gives, about the steady motion Y = V,
+With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y. For a small twist ξ(t) of the body
+relative to the rotating frame this gives, about the steady motion Y = V,
 
     δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − cross(MV)  (Coriolis, skew),
                              K = −V×ᵀ M V× − cross(MV) V×   (centrifugal),
@@ -23,7 +23,7 @@ def carry(mass: Array, frame: Array, turn: Array, fall: Array, g: Array, C: Arra
     """Wrench g (6,), C and K (6, 6) of one inertia (6, 6) carried at twist ``frame`` (6,), components following the body.
 
     ``turn`` is the ``ad`` of ``frame``, and ``fall`` (6,) the acceleration of free fall as a twist (zero angular part), turning
-    with the frame. All may be given in any axes and about any origin, if all are in the same.
+    with the frame. Axes and origin are arbitrary, but the same for all.
     """
     mt, transport, momentum = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     apply(mass, frame, momentum)

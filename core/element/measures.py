@@ -36,14 +36,14 @@ Measure = Literal["corotational", "body_fixed"]
 
 @dataclass(frozen=True)
 class StrainLaw:
-    """How n elements measure strain.
+    """Strain law of n elements.
 
     Attributes:
         measure: see the module.
         undeformed: (n, 4, 4) relative poses without strain.
-        shortening: (n, 6, 6) G, see ``sections``; of the corotational measure, as what follows.
-        mean: (n, 6, 6) A: A δ is the strain's integral over the element, of the static shape that δ belongs to.
-        slope: (n, 6, 12) B: B (δ, β) is its slope along the element, times the length squared.
+        shortening: (n, 6, 6) G, see ``sections``; this and the following are for the corotational measure.
+        mean: (n, 6, 6) A: A δ is the integral of the strain over the element, for the static shape of δ.
+        slope: (n, 6, 12) B: B (δ, β) is the slope of the strain along the element, times the length squared.
         eta: (n, 6) logarithm of ``undeformed``.
     """
 
@@ -59,7 +59,7 @@ class StrainLaw:
 
 
 def even(measure: Measure, undeformed: Array) -> StrainLaw:
-    """Law (n elements) of a strain that is constant along the element: bushings, and elements known by their ends only."""
+    """Law of n elements with constant strain: bushings, and elements of which only the ends are known."""
     n = len(undeformed)
     return StrainLaw(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))
 
@@ -94,7 +94,10 @@ class Response:
 
 
 def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
-    """Strain of relative poses ``x`` (n, 4, 4) with β (n, 6; or 0), and its derivatives; forces (n, 6), none: zero."""
+    """Strain of n elements at relative poses ``x`` (n, 4, 4) and internal coordinates ``beta`` (n, 6 or 0).
+
+    ``s`` and ``on_eta`` (n, 6) are the constant forces of ``Response.curvature``, zero by default.
+    """
     n = len(x)
     beta, force, conjugate = (
         np.zeros((n, 6)) if v is None or not v.size else np.ascontiguousarray(v) for v in (beta, s, on_eta)
@@ -164,7 +167,7 @@ def add_curvature(
     on_eta: Array,
     out: Array,
 ) -> None:
-    """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments from ``strains``."""
+    """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments are results of ``strains``."""
     if law.corotational:
         corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
     else:

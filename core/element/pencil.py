@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class BeamArrays(NamedTuple):
-    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed`` tells whether the points carry loads."""
+    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed``: whether the points carry loads."""
 
     law: StrainLawArrays
     stiffness: Array
@@ -155,7 +155,7 @@ def _add_inertia(
     from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
     T, D = np.empty((6, 6)), np.empty((6, 6))
     M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    slopes, bent = np.empty((6 * per, 12)), np.empty((6 * per, 12))  # of all points, below each other
+    slopes, bent = np.empty((6 * per, 12)), np.empty((6 * per, 12))  # of all points, stacked
     U, MU, CU, KU = (np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)))
     H, turn = np.empty((6, 12)), np.empty((6, 6))
     rigid.ad(frame, turn)
@@ -257,7 +257,7 @@ def _split(k: Array, spring: Array, remainder: Array) -> None:
 
 @compiled
 def _hold_components(to_point: Array, pose: Array, push: Array, follow: bool, g: Array, K: Array) -> None:
-    """``inertia.hold_components`` at the point of a pose, whose axes and origin it is for, of g and K at a."""
+    """Apply ``inertia.hold_components``, in the axes and at the origin of the point ``pose``, to g and K at a."""
     from_point = np.empty((6, 6))
     rigid.adjoint(pose, from_point)
     here, more, work, at_a = np.empty(6), np.zeros((6, 6)), np.empty((6, 6)), np.empty((6, 6))

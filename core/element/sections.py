@@ -8,8 +8,8 @@ strain moves everything beyond it, so the twist of the section at s is
 for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻¹ and its shape functions f(s) f(b)⁻¹. Six bubble
 functions describe the effect of loads between the nodes: the element clamped at both ends under uniform loads along its
 sections' axes. They are orthogonal to the shape functions in energy and make axial, torsional and shear motion as accurate as
-bending. Gauss
-quadrature between the stations (properties are linear there), with the collocation matrix of the same points for f(s).
+bending. Integrals use Gauss quadrature between the stations (properties are linear there), and f(s) the collocation matrix of
+the same points.
 """
 
 from dataclasses import dataclass, replace
@@ -26,12 +26,12 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 GAUSS = 3
-RIGID_AXIAL = 1e-8  # compliance kept by a rigid axial strain, of L²/EI: a beam 10⁴ times longer than thick
-RIGID_TORSION = 1e-6  # compliance kept by a rigid torsion, of 1/EI
+RIGID_AXIAL = 1e-8  # compliance of a rigid axial strain, as a fraction of L²/EI: a beam 10⁴ times longer than thick
+RIGID_TORSION = 1e-6  # compliance of a rigid torsion, as a fraction of 1/EI
 
 
 def root(blade: Blade) -> Array:
-    """Pose (4, 4) of the clamped root in the hub's axes: precone about −y, then along the blade, then pitch about x."""
+    """Pose (4, 4) of the root in the hub's axes: precone about −y, then the hub radius along x, then pitch about x."""
     cone, pitch = sp.rotation(1, np.array(-blade.precone)), sp.rotation(0, np.array(blade.pitch))
     return sp.pose(cone @ pitch, cone @ np.array([blade.hub_radius, 0.0, 0.0]))
 
@@ -39,7 +39,7 @@ def root(blade: Blade) -> Array:
 def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
     """Undeformed poses (k, 4, 4) of the sections at ``s`` (m), in the hub's axes: x tangent, y and z rotated by the twist.
 
-    At a kink the section just ``before`` it and the one just beyond it differ.
+    At a kink, ``before`` gives the section on its root side, otherwise the one on its tip side.
     """
     turn = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
@@ -68,7 +68,7 @@ def compliance(blade: Blade, s: Array) -> Array:
 
 
 def softened(blade: Blade) -> Blade | None:
-    """The blade with twice the compliance that rigid axial and torsional strains keep; None where none is rigid."""
+    """Copy of the blade with twice the compliance of rigid axial and torsional strains; None if neither is rigid."""
     rigid = [i for i in (AXIAL, TORSION) if np.isinf(blade.stiffness[:, i, i]).any()]
     if not rigid:
         return None
@@ -82,16 +82,16 @@ class StaticSolution:
     """Gauss points of all elements, in order along the blade, and the elements' static solutions.
 
     Attributes:
-        element: (q,) which element each point lies in.
+        element: (q,) index of the element that contains each point.
         s, weight: (q,) arc length and quadrature weight, m.
         pose: (q, 4, 4) undeformed pose in the frame of the element's first node.
         flexibility: (n, 6, 6) f(b) of each element.
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
         bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
-            moves nothing has a zero column.
-        at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the arc lengths asked for.
+            causes no motion has a zero column.
+        at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the requested arc lengths.
         shortening: (n, 6, 6) G: δᵀGδ is the shortening ½∫(|y′|² − |Γ|²) of the static shape, with transverse displacement y and
-            Reissner's shear strain Γ (shear alone does not shorten), beyond that in the logarithmic strain δ of the ends.
+            Reissner's shear strain Γ (shear alone does not shorten), less that in the logarithmic strain δ of the ends.
         mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``measures``.
     """
 
@@ -115,8 +115,8 @@ class Quadrature:
     """Gauss points between the nodes.
 
     Attributes:
-        start, length: (i,) arc length where each interval begins, and its length, m; none of them has a station inside.
-        element: (i,) which element it lies in.
+        start, length: (i,) arc length where each interval begins, and its length, m; no interval contains a station.
+        element: (i,) index of the element that contains it.
         s, weight: (i, ``GAUSS``) arc length and weight of its points, m.
     """
 
@@ -128,7 +128,7 @@ class Quadrature:
 
 
 def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadrature:
-    """Gauss points between ``nodes`` (n+1,) of arc length, stopping at stations and at ``breaks`` too."""
+    """Gauss points between the arc lengths ``nodes`` (n+1,), m; intervals also end at stations and at ``breaks`` (m)."""
     ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
     h = np.diff(ends)
@@ -137,9 +137,9 @@ def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadr
 
 
 def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:
-    """Integrate the flexibility between ``nodes`` (n+1,) of arc length, and up to the arc lengths ``at`` (m,).
+    """Integrate the flexibility between the arc lengths ``nodes`` (n+1,), and up to the arc lengths ``at`` (m,), m.
 
-    Every kink must be a node: the elements' frames are those of the sections at their ends, of the side the element is on.
+    Every kink must be a node: the end frames of an element are those of its end sections, on the element's side.
     """
     points = quadrature(blade, nodes)
     h, element, s = points.length, points.element, points.s
@@ -164,7 +164,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         return np.add.reduceat(over(b[None], values)[:, 0], start, axis=0)
 
     def running(values: Array) -> tuple[Array, Array, Array]:
-        """Integral from the element's start to its Gauss points and to the points ``at``, and over all of it."""
+        """Integral from the element's start to its Gauss points and to the points ``at``, and over the whole element."""
         parts = over(b[None], values)[:, 0]
         begun = np.cumsum(parts, axis=0) - parts
         begun -= begun[start][element]
@@ -217,10 +217,10 @@ def _uneven(
 
     Args:
         pose: (i, q, 4, 4) of the points in the element's frame.
-        part: (i, q, 1) of the element's length that lies before them.
+        part: (i, q, 1) fraction of the element's length before the points.
         length: (i, 1, 1) of the elements, m.
         last: (i, 1, 6) logarithm of the undeformed elements.
-        shape, rate: (i, q, 6, 6) the points' twists from that of b, and their rates along the arc.
+        shape, rate: (i, q, 6, 6) the points' twists from that of b, and their derivatives along the arc.
         static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
     """
     ends_move = sp.tangent(last)
@@ -228,8 +228,8 @@ def _uneven(
     displaced = _across(pose, shape @ ends_move, rate @ ends_move)
     helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
     strain = static @ ends_move
-    slip = np.eye(6)[1:3] / length[..., None]  # the helicoid's own shear
-    bow = 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(slip))
+    shear = np.eye(6)[1:3] / length[..., None]  # of the helicoid
+    bow = 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(shear))
     return bow, strain, 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
 
 
@@ -238,7 +238,7 @@ def _squared(slope: Array) -> Array:
 
 
 def _across(pose: Array, twist: Array, rate: Array) -> Array:
-    """(…, 2, 6) slope across the axis of the displaced reference curve, from twists at a and their rates along the arc."""
+    """(…, 2, 6) transverse slope of the displaced reference curve, from twists at a and their derivatives along the arc."""
     p, x = pose[..., :3, 3], pose[..., :3, 0]
     slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ twist[..., 3:, :]
     return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
@@ -259,7 +259,7 @@ def collocation(n: int) -> tuple[Array, Array, Array]:
 
 
 def partial_weights(n: int, x: Array) -> Array:
-    """(m, n) weights of Gauss's n points on [0, 1] for the integrals from 0 to x (m,)."""
+    """(m, n) weights of the n Gauss points on [0, 1] for the integrals from 0 to x (m,)."""
     return _up_to(collocation(n)[0], x)
 
 

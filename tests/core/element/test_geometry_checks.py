@@ -54,7 +54,7 @@ def arc(s: np.ndarray, radius: float = 20.0) -> np.ndarray:
         ),
         (
             [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]],
-            r"blade\.curve: between 0 m and 10 m it is 5 m long, by the stations 10 m",
+            r"blade\.curve: between 0 m and 10 m it is 5 m long, but the stations differ by 10 m",
         ),
         (
             [[5.0, 0.0, 0.0], [15.0, 0.0, 0.0]],
@@ -63,7 +63,7 @@ def arc(s: np.ndarray, radius: float = 20.0) -> np.ndarray:
         ([[0.0, 5.0, 0.0], [10.0, 5.0, 0.0]], r"blade\.curve: begins at \(0, 5, 0\) m"),
         ([[0.0, 0.0, 0.0], [-10.0, 0.0, 0.0]], r"blade\.curve: turns back towards the hub at 0 m"),
         ([[0.0, 0.0, 0.0], [1e29, 0.0, 0.0]], r"blade\.curve: its points.*1e\+29 m apart"),
-        ([[0.0, 0.0, 0.0], [1e308, 0.0, 0.0]], r"1e\+308: nothing is so large"),
+        ([[0.0, 0.0, 0.0], [1e308, 0.0, 0.0]], r"1e\+308: implausibly large"),
     ],
     ids=["longer", "shorter", "starts at 5 m", "starts 5 m beside", "backwards", "1e29", "1e308"],
 )
@@ -87,7 +87,7 @@ def test_a_key_point_beyond_all_measure_is_refused_in_one_line(
     words[column] = value
     lines[line] = "  ".join(words)
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(CaseError, match=f"line {line + 1}: .*{value}: nothing is so large"):
+    with pytest.raises(CaseError, match=f"line {line + 1}: .*{value}: implausibly large"):
         reading(path)
 
 
@@ -120,7 +120,9 @@ def test_stations_that_are_spans_and_not_arc_lengths_are_refused() -> None:
     """A circle of 20 m radius over its x: 3 % longer than its span. The arc length itself is accepted."""
     s = np.linspace(0.0, 10.0, 11)
     right = arc(s)
-    with pytest.raises(BladeError, match=r"curve: its points at .* m apart, by their arc lengths .*spans along x"):
+    with pytest.raises(
+        BladeError, match=r"curve: its points at .* m apart, but their arc lengths differ .*spans along x"
+    ):
         blade(right[:, 0], right)
     assert blade(s, right).length == 10.0
 

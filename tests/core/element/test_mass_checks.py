@@ -46,15 +46,15 @@ GOOD = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.
         ),
         (
             "[10, 0, 0, 0, 0, -1, 10, 0, 0, 0, 0, 10, 1, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]",
-            r"moments of inertia about the mass centre reach down to -0\.08.*m d² included",
+            r"smallest moment of inertia about the mass centre is -0\.08.*m d² included",
         ),
         (
             "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.09, 0, 0, 0.01, 0, 0.02]",
-            r"moments.* are 0\.01, 0\.02, 0\.09: none can be larger than the two others together.*polar one is their sum",
+            r"moments.* are 0\.01, 0\.02, 0\.09: none can be larger than the sum of the other two.*polar one is that sum",
         ),
         (
             "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0.05, 0.02]",
-            r"moments of inertia about the mass centre reach down to",
+            r"smallest moment of inertia about the mass centre is",
         ),
         ("[-10, 0, 0, 0, 0, 0, -10, 0, 0, 0, 0, -10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]", r"diagonal 0 is -10 kg/m"),
     ],
