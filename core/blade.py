@@ -7,10 +7,10 @@ Axes, defined here and converted by each adapter (right-handed, all rotating wit
 * ``y = z × x`` lies in the plane of rotation, in the direction of motion.
 
 Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
-flapwise. A section's own axes are the blade's rotated by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
+flapwise. Section axes are the blade axes rotated by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
 
 Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bending about y, bending about z)``;
-forces likewise ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
+forces are ordered ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
 """
 
 from dataclasses import dataclass, field, replace
@@ -32,27 +32,28 @@ class Blade:
     """A rotating blade on its hub; properties vary linearly between stations.
 
     Attributes:
-        name: what to call it in a table.
-        stations: (n,) arc length along the reference curve from the root, m; from 0, strictly increasing.
-        stiffness: (n, 6, 6) section stiffness in section axes; ``inf`` on the diagonal means that strain is rigid
-            (its row and column are otherwise zero): Euler–Bernoulli is ``inf`` in both shears.
-        mass: (n, 6, 6) mass per length in section axes: linear and angular momentum from velocity and angular
-            velocity of the reference point.
-        twist: (n,) rad, structural twist.
-        curve: (n, 3) m, reference curve from the root in blade axes (prebend, sweep); straight along x by default. Between
-            the stations it is a cubic spline of the arc length.
-        hub_radius: m, from the rotor's axis to the root.
-        precone: rad, the blade's axis tilted from the plane of rotation towards +z.
-        pitch: rad, the whole blade rotated about its own axis at the root, same sense as twist.
-        tip_mass: (6, 6) rigid body's inertia at the tip, in the tip section's axes.
-        root: (6,) stiffness of the root's joint to the hub, along and about the blade's axes there (pitched, not twisted),
-            N/m and N m/rad: ``inf`` clamps (the default for all six), 0 is free, any other number is a spring. The blade
-            slides along x, y and z, then turns about x, y and z in sequence; each spring is on one of these coordinates.
-        kinks: inner stations where the curve's tangent jumps, m: each piece between them has its own spline, and the sections
-            rotate with the tangent. A piece of two stations is straight.
+        name: label in tables.
+        stations: (n,) arc length along the reference curve from the root, m; strictly increasing from 0 (a first station
+            within rounding of 0 is set to 0).
+        stiffness: (n, 6, 6) section stiffness in section axes, N, N m, N m²; ``inf`` on the diagonal marks a rigid strain
+            (its row and column are otherwise zero): an Euler–Bernoulli beam has ``inf`` in both shears.
+        mass: (n, 6, 6) mass per length in section axes, kg/m, kg, kg m: maps velocity and angular velocity at the reference
+            point to linear and angular momentum.
+        twist: (n,) structural twist, rad.
+        curve: (n, 3) reference curve from the root in blade axes (prebend, sweep), m; straight along x by default. A cubic
+            spline of the arc length interpolates between stations.
+        hub_radius: distance from the rotor's axis to the root, m.
+        precone: tilt of the blade's axis from the plane of rotation towards +z, rad.
+        pitch: rotation of the whole blade about its axis at the root, rad; same sense as twist.
+        tip_mass: (6, 6) inertia of a rigid body at the tip, in the tip section's axes.
+        root: (6,) stiffness of the root joint along and about the blade's axes there (pitched, not twisted), N/m and
+            N m/rad: ``inf`` clamps (the default for all six), 0 is free, any other number is a spring. The blade slides
+            along x, y and z, then turns about x, y and z in sequence; each spring acts on one of these coordinates.
+        kinks: inner stations where the curve's tangent jumps, m. Each piece between kinks is a separate spline; a piece of
+            two stations is straight. The sections rotate with the tangent.
 
     Raises:
-        BladeError: invalid data; see ``blade_checks``. A first station within rounding of 0 is set to 0.
+        BladeError: invalid data; see ``blade_checks``.
     """
 
     name: str
@@ -87,7 +88,7 @@ class Blade:
 
 
 def _on_stations(blade: Blade) -> tuple[float, ...]:
-    """The kinks, each moved to the station that it equals within rounding."""
+    """The kinks, each replaced by the station that it equals within rounding."""
     s = blade.stations
     if s.ndim != 1 or not len(s):
         return ()
@@ -129,7 +130,7 @@ def uniform_blade(
     GA_y: float = np.inf,
     GA_z: float = np.inf,
 ) -> Blade:
-    """A straight uniform untwisted cantilever; arguments as for ``section_stiffness`` and ``section_mass``."""
+    """A straight uniform untwisted cantilever; lengths in m, sections as for ``section_stiffness`` and ``section_mass``."""
     return Blade(
         name=name,
         stations=np.array([0.0, length]),
@@ -142,7 +143,7 @@ def uniform_blade(
 
 @dataclass(frozen=True)
 class Sections:
-    """An uncoupled blade's properties sampled at some arc lengths, in each section's own (twisted) axes; SI."""
+    """Properties of uncoupled sections at k arc lengths, each (k,), in section (twisted) axes; SI units."""
 
     EA: Array
     GA_y: Array
@@ -161,11 +162,11 @@ def sample(blade: Blade, s: ArrayLike) -> Sections:
     """Engineering properties at arc lengths ``s`` (m).
 
     Raises:
-        BladeError: if the sections are coupled, so that these properties do not describe the blade (see ``coupled``).
+        BladeError: the sections are coupled (see ``coupled``), which these properties do not describe.
     """
     if coupled(blade):
         raise BladeError(
-            f"{blade.name}: sections couple (off-diagonal entries); this code takes uncoupled sections only"
+            f"{blade.name}: coupled sections (off-diagonal entries); this code accepts uncoupled sections only"
         )
     k, m = stiffness_at(blade, s), mass_at(blade, s)
     d, e = np.diagonal(k, axis1=1, axis2=2), np.diagonal(m, axis1=1, axis2=2)
@@ -231,7 +232,7 @@ def clamped(blade: Blade) -> bool:
 
 
 def uniform(blade: Blade) -> bool:
-    """Whether every station has the same section and the blade is straight and clamped: no twist, precone, pitch, tip mass."""
+    """Whether all sections are equal and uncoupled, and the blade straight, clamped, without twist, cone, pitch, tip mass."""
     same = all(
         np.allclose(v, v[0], rtol=1e-12, atol=0)
         for v in (np.diagonal(blade.mass, axis1=1, axis2=2), np.diagonal(blade.stiffness, axis1=1, axis2=2))
@@ -247,7 +248,7 @@ def uniform(blade: Blade) -> bool:
 
 
 def without_rotary_inertia(blade: Blade) -> Blade:
-    """Copy of a blade without moments of inertia about the mass centres of its sections."""
+    """Copy of a blade without the moments of inertia of its sections about their mass centres."""
     mass = blade.mass.copy()
     m, centre, _ = about_centre(mass)
     mass[:, 3:, 3:] = -m[:, None, None] * skew(centre) @ skew(centre)

@@ -33,7 +33,7 @@ SWING_REACH = 3
 """Number of stations over which a spline oscillates about a corner."""
 
 MIN_TANGENT_X = -0.9
-"""Least x component of the tangent: the rotation from the x axis to the tangent is undefined at −1."""
+"""Smallest x component of the unit tangent: the rotation from the x axis to the tangent is undefined at −1."""
 
 MASS_TOLERANCE, INERTIA_TOLERANCE = 1e-4, 1e-2
 """Largest deviation of a mass matrix from that of a rigid body, relative to its mass and to its moments of inertia."""
@@ -54,7 +54,7 @@ def check(blade: "Blade") -> None:
     """Validate a blade.
 
     Raises:
-        BladeError: naming the field, where along the blade, the value, the likely cause and the remedy.
+        BladeError: invalid data; the message names the field, the station, the value, the likely cause and the remedy.
     """
     _arrays(blade)
     _stations(blade)
@@ -91,11 +91,11 @@ def _stations(blade: "Blade") -> None:
     if (np.diff(blade.stations) <= 0).any():
         k = int(np.argmax(np.diff(blade.stations) <= 0)) + 1
         raise BladeError(
-            f"stations: number {k} ({blade.stations[k]:g} m) does not lie beyond the one before it "
+            f"stations: number {k} ({blade.stations[k]:g} m) is not greater than the one before it "
             f"({blade.stations[k - 1]:g} m): sort them and drop duplicates"
         )
     if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
-        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: it is a distance from the rotor's axis; give 0 or more")
+        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: a distance from the rotor's axis; give 0 or more")
     for name in ("precone", "pitch"):
         if not np.isfinite(getattr(blade, name)):
             raise BladeError(f"{name}: {getattr(blade, name)}: not a finite number; give an angle in radians")
@@ -109,8 +109,8 @@ def _kinks(blade: "Blade") -> None:
         if kink not in inner:
             near = f"; the nearest is {inner[np.abs(inner - kink).argmin()]:g} m" if len(inner) else ""
             raise BladeError(
-                f"kinks: {kink:g} m: not a station between root and tip{near}: the curve needs its point there; "
-                "add a station, or correct the kink"
+                f"kinks: {kink:g} m: not a station between root and tip{near}: a kink must be at a station; "
+                "add one there, or correct the kink"
             )
     if (np.diff(blade.kinks) <= 0).any():
         raise BladeError(f"kinks: {list(blade.kinks)}: not ascending: sort them and drop duplicates")
@@ -119,12 +119,12 @@ def _kinks(blade: "Blade") -> None:
 def _curve(blade: "Blade") -> None:
     """Check that the curve begins at the root and that its arc length is that of the stations, |r′(s)| = 1."""
     s, r, length = blade.stations, blade.curve, blade.length
-    x, *beside = np.abs(r[0])
-    if x > COORDINATE_ROUNDING * length or np.hypot(*beside) > MAX_ROOT_OFFSET * length:
+    x, *across = np.abs(r[0])
+    if x > COORDINATE_ROUNDING * length or np.hypot(*across) > MAX_ROOT_OFFSET * length:
         raise BladeError(
-            f"curve: begins at ({r[0, 0]:.6g}, {r[0, 1]:.6g}, {r[0, 2]:.6g}) m: the curve is measured from the root and "
-            f"begins there, at x = 0 and no more than {MAX_ROOT_OFFSET:g} of the length beside it; subtract its first point "
-            "(the hub's radius goes into hub_radius)"
+            f"curve: begins at ({r[0, 0]:.6g}, {r[0, 1]:.6g}, {r[0, 2]:.6g}) m: it must begin at the root, at x = 0 and "
+            f"within {MAX_ROOT_OFFSET:g} of the length from the x axis; subtract its first point (the hub's radius goes into "
+            "hub_radius)"
         )
     step = np.diff(s)
     with np.errstate(over="ignore"):
@@ -133,9 +133,8 @@ def _curve(blade: "Blade") -> None:
     if (chord > step + allowed).any():
         k = int(np.argmax(chord - step - allowed))
         raise BladeError(
-            f"curve: its points at {s[k]:g} m and {s[k + 1]:g} m are {chord[k]:.6g} m apart, by their arc lengths "
-            f"{step[k]:.6g} m: stations that are spans along x, or of another unit or blade? give the arc length along the "
-            "curve"
+            f"curve: its points at {s[k]:g} m and {s[k + 1]:g} m are {chord[k]:.6g} m apart, but their arc lengths differ by "
+            f"{step[k]:.6g} m: are the stations spans along x, or in another unit? give the arc length along the curve"
         )
     arc = lengths(s, r, blade.kinks)
     if (np.abs(arc - step) > allowed).any():
@@ -144,7 +143,7 @@ def _curve(blade: "Blade") -> None:
     if (ends[:, 0] < MIN_TANGENT_X * np.linalg.norm(ends, axis=1)).any():
         k = int(np.argmin(ends[:, 0])) % len(s)
         raise BladeError(
-            f"curve: turns back towards the hub at {s[k]:g} m: x, y and z in another order? the first runs along the blade"
+            f"curve: turns back towards the hub at {s[k]:g} m: are x, y and z in another order? x runs along the blade"
         )
 
 
@@ -161,24 +160,24 @@ def follows(s: Array, r: Array) -> bool:
 
 
 def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array) -> str:
-    """Message for a spline whose length between stations k and k + 1 differs from their distance."""
+    """Message for a spline whose length between stations k and k + 1 is not the difference of their arc lengths."""
     s = blade.stations
     step, found = s[k + 1] - s[k], f"curve: between {s[k]:g} m and {s[k + 1]:g} m"
     along = np.diff(blade.curve, axis=0) / chord[:, None]
     turn = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
     turn[np.isin(s[1:-1], blade.kinks)] = 0.0
-    beside, around = (turn[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
-    longest = chord[k] / np.sinc(beside.max(initial=0.0) / (2 * np.pi))  # of an arc that turns so much
+    adjacent, around = (turn[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
+    longest = chord[k] / np.sinc(adjacent.max(initial=0.0) / (2 * np.pi))  # circular arc with that turn
     if around.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
         corner = s[max(k - SWING_REACH, 0) + 1 + int(around.argmax())]
         return (
-            f"{found} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it swings about the "
-            f"curve, which turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points around there, or declare a "
-            f"kink: kinks = [{corner:g}]"
+            f"{found} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it oscillates because "
+            f"the curve turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points there, or declare a kink: "
+            f"kinks = [{corner:g}]"
         )
     return (
-        f"{found} it is {arc[k]:.6g} m long, by the stations {step:.6g} m: not the arc length along the curve, or a point out "
-        "of line? correct either"
+        f"{found} it is {arc[k]:.6g} m long, but the stations differ by {step:.6g} m: stations that are not arc lengths, or a "
+        "misplaced point? correct either"
     )
 
 
@@ -186,10 +185,10 @@ def _stiffness(blade: "Blade") -> None:
     rigid = np.isinf(blade.stiffness)
     for k, i, _ in np.argwhere(rigid != rigid.any(0))[:1]:
         raise BladeError(
-            f"stiffness: {STRAINS[i]} at station {k} ({blade.stations[k]:g} m) is finite where other stations are rigid: a "
-            "strain is rigid all along or nowhere; give inf, or a number, at every station"
+            f"stiffness: {STRAINS[i]} at station {k} ({blade.stations[k]:g} m) is finite but rigid at other stations: a "
+            "strain is rigid at all stations or at none; give inf, or a number, at every station"
         )
-    never = rigid.any(0)
+    rigid_entry = rigid.any(0)
     d = np.diagonal(blade.stiffness, axis1=1, axis2=2)
     if (d <= 0).any():
         k, i = np.argwhere(d <= 0)[0]
@@ -197,12 +196,12 @@ def _stiffness(blade: "Blade") -> None:
             f"stiffness: diagonal {i} ({STRAINS[i]}) at station {k} ({blade.stations[k]:g} m) is {d[k, i]:g}: it must be "
             "positive; wrong sign or unit?"
         )
-    loose = np.isinf(d[0])
-    coupled = never & ~np.eye(6, dtype=bool) | (blade.stiffness != 0).any(0) & (loose[:, None] ^ loose)
+    rigid_d = np.isinf(d[0])
+    coupled = rigid_entry & ~np.eye(6, dtype=bool) | (blade.stiffness != 0).any(0) & (rigid_d[:, None] ^ rigid_d)
     for i, j in np.argwhere(coupled)[:1]:
         raise BladeError(
-            f"stiffness: entry ({i}, {j}) couples a rigid strain: rows and columns of rigid strains are zero but for inf on "
-            "the diagonal; remove it"
+            f"stiffness: entry ({i}, {j}) couples a rigid strain: rows and columns of rigid strains are zero except for inf "
+            "on the diagonal; remove it"
         )
     size = np.sqrt(np.where(np.isinf(d), 1.0, d))
     unit = np.where(rigid, 1.0, blade.stiffness) / (size[:, :, None] * size[:, None, :])
@@ -219,16 +218,16 @@ def _stiffness(blade: "Blade") -> None:
         k = int(least.argmin())
         raise BladeError(
             f"stiffness: at station {k} ({blade.stations[k]:g} m) not positive definite (least eigenvalue {least[k]:.2g} of a "
-            "unit diagonal): a coupling too large, or of the wrong unit? correct it"
+            "unit diagonal): a coupling too large, or in the wrong unit? correct it"
         )
 
 
 def body_fault(matrix: Array, unit: str) -> str | None:
-    """Why an inertia (6, 6) is not that of a rigid body or a slice of one: cause and remedy; None if it is.
+    """Describe why an inertia (6, 6) is not that of a rigid body or a slice of one, with the remedy; None if it is.
 
-    It must be ``[[m, −m c×], [m c×, J]]``, one mass m ≥ 0 in all directions, and the moments of inertia about the mass centre,
-    ``J + m c× c×``, must be those of a distribution of mass: none negative, none larger than the two others together.
-    ``unit`` is that of the mass.
+    It must be ``[[m, −m c×], [m c×, J]]`` with one mass m ≥ 0 in all directions. The moments of inertia about the mass centre,
+    ``J + m c× c×``, must be those of a distribution of mass: none negative, none larger than the sum of the other two.
+    ``unit`` is the unit of the mass.
     """
     scale = np.abs(matrix).max()
     m, J = matrix[0, 0], matrix[3:, 3:]
@@ -240,8 +239,8 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         )
     if np.ptp(d[:3]) > MASS_TOLERANCE * m:
         return (
-            f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has one mass in all directions; a table's "
-            "columns shifted? give one"
+            f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has the same mass in all directions; columns "
+            "shifted in the table? give one mass"
         )
     size = np.maximum(np.sqrt(d)[:, None] * np.sqrt(d), 1e-9 * scale)  # np.outer(d, d) may underflow
     wrong = np.abs(matrix - matrix.T) / size
@@ -263,20 +262,20 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     if even.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
         i, j = np.unravel_index(int(even.argmax()), (3, 3))
         return (
-            f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: mass times the centre's "
-            "offset has opposite signs there, and zeros on the diagonal; wrong sign or order of rows? correct them"
+            f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: the block m c× is skew: "
+            "opposite signs, zeros on the diagonal; wrong sign or order of rows? correct them"
         )
     _, centre, moments = about_centre(matrix)
     least, middle, most = np.linalg.eigvalsh(moments)
     rounding = INERTIA_TOLERANCE * np.trace(J)
     if least < -rounding or (m * np.abs(centre).max() ** 2 > 1e-12 * scale and not np.trace(J)):
         return (
-            f"moments of inertia about the mass centre reach down to {least:.3g}: less than none; are those given about the "
-            "mass centre? they are about the reference point, m d² included"
+            f"smallest moment of inertia about the mass centre is {least:.3g}: negative; were the moments given about the "
+            "mass centre? give them about the reference point, m d² included"
         )
     if most - middle - least > rounding:
         return (
-            f"moments of inertia about the mass centre are {least:.3g}, {middle:.3g}, {most:.3g}: none can be larger than the "
-            "two others together; of a section the polar one is their sum; give all three"
+            f"moments of inertia about the mass centre are {least:.3g}, {middle:.3g}, {most:.3g}: none can be larger than "
+            "the sum of the other two; a section's polar one is that sum; give all three"
         )
     return None

@@ -1,8 +1,8 @@
 """Compiled loops, and the products of small matrices they are made of.
 
-What runs for every element at every speed is compiled by numba at its first call and kept on disk for later processes, in a
-folder named after the sources of all such functions: where one of them changes, none is taken from before. The first
-compilation of a command is announced by the logger ``southwell``, whose warnings go to standard error by default.
+Functions that run for every element at every speed are compiled by numba at their first call and cached on disk. The cache
+folder is named after a digest of their sources, so a change to one of them invalidates all. The first compilation of a
+command is announced by the logger ``southwell``, whose warnings go to standard error by default.
 """
 
 import hashlib
@@ -33,13 +33,13 @@ _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 @cache
 def _folder() -> Path | None:
-    """Beside the sources if that may be written to, else in the user's cache, else a temporary folder; only where nobody
-    else may write, since what is in it is executed. None: there is no such folder."""
+    """The cache folder: next to the sources if they are writable, else in the user's cache, else in a temporary folder. Only
+    folders that nobody else can write to are used, since their content is executed. None: there is no such folder."""
     sources = [p.read_bytes() for p in sorted(_HERE.rglob("*.py"))]
     name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
     for place in _places():
         if folder := compiled_files.folder(place, name):
-            if place.parent == _HERE:  # elsewhere another installation may have its own
+            if place.parent == _HERE:  # other places may hold the cache of another installation
                 for old in set(place.glob("compiled-*")) - {folder}:
                     shutil.rmtree(old, ignore_errors=True)
             return folder
@@ -48,8 +48,8 @@ def _folder() -> Path | None:
 
 def _places() -> Iterator[Path]:
     yield _HERE / "__pycache__"
-    if own := os.environ.get("SOUTHWELL_CACHE"):
-        yield Path(own)
+    if chosen := os.environ.get("SOUTHWELL_CACHE"):
+        yield Path(chosen)
     else:
         with suppress(RuntimeError):  # neither HOME nor an entry in the system's list of users
             yield Path.home() / ".cache" / "southwell"
@@ -61,7 +61,7 @@ ANNOUNCEMENT = "southwell: compiling the solver's loops (first use only, up to h
 
 
 class _FirstUse(event.Listener):
-    """Announces once that code is being compiled; of several worker processes, one does."""
+    """Announces compilation once; among several worker processes, only one announces it."""
 
     announced = False
 
@@ -91,7 +91,7 @@ event.register("numba:compile", _FirstUse())
 
 
 def compiled(f: F) -> F:
-    """``f`` as machine code: arrays must be C-contiguous; a zero division gives inf or nan, as numpy's does."""
+    """Compile ``f`` to machine code: arrays must be C-contiguous; division by zero gives inf or nan, as in numpy."""
     folder = _folder()
     if folder is None:
         return cast(F, numba.njit(f, **_HOW))
@@ -106,13 +106,13 @@ def compiled(f: F) -> F:
 
 
 def inlined(f: F) -> F:
-    """``f`` written out where compiled code calls it: for a few lines called very often."""
+    """Inline ``f`` where compiled code calls it: for a few lines called very often."""
     return cast(F, numba.njit(f, inline="always", **_HOW))
 
 
 @compiled
 def clear(out: Array) -> None:
-    """out = 0, of a matrix."""
+    """out = 0 for a matrix."""
     for i in range(out.shape[0]):
         for j in range(out.shape[1]):
             out[i, j] = 0.0
@@ -120,7 +120,7 @@ def clear(out: Array) -> None:
 
 @compiled
 def product(a: Array, b: Array, out: Array) -> None:
-    """out = a b, of a (m, 6) and b (6, n), as far as the columns of ``out`` and b go; more columns of a are left out."""
+    """out = a b for a (m, 6) and b (6, n), in the columns that ``out`` and b share; further columns of a are ignored."""
     for i in range(a.shape[0]):
         a0, a1, a2, a3, a4, a5 = a[i, 0], a[i, 1], a[i, 2], a[i, 3], a[i, 4], a[i, 5]
         for j in range(min(b.shape[1], out.shape[1])):
@@ -129,7 +129,7 @@ def product(a: Array, b: Array, out: Array) -> None:
 
 @compiled
 def transposed_product(a: Array, b: Array, out: Array) -> None:
-    """out = aᵀ b, of a (6, m) and b (6, n), as far as the columns of ``out`` and b go."""
+    """out = aᵀ b for a (6, m) and b (6, n), in the columns that ``out`` and b share."""
     for i in range(a.shape[1]):
         a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
         for j in range(min(b.shape[1], out.shape[1])):
@@ -138,30 +138,31 @@ def transposed_product(a: Array, b: Array, out: Array) -> None:
 
 @compiled
 def apply(a: Array, v: Array, out: Array) -> None:
-    """out = a v, of a (m, 6) and v (6,)."""
+    """out = a v for a (m, 6) and v (6,)."""
     for i in range(a.shape[0]):
         out[i] = a[i, 0] * v[0] + a[i, 1] * v[1] + a[i, 2] * v[2] + a[i, 3] * v[3] + a[i, 4] * v[4] + a[i, 5] * v[5]
 
 
 @compiled
 def transposed_apply(a: Array, v: Array, out: Array) -> None:
-    """out = aᵀ v, of a (6, n) and v (6,)."""
+    """out = aᵀ v for a (6, n) and v (6,)."""
     for j in range(a.shape[1]):
         out[j] = a[0, j] * v[0] + a[1, j] * v[1] + a[2, j] * v[2] + a[3, j] * v[3] + a[4, j] * v[4] + a[5, j] * v[5]
 
 
 @compiled
 def congruence(a: Array, m: Array, work: Array, out: Array) -> None:
-    """out = aᵀ m a, of a (6, n) and m (6, 6); ``work`` is as large as ``a``."""
+    """out = aᵀ m a for a (6, n) and m (6, 6); ``work`` has the shape of ``a``."""
     product(m, a, work)
     transposed_product(a, work, out)
 
 
 @compiled
 def invert(a: Array) -> int:
-    """Invert a small matrix in place by Gauss and Jordan, without pivoting.
+    """Invert a small matrix in place by Gauss–Jordan elimination without pivoting.
 
-    Returns 2 if all pivots are positive, 1 if not all are, and 0, the work undone, if one is zero or not finite.
+    Returns 2 if all pivots are positive, 1 if some are negative, and 0, with the inversion incomplete, if one is zero or not
+    finite.
     """
     d, kind = len(a), 2
     for p in range(d):

@@ -1,7 +1,7 @@
-"""Where compiled code is kept: in folders that nobody else can write to, in files that say whether they are whole.
+"""Storage of compiled code: in folders that nobody else can write to, in files with a checksum.
 
-What is in these files is executed as it is loaded. Another user's file must not be, and one that was cut short by a full disk
-or a killed process must be compiled and written anew.
+The content of these files is executed when it is loaded. A file of another user must not be loaded, and a file truncated by
+a full disk or a killed process must be compiled and written again.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ from numba.core.caching import IndexDataCacheFile
 
 
 def folder(place: Path, name: str) -> Path | None:
-    """The folder ``name`` in ``place``, made if it is not there; None if it cannot be used or trusted."""
+    """The folder ``name`` in ``place``, created if missing; None if it cannot be used or trusted."""
     out = place / name
     try:
         place.mkdir(parents=True, exist_ok=True)
@@ -30,25 +30,25 @@ def folder(place: Path, name: str) -> Path | None:
 
 
 def trusted(folder: Path) -> bool:
-    """Whether only this user (and the system's administrator) can put anything into a folder, or another in its place.
+    """Whether only this user (and the system's administrator) can write into a folder or replace it.
 
-    It must be the user's own, no link, writable to nobody else; and so the folder it lies in, unless that keeps everybody
-    from what is others' (the sticky bit, as of ``/tmp``).
+    The folder must belong to the user, be writable by nobody else, and not be a link. Its parent must belong to the user or
+    the administrator, and be writable by nobody else unless it has the sticky bit (as ``/tmp`` has).
 
     Raises:
-        OSError: it cannot be looked at.
+        OSError: the folder or its parent cannot be examined.
     """
-    if os.name == "nt":  # folders of the user's profile; modes and owners say nothing there
+    if os.name == "nt":  # folders of the user's profile; modes and owners have no meaning there
         return True
     found, above = folder.lstat(), folder.parent.stat()
     others = stat.S_IWGRP | stat.S_IWOTH
-    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & others
+    private = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & others
     safe = above.st_uid in (os.geteuid(), 0) and (not above.st_mode & others or bool(above.st_mode & stat.S_ISVTX))
-    return own and safe
+    return private and safe
 
 
 class CheckedFiles(IndexDataCacheFile):
-    """Numba's files of one function, each beginning with the SHA-256 of the rest; a damaged one is as a missing one."""
+    """Numba's cache files of one function, each with the SHA-256 of its content first; a damaged one counts as missing."""
 
     @contextmanager
     def _open_for_write(self, filepath: str) -> Iterator[BytesIO]:
@@ -75,7 +75,7 @@ def _checked(path: Path) -> bytes:
     """The content of a file after its digest.
 
     Raises:
-        OSError: it is not there, or damaged.
+        OSError: the file is missing or damaged.
     """
     content = path.read_bytes()
     if hashlib.sha256(content[32:]).digest() != content[:32]:
@@ -84,7 +84,7 @@ def _checked(path: Path) -> bytes:
 
 
 def check(function: Any) -> None:
-    """Have the files of a function that numba caches checked."""
+    """Verify the cache files of a function compiled by numba: use ``CheckedFiles`` for them."""
     cache = function._cache
     found = cache._impl
     cache._cache_file = CheckedFiles(cache._cache_path, found.filename_base, found.locator.get_source_stamp())

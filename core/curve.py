@@ -17,22 +17,22 @@ SAME = 1e-12
 
 
 def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool = False) -> tuple[Array, Array]:
-    """Values (k, …) and their derivatives by arc length (k, …) at arc lengths ``s`` (k,), m.
+    """Values (k, …) and their derivatives with respect to arc length (k, …) at arc lengths ``s`` (k,), m.
 
     Args:
         stations: (n,) arc length of the points, m.
         values: (n, …) at the stations: the curve (n, 3), m, or any quantity that is smooth between kinks.
-        kinks: those of the stations where the derivative jumps, ascending, m.
+        kinks: stations where the derivative jumps, ascending, m.
         s: (k,) arc lengths, m.
-        before: evaluate at a kink from the side before it instead of the side beyond it.
+        before: evaluate at a kink from its root side instead of its tip side.
     """
     s = on_kinks(s, kinks, SAME * stations[-1])
     piece = np.searchsorted(np.array(kinks), s, side="left" if before else "right")
     ends = np.array([stations[0], *kinks, stations[-1]])
     found, rate = (np.empty((len(s), *values.shape[1:]), dtype=values.dtype) for _ in range(2))
     for k in np.unique(piece):
-        own, here = (stations >= ends[k]) & (stations <= ends[k + 1]), piece == k
-        spline = CubicSpline(stations[own], values[own])
+        points, here = (stations >= ends[k]) & (stations <= ends[k + 1]), piece == k
+        spline = CubicSpline(stations[points], values[points])
         found[here], rate[here] = spline(s[here]), spline(s[here], 1)
     return found, rate
 

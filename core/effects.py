@@ -1,14 +1,14 @@
-"""Which physical effects an analysis of a rotating blade keeps."""
+"""Physical effects included in an analysis of a rotating blade."""
 
 from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True)
 class Effects:
-    """The effects kept; all of them by default. A code declares those it lacks, and core can leave out the same.
+    """The effects included; all by default. A code declares the effects it lacks, and core can omit the same ones.
 
     Attributes:
-        prestretch: the steady state's displacements are followed (deformed radius), not only its internal forces.
+        prestretch: the displacements of the steady state (deformed radius), not only its internal forces.
         coriolis: the gyroscopic terms, 2 Ω × velocity.
         rotary_inertia: the sections' moments of inertia.
         geometric: stiffening by the steady internal forces.
@@ -20,7 +20,7 @@ class Effects:
     geometric: bool = True
 
     def lacks(self) -> tuple[str, ...]:
-        """Names of the effects left out."""
+        """Names of the omitted effects."""
         return tuple(f.name.replace("_", " ") for f in fields(self) if not getattr(self, f.name))
 
 

@@ -1,8 +1,8 @@
 """Gyroscopic eigenproblems K x + λ C x + λ² M x = 0, with K positive definite, M positive semi-definite, C skew.
 
 The dense solver here and ``lanczos`` work on the inverse: with y = λ x, A = diag(K, M) and S = [[C, M], [−M, 0]], the
-operator A⁻¹S has eigenvalues −1/λ, the lowest modes largest. S is skew in the plain product, A⁻¹S in A's, so the eigenvalues
-lie on the imaginary axis to rounding, and M is never inverted: massless coordinates are condensed exactly.
+operator A⁻¹S has eigenvalues −1/λ, the largest for the lowest modes. S is skew, and A⁻¹S is skew in the A product, so the
+eigenvalues lie on the imaginary axis to rounding. M is never inverted: massless coordinates are condensed exactly.
 (Meirovitch 1974; Lancaster 2013, *Stability of linear gyroscopic systems*.)
 """
 
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 
 
 MASSLESS = 1e-14
-"""A motion's mass below this fraction of the largest, in scaled coordinates, is none."""
+"""A motion whose mass is below this fraction of the largest, in scaled coordinates, counts as massless."""
 
 
 class UnstableError(ValueError):
@@ -28,7 +28,7 @@ class UnstableError(ValueError):
 
 
 class EigenError(RuntimeError):
-    """The eigenvalue solver failed: nothing is known about stability or frequencies."""
+    """The eigenvalue solver failed: stability and frequencies are unknown."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Eigen:
 
 
 def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
-    """All (or the ``count`` lowest) modes of dense matrices; massless coordinates give no modes.
+    """All (or the ``count`` lowest) modes of dense matrices (n, n); massless coordinates give no modes.
 
     Raises:
         UnstableError: if K is not positive definite.
@@ -71,10 +71,10 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
 
 
 def scaling(M: Array, C: Array, K: Array) -> Array:
-    """(n,) by which coordinates of unlike units are made alike: each of a stiffness of one.
+    """Scale factors (n,) that give every coordinate, whatever its unit, a stiffness of one.
 
     Raises:
-        UnstableError: if a coordinate has no stiffness, but for rounding.
+        UnstableError: if a coordinate has no stiffness, apart from rounding.
         EigenError: if an entry is not finite.
     """
     _check_finite(M, C, K)
@@ -87,7 +87,7 @@ def scaling(M: Array, C: Array, K: Array) -> Array:
 
 @dataclass(frozen=True)
 class Damped:
-    """Eigenvalues (m,) of one of each conjugate pair (and real ones), by modulus, and vectors (n, m)."""
+    """Eigenvalues (m,), 1/s, by modulus: one of each conjugate pair, and real ones; and vectors (n, m)."""
 
     values: Complex
     vectors: Complex
@@ -105,21 +105,22 @@ class Damped:
 
 
 def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[Array, Array] | None = None) -> Damped:
-    """Modes of any M, C, K by the QZ algorithm on the companion pencil, scaled; massless coordinates give none.
+    """Modes of general M, C, K by the QZ algorithm on the scaled companion pencil; massless coordinates give none.
 
-    A motion x without mass, M x = 0, has no velocity of its own in the pencil: its infinite eigenvalue would be double, and
-    rounding would make two huge ones of it. Simple, it is found as infinite; with a damper the motion has one real mode.
+    A massless motion x, M x = 0, has no velocity unknown in the pencil. With one, its infinite eigenvalue would be double,
+    and rounding would split it into two huge finite ones; a simple one is found as infinite. With a damper, the motion has
+    one real mode.
 
     A rigid motion x, K x = 0, has a double eigenvalue 0 that rounding splits into a pair of opposite sign. With Wᵀ K = 0 all
-    other modes satisfy ``Wᵀ (C + λ M) x = 0``; these replace the equations along W. Each rigid motion is
-    then one mode with λ = 0.
+    other modes satisfy ``Wᵀ (C + λ M) x = 0``; these equations replace those along W. Each rigid motion is then one mode
+    with λ = 0.
 
     Args:
-        M: (n, n).
-        C: (n, n).
-        K: (n, n).
+        M: (n, n) mass.
+        C: (n, n) gyroscopic and damping matrix.
+        K: (n, n) stiffness.
         count: number of modes, from the lowest; all by default.
-        rigid: bases (n, d) of the motions that K does not resist, and of the directions W in which it gives no force.
+        rigid: bases (n, d) of the null space of K, and of its left null space W.
 
     Raises:
         EigenError: if LAPACK does not converge, or an entry is not finite.
@@ -131,34 +132,34 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     both = (k > 0) & (m > 0)
     time = 1.0 / np.sqrt(np.median(k[both] / m[both])) if both.any() else 1.0
     weight = k * time**2 + m
-    unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # coordinates of unlike units made alike, and time too
+    unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # scales coordinates of different units; time is scaled too
     M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
     d = W.shape[1]
     w = W.T / unit
     given = np.arange(n)
     if d:
         given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
-    heavy, light = _by_mass(M)
-    r, s = heavy.shape[1], light.shape[1]  # x = heavy p + light q, and y = λ p; M x λ² = λ M heavy y
+    massive, massless = _by_mass(M)
+    r, s = massive.shape[1], massless.shape[1]  # x = massive p + massless q, and y = λ p; M x λ² = λ M massive y
     none, one = np.zeros((d, n + r)), np.eye(r)
-    # d equations along W instead of d of the n: the others stay as they are, stiff ones apart from soft ones
+    # d equations along W replace d of the n; the others are unchanged, so that stiff and soft ones are not mixed
     a = np.block(
         [
             [np.zeros((r, n)), one],
-            [-w @ C @ heavy, -w @ C @ light, -w @ M @ heavy],
-            [-K[given] @ heavy, -K[given] @ light, -C[given] @ heavy],
+            [-w @ C @ massive, -w @ C @ massless, -w @ M @ massive],
+            [-K[given] @ massive, -K[given] @ massless, -C[given] @ massive],
         ]
     )
-    b = np.block([[one, np.zeros((r, s + r))], [none], [np.zeros((n - d, r)), C[given] @ light, M[given] @ heavy]])
+    b = np.block([[one, np.zeros((r, s + r))], [none], [np.zeros((n - d, r)), C[given] @ massless, M[given] @ massive]])
     try:
         pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
     except np.linalg.LinAlgError as error:
         raise _failed(error) from error
     alpha, beta = pair
     finite = np.abs(beta) > 1e-12 * np.abs(alpha)
-    values, x = alpha[finite] / beta[finite], unit[:, None] * (heavy @ z[:r, finite] + light @ z[r:n, finite])
+    values, x = alpha[finite] / beta[finite], unit[:, None] * (massive @ z[:r, finite] + massless @ z[r:n, finite])
     order = np.argsort(np.abs(values), kind="stable")
-    twice = int((np.abs(values[order[:d]]) < TOLERANCE).sum())  # zeros that were double
+    twice = int((np.abs(values[order[:d]]) < TOLERANCE).sum())  # second zeros of double eigenvalues
     values, x = values[order[twice:]] / time, x[:, order[twice:]]
     largest = np.abs(values).max(initial=0.0)
     one_of_each = values.imag >= -1e-12 * largest
@@ -167,7 +168,7 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
 
 
 def _by_mass(M: Array) -> tuple[Array, Array]:
-    """Bases (n, r), (n, n − r) of the motions with mass and without: coordinates as they are, where all have some."""
+    """Bases (n, r) and (n, n − r) of the motions with and without mass; the unit matrix if all have mass."""
     values, vectors = np.linalg.eigh(M)
     massless = values <= MASSLESS * values[-1]
     return (vectors[:, ~massless], vectors[:, massless]) if massless.any() else (np.eye(len(M)), np.zeros((len(M), 0)))
@@ -188,5 +189,5 @@ def unstable() -> UnstableError:
     """The error for a failed Cholesky factorisation of K."""
     return UnstableError(
         "the stiffness about the steady state is not positive definite: too few elements for a very soft blade (a cable), "
-        "or the centrifugal force outgrows the stiffness; check units"
+        "or the centrifugal force exceeds the stiffness; check units"
     )

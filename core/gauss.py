@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @lru_cache
 def rule(n: int) -> tuple[Array, Array]:
-    """Points and weights (n,) on [0, 1], exact for polynomials of degree 2n − 1; not to be changed in place."""
+    """Points and weights (n,) on [0, 1], exact for polynomials of degree 2n − 1; do not change them in place."""
     x, w = np.polynomial.legendre.leggauss(n)
     return 0.5 * (x + 1.0), 0.5 * w
 

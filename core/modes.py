@@ -19,11 +19,11 @@ class Modes:
         omega: rotor speed, rad/s.
         frequencies: (m,) natural frequencies, rad/s, ascending.
         shapes: (m, 21, 4) complex: displacement along the blade axes x, y, z (m) and rotation about x (rad) of the
-            reference curve at ``STATIONS``; any scale, the phase carries the gyroscopic lag.
+            reference curve at ``STATIONS``, at any scale; the phase contains the gyroscopic lag.
         elements: refinement: number of elements, or of terms in a series.
         damping: (m,) damping ratios, zero for undamped models.
-        uncertainty: (m,) relative, where the code brackets its own answer; empty: determined by refinement.
-        rounding: (m,) relative error due to rounding alone, where the code estimates it; empty: not estimated.
+        uncertainty: (m,) relative uncertainty, if the code estimates it; empty: determined by refinement.
+        rounding: (m,) relative error due to rounding alone, if the code estimates it; empty: not estimated.
         strain: largest steady strain of the reference curve (axial and shear); nan: not computed.
         seconds: wall time of the solution.
     """

@@ -1,14 +1,14 @@
 """Energy fractions of a mode in flap, edge, torsion and axial motion, and the family name that follows from them.
 
-A slice of the blade translates with its mass centre and rotates about it, so that its kinetic energy (König's theorem) is
-the sum of four parts, none negative and none dependent on the reference axis:
+A slice of the blade translates with its mass centre and rotates about it, so its kinetic energy is the sum of four parts
+(König's theorem). None of them is negative or depends on the reference axis:
 
-* flap and edge: the mass centre's motion along the blade's z and y, and the section's own turning in bending;
-* torsion: turning about the blade's axis through the mass centre, with the polar inertia about it;
-* axial: the mass centre's motion along the blade.
+* flap and edge: motion of the mass centre along the blade's z and y, and rotation of the section in bending;
+* torsion: rotation about the blade's axis through the mass centre, with the polar inertia about it;
+* axial: motion of the mass centre along the blade.
 
 The blade's axes are the hub's rotated by precone and pitch, not by twist. A blade whose sections have no moments of inertia
-has no kinetic energy in torsion, however far it turns.
+has no kinetic energy in torsion, however large the rotation.
 """
 
 from collections import Counter
@@ -34,7 +34,7 @@ FAMILIES = ("flap", "edge", "torsion", "axial")
 MIXED = "mixed"
 
 DOMINANT_FRACTION = 0.6
-"""Energy fraction that names a mode; with less it is mixed."""
+"""Smallest energy fraction that names a mode; otherwise the mode is mixed."""
 
 MIN_NAMED_FRACTION = 0.05
 """Energy fractions below this are not named."""
@@ -45,18 +45,18 @@ _GAUSS = 4
 def participation(modes: Modes, blade: Blade) -> Array:
     """Energy fractions (m, 4) of the modes in the order of ``FAMILIES``; each row adds up to 1.
 
-    Shapes are interpolated between the common stations by cubic splines; mass is integrated between the blade's own
-    stations by Gauss quadrature, and the tip mass is added. Sections turn in bending as the line of mass centres does.
+    Shapes are interpolated between the common stations by cubic splines. Mass is integrated between the blade's stations by
+    Gauss quadrature, and the tip mass is added. In bending, sections rotate with the line of mass centres.
     """
     s, weight = _quadrature(blade)
     mass = np.concatenate([weight[:, None, None] * mass_at(blade, s[:-1]), blade.tip_mass[None]])
     axes = root(blade)[:3, :3]
-    centre, own = _about_centre(mass, frames(blade, s)[:, :3, :3])
+    centre, inertia = _about_centre(mass, frames(blade, s)[:, :3, :3])
     velocity, turning = _motion(modes, blade, s, centre)
     parts = (mass[:, 0, 0, None] * np.abs(velocity @ axes) ** 2).sum(1)[:, [2, 1, 0, 0]]
     parts[:, 2] = 0.0
     turns = turning @ axes
-    parts[:, :3] += (turns.conj() * np.einsum("sij,msj->msi", axes.T @ own @ axes, turns)).real.sum(1)[:, [1, 2, 0]]
+    parts[:, :3] += (turns.conj() * np.einsum("sij,msj->msi", axes.T @ inertia @ axes, turns)).real.sum(1)[:, [1, 2, 0]]
     total = parts.sum(1, keepdims=True)
     return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
 
@@ -69,12 +69,12 @@ def in_blade_axes(modes: Modes, blade: Blade) -> Complex:
 
 
 def gyration(blade: Blade) -> float:
-    """The blade's radius of gyration in torsion, about its mass centres, m."""
+    """Radius of gyration of the blade in torsion, about its mass centres, m."""
     s, weight = _quadrature(blade)
     mass = np.concatenate([weight[:, None, None] * mass_at(blade, s[:-1]), blade.tip_mass[None]])
     section = frames(blade, s)[:, :3, :3]
-    _, own = _about_centre(mass, section)
-    polar = np.einsum("si,sij,sj->s", section[:, :, 0], own, section[:, :, 0]).sum()
+    _, inertia = _about_centre(mass, section)
+    polar = np.einsum("si,sij,sj->s", section[:, :, 0], inertia, section[:, :, 0]).sum()
     return float(np.sqrt(max(polar, 0.0) / mass[:, 0, 0].sum()))
 
 
@@ -84,7 +84,7 @@ def families(energy_fractions: Array) -> tuple[str, ...]:
 
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
-    """Families of modes in the order of frequency, each with its ordinal in its family: ``flap 1``, ``edge 1``, ``flap 2``."""
+    """Number modes, given by family in order of frequency, within their family: ``flap 1``, ``edge 1``, ``flap 2``."""
     seen: Counter[str] = Counter()
     out = []
     for name in names:
@@ -102,7 +102,7 @@ def spoken(energy_fractions: Array) -> str:
 
 
 def _quadrature(blade: Blade) -> tuple[Array, Array]:
-    """Points and weights between the blade's stations and the common ones; the tip is the last point, without a weight."""
+    """Points (k+1,) and weights (k,) between the blade's stations and the common ones; the last point is the tip."""
     ends = np.unique(np.concatenate([blade.stations, STATIONS * blade.length]))
     ends = ends[np.append(True, np.diff(ends) > 1e-9 * blade.length)]
     s, weight = gauss.between(ends, _GAUSS)
@@ -110,9 +110,9 @@ def _quadrature(blade: Blade) -> tuple[Array, Array]:
 
 
 def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Complex, Complex]:
-    """Velocity of the mass centres (at ``centre`` (k, 3) from the reference curve) and turning (m, k, 3) at ``s``, hub axes.
+    """Velocity of the mass centres (at ``centre`` (k, 3) from the reference curve) and rotation (m, k, 3) at ``s``, hub axes.
 
-    Piece by piece between kinks; one with fewer than three of the common stations is taken with the one before it.
+    Pieces between kinks are treated separately; one with fewer than three of the common stations is joined to the previous.
     """
     at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     ends = [0.0, blade.length]
@@ -122,13 +122,13 @@ def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Comple
     velocity = np.empty((len(modes.frequencies), len(s), 3), complex)
     turning = np.empty_like(velocity)
     for start, end in pairwise(ends):
-        own = (at >= start) & (at <= end)
+        piece = (at >= start) & (at <= end)
         here = (s >= start) & (s <= end)
         section = np.where(
-            (at[own] == start)[:, None, None], *(frames(blade, at[own], before=b) for b in (False, True))
+            (at[piece] == start)[:, None, None], *(frames(blade, at[piece], before=b) for b in (False, True))
         )
         velocity[:, here], turning[:, here] = _smooth_motion(
-            blade, at[own], section[:, :3, :3], modes.shapes[:, own], s[here], centre[here]
+            blade, at[piece], section[:, :3, :3], modes.shapes[:, piece], s[here], centre[here]
         )
     return velocity, turning
 
@@ -136,12 +136,12 @@ def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Comple
 def _smooth_motion(
     blade: Blade, at: Array, section: Array, shapes: Complex, s: Array, centre: Array
 ) -> tuple[Complex, Complex]:
-    """As ``_motion``, from shapes (m, n, 4) and axes (n, 3, 3) at stations ``at`` (n,) between which the curve is smooth."""
+    """``_motion`` on one smooth piece, from shapes (m, n, 4) and section axes (n, 3, 3) at its stations ``at`` (n,)."""
     tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
     displacement = shapes[:, :, :3]
     bent = np.cross(
         tangent, CubicSpline(at, displacement, axis=1)(at, 1)
-    )  # of the sections' turning about x, not torsion
+    )  # part of the sections' rotation about x that is not torsion
     torsion = (shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
     line = CubicSpline(at, displacement + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
     along = frames(blade, s)[:, :3, 0]
@@ -153,5 +153,5 @@ def _smooth_motion(
 
 def _about_centre(mass: Array, section: Array) -> tuple[Array, Array]:
     """Mass centre (k, 3) from the reference point and inertia (k, 3, 3) about it, hub axes, from 6×6 in ``section`` axes."""
-    _, centre, own = about_centre(mass)
-    return np.einsum("sij,sj->si", section, centre), section @ own @ np.swapaxes(section, -1, -2)
+    _, centre, inertia = about_centre(mass)
+    return np.einsum("sij,sj->si", section, centre), section @ inertia @ np.swapaxes(section, -1, -2)

@@ -23,7 +23,7 @@ class Ranked:
 
     Attributes:
         range: (m, r) orthonormal basis of the columns' span.
-        sizes: (r,) singular values that count.
+        sizes: (r,) singular values above ``TOLERANCE``.
         rows: (r, n) orthonormal basis of the rows' span.
         null: (n, n − r) orthonormal basis of the null space.
         left_null: (m, m − r) orthonormal basis of the null space of the transpose.
@@ -37,7 +37,7 @@ class Ranked:
 
     @property
     def rank(self) -> int:
-        """The number of singular values that count."""
+        """The number of singular values above ``TOLERANCE``."""
         return len(self.sizes)
 
     def solve(self, b: Array, damping: float = 0.0) -> Array:
@@ -65,27 +65,27 @@ def ranked(A: Array) -> Ranked:
 
 @dataclass(frozen=True)
 class Regular:
-    """LU factors of a matrix (n, n) of full rank, as ``scipy.linalg.lu_factor`` has them."""
+    """LU factors of a matrix (n, n) of full rank, as returned by ``scipy.linalg.lu_factor``."""
 
     factors: tuple[Array, Index]
 
     @property
     def null(self) -> Array:
-        """(n, 0) its null space."""
+        """Its null space (n, 0)."""
         return np.zeros((len(self.factors[0]), 0))
 
     left_null = null
 
     def solve(self, b: Array) -> Array:
-        """A⁻¹ b of (n,) or (n, k)."""
+        """A⁻¹ b for b (n,) or (n, k)."""
         return scipy.linalg.lu_solve(self.factors, b, check_finite=False)
 
 
 def factored(A: Array) -> Regular | Ranked:
-    """Factor a matrix (n, n): by elimination where its condition leaves no doubt about its rank, else as ``ranked``.
+    """Factor a matrix (n, n): by LU if its condition number proves full rank, else as ``ranked``.
 
-    With κ₁ ≥ κ₂/n, and LAPACK's estimate of κ₁ hardly ever below a third of it (Higham, *Accuracy and Stability of Numerical
-    Algorithms*, 2002, sec. 15.3), full rank by the criterion above follows from ``10 n κ₁ < 1/TOLERANCE``.
+    Since κ₁ ≥ κ₂/n, and LAPACK's estimate of κ₁ is hardly ever below a third of it (Higham, *Accuracy and Stability of
+    Numerical Algorithms*, 2002, sec. 15.3), ``10 n κ₁ < 1/TOLERANCE`` implies full rank by the criterion above.
 
     Raises:
         ValueError: an entry is not finite.
@@ -100,7 +100,7 @@ def factored(A: Array) -> Regular | Ranked:
 
 
 def pivots(A: Array) -> tuple[Index, Index]:
-    """Columns of A that span its range, as QR with column pivoting picks them, and the columns that depend on them."""
+    """Indices of columns of A that span its range, chosen by QR with column pivoting, and of the other columns."""
     if not len(A):
         return np.zeros(0, np.intp), np.arange(A.shape[1])
     r = ranked(A).rank

@@ -1,6 +1,6 @@
-"""The one way in which any file of a user is opened and read: regular files only, within a stated size.
+"""Reading of user files: regular files only, up to a given size.
 
-A name in a deck may lead to a device that never ends, a pipe that blocks, or a file that does not fit into memory.
+A path in an input deck may lead to a device that never ends, a pipe that blocks, or a file that does not fit into memory.
 """
 
 import errno
@@ -11,10 +11,10 @@ from pathlib import Path
 MEGABYTE = 1 << 20
 
 LARGEST_TEXT = 16 * MEGABYTE
-"""Of a file that a person edits: a deck, a case, a table; the largest public one (a windIO turbine) has 2 MB."""
+"""Limit for files that a person edits (a deck, a case, a table), bytes; the largest public one (windIO) has 2 MB."""
 
 LARGEST_DATA = 256 * MEGABYTE
-"""Of a file that a program writes: exported matrices, results, a history."""
+"""Limit for files that a program writes (exported matrices, results, a history), bytes."""
 
 
 class FileRefusedError(OSError):
@@ -25,14 +25,14 @@ class FileRefusedError(OSError):
 
 
 def read_bytes(path: Path, largest: int = LARGEST_TEXT) -> bytes:
-    """The content of a regular file of at most ``largest`` bytes.
+    """Read a regular file of at most ``largest`` bytes.
 
     Raises:
-        FileRefusedError: a folder, device, pipe or socket, or a larger file.
-        OSError: it cannot be opened or read; also where the name itself is impossible.
+        FileRefusedError: a folder, device, pipe or socket, a larger file, or an impossible name.
+        OSError: the file cannot be opened or read.
     """
     try:
-        # without O_NONBLOCK, opening a pipe waits for somebody to write into it
+        # without O_NONBLOCK, opening a pipe waits for a writer
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except ValueError as error:  # a zero byte, or a surrogate that the system's encoding lacks
         raise FileRefusedError(path, f"impossible name: {error}") from error
@@ -41,7 +41,7 @@ def read_bytes(path: Path, largest: int = LARGEST_TEXT) -> bytes:
         os.close(number)
         raise FileRefusedError(path, f"{_kind(found.st_mode)}, not a file")
     with os.fdopen(number, "rb") as file:
-        if found.st_size <= largest:  # of some, as those in /proc, the system says 0
+        if found.st_size <= largest:  # 0 for some files, such as those in /proc
             content = file.read(largest + 1)
             if len(content) <= largest:
                 return content

@@ -1,4 +1,4 @@
-"""A blade's natural frequencies and mode shapes: the public door of the in-house solver."""
+"""A blade's natural frequencies and mode shapes: the public interface of the solver."""
 
 import time
 from collections.abc import Iterable, Iterator
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 NO_GRAVITY = np.zeros(3)
 
 LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
-"""Steady strains that are to be reported, and that are refused: sections are linear elastic."""
+"""Steady strains from which they are reported, and refused: sections are linear elastic."""
 
 
 def modes(
@@ -43,22 +43,22 @@ def modes(
     Args:
         blade: the blade.
         omega: rotor speed, rad/s.
-        elements: how many beam elements, of equal length; by default, as many as ``accuracy`` takes, graded towards the root,
-            and the frequencies are extrapolated (Richardson).
-        count: how many modes (fewer if the discretisation has fewer).
-        accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given; ``AccuracyWarning`` where
-            ``MAX_ELEMENTS`` elements, or rounding, do not allow it.
+        elements: number of beam elements, of equal length. By default a mesh graded towards the root is refined until
+            ``accuracy`` is met, and the frequencies are extrapolated (Richardson).
+        count: number of modes (fewer if the discretisation has fewer).
+        accuracy: largest relative uncertainty of a frequency if ``elements`` is not given; ``AccuracyWarning`` if it cannot
+            be met with ``MAX_ELEMENTS`` elements or because of rounding.
         mass: ``consistent`` (fourth order) or ``half_end`` (lumped, Park et al. 2010; second order).
         stiffness: ``corotational``, or ``body_fixed``: linear in the parent body's frame (Park et al. 2010).
-        effects: physical effects kept.
+        effects: physical effects included.
         gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
         load: (n, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them.
         allow_large_strain: accept steady strains above ``LARGEST_STRAIN``.
 
     Raises:
-        ValueError: elements or count below 1, omega not finite, accuracy not positive, a load of another form.
+        ValueError: elements or count below 1, omega not finite, accuracy not positive, or a load of the wrong shape.
         SteadyStateError: no steady state at this speed.
-        LargeStrainError: a steady state with strains that linear elastic sections do not describe.
+        LargeStrainError: steady strains above ``LARGEST_STRAIN``.
         UnstableError: the steady state is not stable.
         EigensolverError, MissedModesError: the eigensolver failed.
     """
@@ -94,10 +94,10 @@ def sweep(
 ) -> Iterator[Modes]:
     """The modes at one speed after another; arguments and errors as for ``modes``.
 
-    Every mesh is made once, and each steady state is sought from where those before lead to.
+    Every mesh is made once. Newton's method starts from an extrapolation of the previous steady states.
     """
     if not accuracy > 0:
-        raise ValueError(f"accuracy: {accuracy}: give a positive relative number, as in 1e-6")
+        raise ValueError(f"accuracy: {accuracy}: give a positive relative number, such as 1e-6")
     body = blade if effects.rotary_inertia else without_rotary_inertia(blade)
     meshes, fastest = Meshes(body, count, mass, stiffness, load, effects, gravity), 0.0
     for omega in _checked(omegas, count):
@@ -112,7 +112,7 @@ def sweep(
         )
         if found.strain > LARGEST_STRAIN and not allow_large_strain:
             raise LargeStrainError(
-                f"omega: {omega:.6g} rad/s: steady strain {found.strain:.0%}: linear elastic sections do not describe it: the "
+                f"omega: {omega:.6g} rad/s: steady strain {found.strain:.0%}: too large for linear elastic sections: the "
                 "speed is too high or the blade too soft; check units, or allow large strains"
             )
         yield replace(found, seconds=time.perf_counter() - begun)
@@ -130,7 +130,7 @@ def mesh_modes(
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
 ) -> Modes:
-    """The modes of one mesh, for studies of refinement: without uncertainties, at any strain; otherwise as ``modes``."""
+    """The modes of one mesh, without uncertainties and at any strain, for refinement; otherwise as ``modes``."""
     return next(mesh_sweep(blade, [omega], elements, count, mass, stiffness, effects, gravity, load))
 
 
@@ -155,7 +155,7 @@ def mesh_sweep(
 
 
 def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
-    """The speeds, each checked when its turn comes: the caller may choose it by the answers before."""
+    """The speeds, each validated when it is taken: the caller may choose it from earlier results."""
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
     for omega in omegas:
@@ -167,7 +167,7 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
 def chain_modes(
     body: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
-    """The lowest modes of a chain, of which rounding is all that is known; arguments and errors as for ``modes``."""
+    """The lowest modes of a chain, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
     one = MeshSolver(body, count, effects, gravity)
     solved = one.at(next(_checked([omega], count)))
     return replace(solved.modes, rounding=one.rounding(solved))
@@ -176,10 +176,10 @@ def chain_modes(
 def rigid_strain_bias(
     blade: Blade, omega: float, elements: int, count: int, effects: Effects = ALL_EFFECTS
 ) -> tuple[Array, Array]:
-    """(m,), (m,) factor on frequencies that takes off the bias of rigid strains, and its relative uncertainty.
+    """Factor (m,) that removes the bias of rigid strains from the frequencies, and its relative uncertainty (m,).
 
-    Rigid axial and torsional strains keep a little compliance (``element.sections``), in ``mesh_modes`` too. From meshes of
-    ``elements`` and twice as many.
+    Rigid axial and torsional strains have a small compliance (``element.sections``), also in ``mesh_modes``. The bias is
+    computed on meshes of ``elements`` and twice as many elements.
     """
     meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
     coarse, fine = (meshes.bias(n, meshes.of(n).at(omega)) for n in (elements, 2 * elements))

@@ -1,6 +1,6 @@
 """A blade's modes by the method of Park et al. (2010): bodies, joints, B, M*, Q*, partition, linearisation, eigenproblem.
 
-The bodies and elements are those of ``solve``, which works with the bodies' own twists and never forms B. Here they form a
+The bodies and elements are those of ``solve``, which works with the twists of the bodies and never forms B. Here they form a
 mechanism in relative coordinates with dense matrices: the same result by the paper's method, for some tens of elements.
 """
 
@@ -32,8 +32,8 @@ from .space import spatial as sp
 
 Array = NDArray[np.float64]
 
-MAX_ELEMENTS = 200  # of dense matrices, 12 coordinates an element: gigabytes and minutes beyond
-_BALANCED = 1e-8  # how far off the steady state may be, of the blade's length (or a radian)
+MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
+_BALANCED = 1e-8  # largest distance from the steady state, as a fraction of the blade's length (or a radian)
 
 
 def modes(
@@ -48,11 +48,11 @@ def modes(
     gravity: Array | None = None,
     load: Array | None = None,
 ) -> Modes:
-    """The lowest modes of a blade turning steadily at ``omega``; arguments, units and answer as those of ``solve.modes``.
+    """The lowest modes of a blade turning steadily at ``omega``; arguments, units and result as for ``solve.modes``.
 
     Raises:
-        ValueError: as ``solve.modes``; or effects without prestretch or geometric stiffness, which the steady state of a
-            mechanism always has.
+        ValueError: as ``solve.modes``; more than ``MAX_ELEMENTS`` elements; effects without prestretch or geometric
+            stiffness, which the steady state of a mechanism always has.
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
@@ -76,22 +76,22 @@ def sweep(
 ) -> Iterator[Modes]:
     """The modes at one speed after another; arguments and errors as for ``modes``.
 
-    The mechanism is built once, and each steady state is sought from where those before lead to.
+    The mechanism is built once. Newton's method starts from an extrapolation of the previous steady states.
     """
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
     if elements > MAX_ELEMENTS:
         raise ValueError(
-            f"elements: {elements}: the velocity transformation has dense matrices: at most {MAX_ELEMENTS}; "
+            f"elements: {elements}: the velocity transformation uses dense matrices: at most {MAX_ELEMENTS}; "
             "use the chain solver"
         )
     if not (effects.prestretch and effects.geometric):
         raise ValueError(
-            f"effects: no {', no '.join(effects.lacks())}: the velocity transformation keeps prestretch and geometric "
+            f"effects: no {', no '.join(effects.lacks())}: the velocity transformation cannot omit prestretch or geometric "
             "stiffness; use the chain solver"
         )
-    kept = blade if effects.rotary_inertia else without_rotary_inertia(blade)
-    body = discretize(kept, elements, mass, stiffness, load)
+    given = blade if effects.rotary_inertia else without_rotary_inertia(blade)
+    body = discretize(given, elements, mass, stiffness, load)
     x, y, z = np.zeros(3).tolist() if gravity is None else gravity.tolist()
     tree = compile_tree(as_mechanism.mechanism(body, 0.0, (x, y, z)))
     known: dict[float, Array] = {}  # coordinates at Ω² of the last few speeds
@@ -104,7 +104,7 @@ def sweep(
         except (SteadyStateError, eigen.UnstableError):
             if not known:
                 raise
-            linear, found = _solved(tree, body, omega, count, effects, {})  # not led elsewhere by other speeds
+            linear, found = _solved(tree, body, omega, count, effects, {})  # without extrapolation from other speeds
         known = dict([*known.items(), (omega**2, linear.state.q)][-ORDER - 1 :])
         shapes = _shapes(body, linear, found.vectors)
         yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
@@ -118,7 +118,7 @@ def _solved(
 
 
 def _about_steady_state(tree: Tree, omega: float, known: dict[float, Array]) -> lz.Linearization:
-    """M̂, Ĉ, K̂ about the steady state at ``omega`` (rad/s), sought from a polynomial in Ω² through those that are known.
+    """M̂, Ĉ, K̂ about the steady state at ``omega`` (rad/s); Newton starts from a polynomial in Ω² through the known ones.
 
     Raises:
         SteadyStateError: no steady state at this speed.
@@ -138,8 +138,8 @@ def _lowest(linear: lz.Linearization, body: Chain, omega: float, count: int, eff
     try:
         pencil = definite(M, C if effects.coriolis else np.zeros_like(C), K)
     except eigen.UnstableError as error:
-        loose = "; or nothing holds a free hinge (at rest; lead–lag without offset)" if body.clamped.size else ""
-        raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{loose}") from error
+        hinge = "; or a free hinge has no stiffness (at rest; lead–lag without offset)" if body.clamped.size else ""
+        raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{hinge}") from error
     state = linear.state
     left = unbalanced(linear.tree, state.kinematics, state.cartesian, state.q, state.v)[linear.partition.free]
     _check_balance(pencil.solve(left), omega, body.scale)
@@ -147,11 +147,11 @@ def _lowest(linear: lz.Linearization, body: Chain, omega: float, count: int, eff
 
 
 def _check_balance(distance: Array, omega: float, length: float) -> None:
-    """Where Q̂ is not zero, K̂⁻¹ Q̂ is how far off the steady state is."""
+    """Check ``distance`` = K̂⁻¹ Q̂ from the steady state, where Q̂ vanishes."""
     off = np.abs(distance).max(initial=0.0) / max(length, 1.0)
     if off > _BALANCED:
         raise SteadyStateError(
-            f"omega: {omega:.6g} rad/s: the state found is {off:.1e} of the blade's length off balance"
+            f"omega: {omega:.6g} rad/s: the state found is {off:.1e} of the blade's length from equilibrium"
         )
 
 
@@ -160,15 +160,15 @@ def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex12
     k, n = linear.state.kinematics, len(body.nodes)
     dq = np.zeros((len(k.q), vectors.shape[1]), complex)
     dq[linear.partition.free] = linear.partition.spread(vectors)  # δq = R δq_I
-    nodes = k.poses[1 : n + 1]  # behind the hub, whose axes are the ground's now
+    nodes = k.poses[1 : n + 1]  # after the hub, whose axes coincide with the ground's
     carries = linear.tree.carries[1 : n + 1].astype(float)
     each = (k.J.T[:, :, None] * dq[:, None, :]).reshape(len(dq), -1)
     ground = (carries @ each).reshape(n, 6, -1)  # δZ = B δq
-    twists = sp.adjoint(sp.inverse(nodes)) @ ground  # in the nodes' own axes
+    twists = sp.adjoint(sp.inverse(nodes)) @ ground  # in the nodes' axes
     inner = linear.tree.inner[:, None] + np.arange(6)  # β of each element; none where the mass is lumped
     beta = np.zeros((n - 1, body.beams.inner))
     dbeta = np.zeros((*beta.shape, vectors.shape[1]), complex)
-    if len(inner):  # not of a joint at the root
+    if len(inner):  # a joint at the root has none
         beta[-len(inner) :], dbeta[-len(inner) :] = k.q[inner], dq[inner]
-    own = np.concatenate([dbeta, twists[1:]], axis=1).reshape(-1, vectors.shape[1])
-    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), own)
+    chain_vectors = np.concatenate([dbeta, twists[1:]], axis=1).reshape(-1, vectors.shape[1])
+    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), chain_vectors)

@@ -40,7 +40,7 @@ _INVERSE = np.stack(
 
 @compiled
 def _sums(table: Array, z: float) -> tuple[float, float, float]:
-    """Sums of three power series in z, whose coefficients are the columns of ``table``, as far as rounding lets them go."""
+    """Sums of three power series in z with coefficients in the columns of ``table``, to rounding."""
     a = b = c = 0.0
     power = 1.0
     for k in range(len(table)):
@@ -86,7 +86,7 @@ def cross(wrench: Array, out: Array) -> None:
 
 @compiled
 def adjoint(pose: Array, out: Array) -> None:
-    """(6, 6) of a pose (4, 4)."""
+    """Adjoint (6, 6) of a pose (4, 4)."""
     x, y, z = pose[0, 3], pose[1, 3], pose[2, 3]
     clear(out)
     for j in range(3):
@@ -135,7 +135,7 @@ def exp(twist: Array, out: Array) -> None:
 
 @compiled
 def log(pose: Array, out: Array) -> None:
-    """The twist (6,) whose exponential is the pose, its rotation at most half a turn; at half a turn either sense serves.
+    """The twist (6,) whose exponential is the pose, with a rotation of at most half a turn, there in either sense.
 
     The rotation is cos φ 1 + sin φ N + (1 − cos φ) n nᵀ, N the cross-product matrix of the axis n: up to a quarter turn the
     axis follows from the skew part, beyond it from the largest column of n nᵀ, which does not vanish at half a turn.

@@ -37,7 +37,7 @@ def inverse(x: Array) -> Array:
 
 
 def adjoint(x: Array) -> Array:
-    """(..., 6, 6): a twist in the pose's own frame to the frame it is given in; its transpose brings wrenches back."""
+    """(..., 6, 6): transforms twists from the pose's frame to the frame it is given in; its transpose, wrenches back."""
     return _each(_adjoint, (6, 6), x, (4, 4))
 
 
