@@ -188,7 +188,7 @@ def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
         ("[0.3, 0.5,", "[0.5,", r"sections\[0\]: \d+ freedoms .* lie up to 0.2 m beyond it"),
         ("1.1, 1.3]", "1.1]", r"sections\[4\]: 360 freedoms .* lie up to 0.2 m beyond it"),
         ("[0.3, 0.5, 0.7", "[0.3, 0.7, 0.5", r"sections\[2\]: 0.5 m is not beyond 0.7 m"),
-        ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie stops the warping"),
+        ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie prevents warping"),
         ("sections =", 'rotor = "x"\nsections =', "rotor: along the span"),
         ("sections =", "span = [0, 0, 0]\nsections =", r"span: \[0.0, 0.0, 0.0\]: no direction"),
         ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': not one of its values: known: average, rigid"),
@@ -223,7 +223,7 @@ def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
     (tmp_path / "nodes.csv").write_text("id,x,y,z\n" + "\n".join(rows))
     text = 'name = "ccx"\nstiffness = "blade.sti"\nmass = "blade.mas"\nnodes = "nodes.csv"\n'
     text += f"sections = {[round(ROOT + SPAN * k / 10, 6) for k in range(11)]}\n"
-    with pytest.raises(CaseError, match="weights are the lumped masses, which reach down to -"):
+    with pytest.raises(CaseError, match=r"smallest weight -.* \(lumped mass\)"):
         condensing.condense(toml(tmp_path, text))
     whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped(ROOT)).frequencies
     for weights in ("even", "mass matrix"):
