@@ -1,1 +1,1 @@
-"""Answers from elsewhere: one module per foreign code or closed form; imports core."""
+"""Reference solutions: foreign codes, closed forms and published tables; imports core."""

@@ -1,6 +1,6 @@
-"""What the foreign codes get wrong, each with a reproducer: a script that needs the code alone and prints the defect.
+"""Known defects of the foreign codes, each with a reproducer: a script that needs only the code and prints the defect.
 
-Every script ends with the line ``defect: present`` or ``defect: gone``, so that a new version that mends it is noticed.
+Every script ends with the line ``defect: present`` or ``defect: gone``, so that a fix in a new version is noticed.
 """
 
 import subprocess
@@ -13,14 +13,14 @@ from ..isolated import ENVIRONMENTS
 
 @dataclass(frozen=True)
 class Defect:
-    """One of them.
+    """One defect.
 
     Attributes:
-        codes: names of the codes here that it concerns.
+        codes: names of the adapters concerned.
         script: name of the reproducer in this folder, without ``.py``.
         what: one sentence.
-        avoided: how the adapter here does without.
-        environment: of ``references.elsewhere``, where the code has its own.
+        avoided: how the adapter avoids it.
+        environment: name of the environment in ``references.isolated``; empty if the code has none.
     """
 
     codes: tuple[str, ...]
@@ -31,12 +31,12 @@ class Defect:
 
     @property
     def python(self) -> str:
-        """The interpreter that has the code."""
+        """The interpreter with the code."""
         return str(ENVIRONMENTS[self.environment].python) if self.environment else sys.executable
 
     @property
     def path(self) -> Path:
-        """The reproducer."""
+        """Path of the reproducer."""
         return Path(__file__).with_name(f"{self.script}.py")
 
 
@@ -45,81 +45,81 @@ DEFECTS = (
         ("pinocchio",),
         "pinocchio_composite_joint",
         "`computeRNEADerivatives` is wrong, silently, for a composite joint that translates and rotates.",
-        "Four joints a body; derivatives that lack their symmetry are refused.",
+        "Each body has four joints; derivatives without their symmetry are an error.",
     ),
     Defect(
         ("exudyn-ancf", "exudyn-tree", "exudyn-loops"),
         "exudyn_complex_eigenvalues",
-        "`ComputeODE2Eigenvalues` raises for complex eigenvalues with constrained coordinates, and leaves damping and "
-        "gyroscopic terms out unless they are asked for.",
-        "The matrices are taken from `ComputeLinearizedSystem`, and the quadratic eigenproblem is solved here.",
+        "`ComputeODE2Eigenvalues` raises for complex eigenvalues with constrained coordinates, and omits damping and "
+        "gyroscopic terms by default.",
+        "The matrices are taken from `ComputeLinearizedSystem`, and the adapter solves the quadratic eigenproblem.",
     ),
     Defect(
         ("pybmodes",),
         "pybmodes_names",
-        "Modes are named by sums of squared lengths and squared angles: a flap of 99.9 % of its energy is called a torsion.",
+        "Modes are named by sums of squared lengths and angles: a mode with 99.9 % flap energy is called torsion.",
         "Its names are not used: modes are paired by shape.",
     ),
     Defect(
         ("pybmodes",),
         "pybmodes_tip_mass",
-        "A mass at the tip of a turning blade neither pulls on it nor is softened by the rotation.",
-        "Blades with a tip mass are refused.",
+        "In rotation, a mass at the tip causes neither tension nor spin softening.",
+        "Blades with a tip mass are declined.",
     ),
     Defect(
         ("pybmodes",),
         "pybmodes_mass_centre",
-        "Mass centres off the axis: turning, the steady moment that they make does not couple flap with torsion.",
-        "Blades with mass centres off the axis are refused.",
+        "In rotation, the steady moment of mass centres off the axis does not couple flap with torsion.",
+        "Blades with mass centres off the axis are declined.",
     ),
     Defect(
         ("pybmodes",),
         "pybmodes_shear_centre",
-        "A shear centre off the reference axis moves the tension centre along, but not the mass centre.",
-        "Blades with shear centres off the axis are refused.",
+        "A shear centre off the reference axis shifts the tension centre, but not the mass centre.",
+        "Blades with shear centres off the axis are declined.",
     ),
     Defect(
         ("calculix",),
         "calculix_substructure",
-        "`*SUBSTRUCTURE GENERATE` holds the nodes that are not retained instead of eliminating them.",
-        "Stored matrices are condensed here; a stiffness that resists rigid motions is refused.",
+        "`*SUBSTRUCTURE GENERATE` fixes the nodes that are not retained instead of eliminating them.",
+        "Stored matrices are condensed by core; a stiffness that resists rigid motions is an error.",
     ),
     Defect(
         ("scikit-fem",),
         "scikit_fem_hermite",
         "An `ElementLineHermite` used on a second mesh keeps the first one's functions, silently.",
-        "A new element for every mesh.",
+        "The adapter makes a new element for every mesh.",
     ),
     Defect(
         ("sharpy",),
         "sharpy_triads",
-        "Sections of curved elements are turned wrongly: tangents come in the order of the nodes along the element and are "
-        "taken in that of the connectivities.",
-        "The sections' rotation vectors are set after the beam is made.",
+        "Sections of curved elements have wrong axes: tangents are in the order of the nodes along the element "
+        "but read in that of the connectivities.",
+        "The sections' rotation vectors are set after the beam is built.",
         environment="sharpy",
     ),
     Defect(
         ("frame3dd",),
         "frame3dd_stodola",
-        "Stodola's iteration leaves out all modes of one plane where the planes do not couple, and says nothing.",
-        "Subspace iteration first; what Stodola's finds is refused if all of it moves in one plane.",
+        "Stodola's iteration misses all modes of one plane where the planes do not couple, without a message.",
+        "Subspace iteration is used first; Stodola's result is rejected if all modes are in one plane.",
         environment="frame3dd",
     ),
     Defect(
         ("frame3dd",),
         "frame3dd_subspace",
-        "Subspace iteration gives up on some blades: its frequencies are not numbers.",
-        "It is asked for other numbers of modes; then Stodola's iteration.",
+        "Subspace iteration fails for some blades: its frequencies are not numbers.",
+        "Other numbers of modes are tried, then Stodola's iteration.",
         environment="frame3dd",
     ),
 )
 
 
 def shown(defect: Defect, timeout: float = 120.0) -> str:
-    """What a reproducer prints here and now.
+    """Run a reproducer and return its output.
 
     Raises:
-        RuntimeError: it could not run: the code is not installed, or it took longer than ``timeout`` seconds.
+        RuntimeError: the code is not installed, or the script took longer than ``timeout`` seconds.
     """
     try:
         done = subprocess.run(

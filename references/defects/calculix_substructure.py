@@ -1,7 +1,7 @@
-"""CalculiX: *SUBSTRUCTURE GENERATE holds the nodes that are not retained instead of eliminating them.
+"""CalculiX: *SUBSTRUCTURE GENERATE fixes the nodes that are not retained instead of eliminating them.
 
-Eight 20-node bricks end to end; the nodes of both end faces are retained. A condensed stiffness lets the block move as a rigid
-body without force. CalculiX's resists it, for the nodes between are held.
+Eight 20-node bricks end to end; the nodes of both end faces are retained. A condensed stiffness lets the block move as
+a rigid body without force. CalculiX's resists it, because the nodes between are fixed.
 Needs: ccx on the PATH, numpy.
 """
 

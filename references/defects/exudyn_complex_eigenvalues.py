@@ -1,7 +1,7 @@
 """Exudyn: ComputeODE2Eigenvalues with computeComplexEigenvalues raises if constrainedCoordinates are given.
 
-Two damped oscillators side by side. In solver.py the zero blocks have nODE2 rows although constrained rows are deleted by
-then; len(Kode2) is meant, there and in what allocates the eigenvectors. Damping is left out by default, besides.
+Two damped oscillators side by side. In solver.py the zero blocks have nODE2 rows although constrained rows have been
+deleted; it should be len(Kode2), there and where the eigenvectors are allocated. Damping is also left out by default.
 Needs: exudyn, numpy.
 """
 

@@ -1,8 +1,9 @@
-"""Frame3DD: Stodola's iteration leaves out all modes of one plane, and nothing says so.
+"""Frame3DD: Stodola's iteration misses all modes of one plane, without a message.
 
-stodola (eig.c) starts every mode with one degree of freedom and a ten-thousandth of the next. Where the two planes of bending
-do not couple, starts that all lie in the softer plane find its modes alone; the Sturm check that follows is not reported.
-A uniform cantilever, four times as stiff one way as the other; expected: Euler and Bernoulli, (beta L)² sqrt(EI / m) / L².
+stodola (eig.c) starts every mode with one degree of freedom and a ten-thousandth of the next. Where the two planes of
+bending do not couple, starts that all lie in the softer plane find only its modes; the Sturm check that follows is not
+reported. A uniform cantilever, four times as stiff in one plane as in the other; expected: Euler and Bernoulli, (beta
+L)² sqrt(EI / m) / L².
 Needs: wisdem (its folder pyframe3dd alone), numpy.
 """
 

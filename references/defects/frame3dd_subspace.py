@@ -1,9 +1,9 @@
-"""Frame3DD: subspace iteration gives up on some cantilevers, whose modes Stodola's iteration has.
+"""Frame3DD: subspace iteration fails for some cantilevers, whose modes Stodola's iteration finds.
 
-Frequencies then are not numbers, and run raises "Frame3DD did not exit gracefully". By its source, jacobi (eig.c) has a
-tolerance of zero: it turns away coupling terms that are rounding already, dividing by what may be nothing or the root of less.
-Uniform cantilevers of one stiffness, hardly stretched, of 5 to 24 elements; expected: an answer, and the textbook's, Euler and
-Bernoulli's (beta L)² sqrt(EI / m) / L².
+Frequencies then are not numbers, and run raises "Frame3DD did not exit gracefully". In its source, jacobi (eig.c) has a
+tolerance of zero: it rotates away coupling terms that are rounding, with division by zero or the root of a negative
+number. Uniform cantilevers of one stiffness, hardly stretched, of 5 to 24 elements; expected: an answer, and the
+textbook's, Euler and Bernoulli's (beta L)² sqrt(EI / m) / L².
 Needs: wisdem (its folder pyframe3dd alone), numpy.
 """
 

@@ -1,7 +1,7 @@
 """Pinocchio: computeRNEADerivatives is wrong for a JointModelComposite that translates and rotates.
 
-Two bodies, each on a translation followed by rotations about x, y, z: once as one composite joint, once as four joints. The
-inverse dynamics agree; the derivative by q of the composite's does not agree with its own central difference.
+Two bodies, each on a translation followed by rotations about x, y, z: once as one composite joint, once as four joints.
+The inverse dynamics agree; the derivative by q of the composite joint does not agree with its central difference.
 Needs: pin, numpy.
 """
 

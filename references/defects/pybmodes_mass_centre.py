@@ -1,10 +1,10 @@
-"""pyBModes: where mass centres lie off the axis, the steady moment of a turning blade does not couple flap with torsion.
+"""pyBModes: with mass centres off the axis, the steady moment of a rotating blade does not couple flap with torsion.
 
-The centrifugal force of mass centres off the axis bends the blade steadily in its stiff plane. That moment M, on a section that
-turns by phi, adds (1 - EI_flap / EI_edge) M phi w'' to the energy, of the size of the term in x phi w' that
-_element_matrices_batch (fem/element.py) has. Without it all is well at rest, and nearly so where both stiffnesses are alike.
-Expected: Ritz' method below with the energy of finite motion (rotations by Cayley's formula) about the steady state, which
-Newton's method finds; no Coriolis force there either.
+The centrifugal force of mass centres off the axis bends the blade steadily in its stiff plane. For a section that
+rotates by phi, this moment M adds (1 - EI_flap / EI_edge) M phi w'' to the energy, which is of the size of the term in
+x phi w' in _element_matrices_batch (fem/element.py). Without it results are right at zero speed, and nearly so if both
+stiffnesses are equal. Expected: Ritz's method below with the energy of finite motion (rotations by Cayley's formula)
+about the steady state from Newton's method, also without the Coriolis force.
 Needs: pybmodes, numpy.
 """
 
@@ -20,7 +20,7 @@ OFFSET, EDGE = 0.05, 0.02  # m; kg m, about the mass centre
 
 
 def write(folder, rpm, edge_stiffness):
-    """Path of an input file, with its section table beside it: a uniform blade; inertia is given about the axis."""
+    """Write an input file and its section table; return its path. A uniform blade, inertia given about the axis."""
     edge = EDGE + MASS * OFFSET**2
     row = f"0 0 {MASS} {FLAP} {edge} {EI} {edge_stiffness} {GJ} {EA} {-OFFSET} 0 0"
     (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
@@ -45,7 +45,7 @@ def write(folder, rpm, edge_stiffness):
 
 
 class Exact:
-    """The beam of finite motion: turning by Cayley's vectors and stretching by polynomials of the span, both Ritz'."""
+    """The beam in finite motion by Ritz's method: Cayley rotation vectors and stretch are polynomials of the span."""
 
     def __init__(self, speed, edge_stiffness, terms=8):
         x, w = (0.5 * v for v in np.polynomial.legendre.leggauss(16))
@@ -70,7 +70,7 @@ class Exact:
         return R, (dp - np.cross(p, dp) / 2) / share[:, None], stretch, place + OFFSET * R[:, :, 1]
 
     def energy(self, q):
-        """Of strain, less half the speed squared times the moment of inertia about the rotor's axis."""
+        """Strain energy minus half the speed squared times the moment of inertia about the rotor's axis."""
         R, bend, stretch, centre = self.motion(q)
         strain = EA * stretch**2 + bend**2 @ np.array([GJ, EI, self.edge])
         inertia = ((v[:, :2] ** 2).sum(1) for v in (centre, R[:, :, 1], R[:, :, 2]))
@@ -79,16 +79,16 @@ class Exact:
         )
 
     def gradient(self, q):
-        """By complex steps, exact."""
+        """Gradient by complex steps, exact."""
         return np.array([self.energy(q + 1e-30j * e).imag for e in np.eye(len(q))]) / 1e-30
 
     def hessian(self, q, h=1e-6):
-        """By central differences."""
+        """Hessian by central differences."""
         H = np.array([self.gradient(q + h * e) - self.gradient(q - h * e) for e in np.eye(len(q))]) / (2 * h)
         return (H + H.T) / 2
 
     def frequencies(self):
-        """rad/s, ascending, about the steady state."""
+        """Frequencies, rad/s, ascending, about the steady state."""
         q = np.zeros(4 * self.n)
         for _ in range(4):
             q = q - np.linalg.solve(self.hessian(q), self.gradient(q))

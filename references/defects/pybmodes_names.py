@@ -1,8 +1,9 @@
-"""pyBModes: names of modes add squares of lengths and of angles, so that an almost pure flap is called a torsion.
+"""pyBModes: names of modes use sums of squared lengths and angles, so an almost pure flap mode is called torsion.
 
-campbell_sweep names a mode by the largest of Σ flap², Σ edge², Σ twist² (campbell/_classify.py, _participation; likewise
-elastodyn/params.py, _kinetic_participation, called kinetic energy there): displacements in tip radii, twist in radians. Kinetic
-energy weighs displacements by the mass and the twist by the polar inertia. Here mass centres lie 0.1 m off.
+campbell_sweep names a mode by the largest of Σ flap², Σ edge², Σ twist² (campbell/_classify.py, _participation;
+likewise elastodyn/params.py, _kinetic_participation, called kinetic energy there): displacements in tip radii, twist in
+radians. Kinetic energy weighs displacements by the mass and the twist by the polar inertia. Here mass centres lie 0.1 m
+off.
 Needs: pybmodes, numpy.
 """
 
@@ -19,7 +20,7 @@ FAMILIES = ("flap", "edge", "torsion")
 
 
 def write(folder):
-    """Path of an input file, with its section table beside it: a uniform blade whose mass centres lie 0.1 m off."""
+    """Write an input file and its section table; return its path. A uniform blade, mass centres 0.1 m off the axis."""
     row = f"0 0 {MASS} {INERTIA / 2} {INERTIA / 2} 4e8 1e9 5e7 1e10 0.1 0 0"
     (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
     ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))
@@ -53,7 +54,7 @@ def write(folder):
 
 
 def energies(shape):
-    """Kinetic energy in flap, edge and torsion, as shares; coupling terms left out."""
+    """Fractions of the kinetic energy in flap, edge and torsion, without coupling terms."""
     weight = np.gradient(shape.span_loc)
     parts = ((MASS * RADIUS**2, shape.flap_disp), (MASS * RADIUS**2, shape.lag_disp), (INERTIA, shape.twist))
     energy = np.array([inertia * (weight * motion**2).sum() for inertia, motion in parts])

@@ -1,9 +1,9 @@
-"""pyBModes: a shear centre off the reference axis moves the tension centre along, but not the mass centre.
+"""pyBModes: a shear centre off the reference axis shifts the tension centre, but not the mass centre.
 
-All of io/sec_props.py's offsets are from the reference axis. nondim_section_props (fem/nondim.py) takes sc_offst off tc_offst
-and leaves cg_offst as it is, while the elements' axis is that of the shear centres. A uniform blade at rest whose three centres
-are all 0.5 m off the axis is the blade without offsets, moved aside as a whole, with its frequencies; moments of inertia are
-about the mass centre.
+All of io/sec_props.py's offsets are from the reference axis. nondim_section_props (fem/nondim.py) subtracts
+sc_offst from tc_offst but not from cg_offst, although the elements' axis is that of the shear centres. A non-rotating
+uniform blade with all three centres 0.5 m off the axis is the blade without offsets, displaced as a whole, with the
+same frequencies; moments of inertia are about the mass centre.
 Needs: pybmodes, numpy.
 """
 
@@ -18,7 +18,7 @@ RADIUS, MASS, INERTIA = 60.0, 250.0, 150.0  # m, kg/m, kg m
 
 
 def frequencies(cg, sc, tc):
-    """Hz, of a uniform blade at rest with these offsets, m."""
+    """Frequencies, Hz, of a non-rotating uniform blade with these offsets, m."""
     row = f"0 0 {MASS} {INERTIA} {INERTIA} 4e8 1e9 5e7 1e10 {cg} {sc} {tc}"
     ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))
     lines = ["====", "blade", "", "---- General", "f Echo", "1 beam_type", "0. rot_rpm", "1. rpm_mult"]

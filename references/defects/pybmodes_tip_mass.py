@@ -1,8 +1,8 @@
-"""pyBModes: a mass at the tip of a turning blade neither pulls on it nor is softened by the rotation.
+"""pyBModes: in rotation, a mass at the tip causes neither tension nor spin softening.
 
-First flapwise frequency of a uniform beam that carries its own mass at the tip, on a hub without radius, in units of
-sqrt(EI / m L^4), at rest and at rotor speeds in the same unit. Expected: Ritz' method with the exact tension, below; at speed 4
-G. S. Bir, NREL/CP-500-47953 (2010), Table 5, has 4.543.
+First flapwise frequency of a uniform beam with a tip mass equal to its mass and zero hub radius, in units of
+sqrt(EI / m L^4), at zero speed and at rotor speeds in the same unit. Expected: Ritz's method with the exact tension,
+below; at speed 4 G. S. Bir, NREL/CP-500-47953 (2010), Table 5, has 4.543.
 Needs: pybmodes, numpy.
 """
 
@@ -18,7 +18,7 @@ RADIUS, MASS, EI = 60.0, 250.0, 4e8  # m, kg/m, N m²
 
 
 def write(folder, rpm):
-    """Path of an input file, with its section table beside it: a uniform blade with its own mass at the tip."""
+    """Write an input file and its section table; return its path. A uniform blade with its mass again at the tip."""
     row = f"0 0 {MASS} 150. 150. {EI} {2.5 * EI} 5e7 1e10 0 0 0"
     (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
     ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))

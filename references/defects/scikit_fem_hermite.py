@@ -1,7 +1,7 @@
 """scikit-fem: an ElementLineHermite used on a second mesh keeps the first mesh's functions, silently.
 
-Bending stiffness of two elements, on a line of length 1 and then on one of length 2, by one element instance and by a new
-one. The diagonal entry of the middle deflection is 2 · 12 / h³.
+Bending stiffness of two elements, on a line of length 1 and then on one of length 2, by one element instance and by a
+new one. The diagonal entry of the middle deflection is 2 · 12 / h³.
 Needs: scikit-fem, numpy.
 """
 

@@ -1,9 +1,9 @@
-"""SHARPy: sections of curved three-node elements are turned wrongly, middle and end exchanged.
+"""SHARPy: sections of curved three-node elements have wrong axes, middle and end exchanged.
 
 algebra.tangent_vector returns tangents in the order of the nodes along the element (first end, middle, other end), and
-Element.get_triad takes them in the order of the connectivities (first end, other end, middle), like frame_of_reference_delta.
-One element on an arc of one radian: its sections' x axes should lie along the arc. Out of the plane of the arc such beams then
-have wrong frequencies, by 2 % for an arc of half a radian.
+Element.get_triad reads them in the order of the connectivities (first end, other end, middle), like
+frame_of_reference_delta. One element on an arc of one radian: its sections' x axes should lie along the arc. Out of the
+plane of the arc such beams then have wrong frequencies, by 2 % for an arc of half a radian.
 Needs: ic-sharpy, numpy.
 """
 

@@ -1,4 +1,4 @@
 """Exudyn: ANCF cable, kinematic tree, and mechanisms with closed loops.
 
-A blade or a mechanism comes in; modes go out. The three models share one engine.
+Input: a blade or a mechanism. Output: its modes. The three models share one engine.
 """

@@ -1,4 +1,4 @@
-"""Exudyn's ANCF cable in a co-rotating frame: a geometrically nonlinear beam that shares nothing with core.
+"""Exudyn's ANCF cable in a co-rotating frame: a geometrically nonlinear beam, independent of core.
 
 The cable has cubic positions between nodes that carry position and slope, ``r`` and ``r' = ∂r/∂s``, and the energy
 ``½ EA (|r'| − 1)² + ½ EI (|r' × r''| / |r'|²)²`` (J. Gerstmayr, H. Irschik, "On the correct representation of bending
@@ -8,7 +8,8 @@ the hub the inertia forces are exactly
 
     M q̈ + 2Ω M B q̇ + Ω² M B² q,   B = e_z × on every position and slope.
 
-Exudyn provides M, the steady state and the tangent stiffness there; the frame's terms are made here from its M.
+Exudyn provides M, the steady state and the tangent stiffness there; this module computes the terms of the rotating
+frame from M.
 """
 
 import time
@@ -26,10 +27,10 @@ from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
 
 ROUNDING = 2e-15
-"""What rounding leaves of an axial force, of EA times the number of elements (their stiffness is EA over their length)."""
+"""Rounding error of an axial force, relative to EA times the number of elements (their stiffness is EA over their length)."""
 
 CLAMPED = [0, 1, 2, 4, 5]
-"""Coordinates of the root node that a clamp holds: position, and the slope across; the slope along is free to stretch."""
+"""Clamped coordinates of the root node: position and transverse slope; the axial slope is free, to allow stretch."""
 
 SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
@@ -52,7 +53,7 @@ class ExudynAncf:
         return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason unless the blade is uniform and straight, bends alike both ways, stretches, and does not shear."""
+        """A reason unless the blade is uniform, straight, extensible and rigid in shear, with one bending stiffness."""
         flap, chord = blade.stiffness[:, BEND_Y, BEND_Y], blade.stiffness[:, BEND_Z, BEND_Z]
         if (flap != chord).any():
             k = int(np.argmax(flap != chord))
@@ -60,12 +61,12 @@ class ExudynAncf:
                 f"EI_y = {flap[k]:g}, EI_z = {chord[k]:g} N m² at station {k}: an ANCF cable has one bending stiffness"
             )
         if not uniform(blade):
-            return "sections couple or vary, or there is curvature, twist, precone, pitch or tip mass: this cable is uniform"
+            return "sections couple or vary, or curvature, twist, precone, pitch or tip mass: this cable is uniform"
         section = sample(blade, 0.0)
         if np.isinf(section.EI_y[0]) or np.isinf(section.EA[0]):
-            return "rigid in bending or stretch: an ANCF cable needs a finite EI and EA"
+            return "rigid in bending or stretch: an ANCF cable needs finite EI and EA"
         if np.isfinite(section.GA_y[0]) or np.isfinite(section.GA_z[0]):
-            return "shear: an ANCF cable has none (Euler–Bernoulli)"
+            return "finite shear stiffness: an ANCF cable is rigid in shear (Euler–Bernoulli)"
         return None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
@@ -86,7 +87,7 @@ class ExudynAncf:
 
 
 def _matrices(blade: Blade, omega: float, elements: int):
-    """M, C, K (n, n) of all coordinates, node by node (r, r'), about the steady state in co-rotating axes."""
+    """M, C, K (n, n) of all coordinates, (r, r') per node, about the steady state in co-rotating axes."""
     exu, _container, mbs = ex.system()
     items, section = exu.itemInterface, sample(blade, 0.0)
     x = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
@@ -123,7 +124,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
 
 
 def _shapes(q, length: float):
-    """(m, 21, 4) from coordinates (n, m), by the elements' own cubics; a cable has no rotation about its axis."""
+    """Shapes (m, 21, 4) from coordinates (n, m), by the elements' cubics; a cable has no rotation about its axis."""
     node = q.reshape(-1, 2, 3, q.shape[1])
     cubic = CubicHermiteSpline(np.linspace(0.0, length, len(node)), node[:, 0], node[:, 1])
     moved = cubic(STATIONS * length)

@@ -1,15 +1,16 @@
-"""A blade as rigid segments on elastic hinges: the links of a kinematic tree, for a code that takes one.
+"""A blade as rigid segments on elastic hinges: the links of a kinematic tree.
 
-An element bends, twists, stretches and shears in one hinge, by its whole compliance and where the compliance in bending
-has its centroid (the middle, if uniform); what lies between two hinges is a rigid body with the blade's own mass and
-inertia. What lies before the first belongs to the hub, or to the root's joint: sliding along its axes x, y, z and then turning
-about them, as far as they are not held. This is a lumped model of second order.
+Each element has one hinge with the element's whole compliance in bending, torsion, stretch and shear, at the centroid
+of its bending compliance (the middle, if uniform). Between two hinges is a rigid body with the blade's mass and
+inertia. The part before the first hinge belongs to the hub, or to the root joint, which slides along its axes x, y, z
+and then rotates about them, where these are free. This is a lumped model of second order.
 
-The hinge has the place and axes of its section, so that the line may be curved; its 6×6 compliance is the integral of the
-sections', each rotated into its axes, so that strains may couple.
+The hinge has the position and axes of its section, so the line may be curved. Its 6×6 compliance is the integral of the
+sections' compliances, each rotated into the axes of the hinge, so strains may couple.
 
-All joints but the last turning one sit half on either side of it: a stretched hinge still turns at its middle, and the order
-of finite rotations, which do not commute, does not matter. All on one side would cost an order.
+All joints of a hinge except the last rotation are split in two halves, before and after it. A stretched hinge then
+rotates at its middle, and the order of finite rotations does not matter. With all joints on one side the model would be
+of first order.
 """
 
 from dataclasses import dataclass
@@ -31,13 +32,14 @@ SLIDE, TURN = (AXIAL, SHEAR_Y, SHEAR_Z), (TORSION, BEND_Z, BEND_Y)
 
 @dataclass(frozen=True)
 class HingedSegments:
-    """The links after the hub, a joint each, in order; the frames of a joint at rest differ by an offset, then a turn.
+    """The links after the hub, in order, one joint each; undeformed, the frames of a joint differ by an offset, then a
+    rotation.
 
     Attributes:
-        strain: (n,) what the joint lets happen (``core.blade``'s order of strains).
-        stiffness: (n,) of each joint by itself, N/m or N m.
-        coupling: (n, n) what one joint of a hinge bears when another moves, zero on the diagonal.
-        offset, turn: (n, 3), (n, 3, 3) from the link before; from the hub's axes, coned, for the first.
+        strain: (n,) the strain that the joint allows (in ``core.blade``'s order of strains).
+        stiffness: (n,) of each joint alone, N/m or N m.
+        coupling: (n, n) off-diagonal stiffness between the joints of a hinge, zero on the diagonal.
+        offset, turn: (n, 3) m, (n, 3, 3) from the previous link; for the first, from the hub's axes, coned.
         segment: (e,) the link that carries the segment, the last of each hinge.
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
         reach: (e, 3) from a hinge to the end of its element, in the hinge's axes, m.
@@ -56,7 +58,7 @@ class HingedSegments:
 
 
 def plant(blade: Blade, elements: int) -> HingedSegments:
-    """A blade as a tree of ``elements`` equal elements, behind the joint at its root if that is not clamped."""
+    """A blade as a tree of ``elements`` equal elements, after the root joint if the root is not clamped."""
     ends = np.linspace(0.0, blade.length, elements + 1)
     hinges = _hinges(blade, ends)
     place, axes = _frames(blade, hinges)
@@ -97,13 +99,13 @@ def plant(blade: Blade, elements: int) -> HingedSegments:
 
 
 def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
-    """Places (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
+    """Positions (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
     at = line(blade, s[:, None])
     return at.place[:, 0], at.axes[:, 0]
 
 
 def _hinges(blade: Blade, ends: Array) -> Array:
-    """(e,) where each element's bending compliance has its centroid."""
+    """(e,) arc lengths of the centroid of each element's bending compliance."""
     s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
     bend = weight * (1.0 / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]]).sum(1)
     element, total = np.searchsorted(ends, s) - 1, np.zeros((2, len(ends) - 1))
@@ -115,7 +117,7 @@ def _hinges(blade: Blade, ends: Array) -> Array:
 def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     """(e, k, k) of the joints ``hinge`` of each element: the inverse of the compliance ``∫ R c Rᵀ ds`` of its sections.
 
-    A strain's two joints add up to it, and by what they differ they bear its own stiffness.
+    The two joints of a strain add up to it; their difference has the same stiffness.
     """
     s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
     element = np.searchsorted(ends, s) - 1
@@ -138,7 +140,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 
 
 def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[Array, Array, Array]:
-    """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of what each hinge carries up to the next, or the tip."""
+    """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of the segment from each hinge to the next, or to the tip."""
     ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
     s, weight = (part.ravel() for part in gauss.between(ends, 3))
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])

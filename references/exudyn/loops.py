@@ -1,4 +1,4 @@
-"""A mechanism as Exudyn's kinematic tree, each loop closed by a generic joint, asked for forces and matrices anywhere."""
+"""A mechanism as Exudyn's kinematic tree, each loop closed by a generic joint; forces and matrices at any coordinates."""
 
 from typing import Any
 
@@ -17,21 +17,24 @@ _STEP = 1e-3
 
 
 class System:
-    """An assembled system of Exudyn's, asked for what it has at any coordinates: n of them, c constraint equations."""
+    """An assembled Exudyn system with n coordinates and c constraint equations, evaluated at any coordinates."""
 
     def __init__(self, exu: Any, container: Any, mbs: Any, size: int) -> None:
         self.size = size
-        self._exu, self._container, self._mbs = exu, container, mbs  # the container must live as long
+        self._exu, self._container, self._mbs = exu, container, mbs  # keeps the container alive
         self._settings = exu.SimulationSettings()
         self._settings.solution.file.write = False
         self._settings.staticSolver.verboseMode = 0
         self._settings.linearSolver.solverType = exu.LinearSolverType.EigenDense
         self._differences = self._settings.staticSolver.newton.numericalDifferentiation
         self._differences.minimumCoordinateSize = 1.0
-        self._differences.forODE2Connectors = True  # its own derivatives hold the markers' Jacobians constant
+        self._differences.forODE2Connectors = (
+            True  # its internal derivatives treat the Jacobians of the markers as constant
+        )
 
     def balance(self, q: Array) -> tuple[Array, Array, Array]:
-        """Forces (n,) left unbalanced without reactions, the loops' gaps (c,), and the constraints' directions J (n, c)."""
+        """Unbalanced forces (n,) without reactions, constraint residuals of the loops (c,), and constraint directions J
+        (n, c)."""
         solver = self._at(q)
         solver.ComputeNewtonResidual(self._mbs, self._settings)
         residual = np.array(solver.GetSystemResidual())
@@ -44,8 +47,8 @@ class System:
     def matrices(self, q: Array) -> tuple[Array, Array, Array]:
         """Mass, damping and gyroscopic, and stiffness matrix (n, n) of the tree.
 
-        Exudyn takes forward differences; their error is removed by Richardson's extrapolation: exactly for the velocities,
-        in which forces are quadratic, to third order for the coordinates.
+        Exudyn uses forward differences. Richardson extrapolation removes their error: exactly for the velocities, in
+        which the forces are quadratic, and to third order for the coordinates.
         """
         M = np.zeros((self.size, self.size))
 
@@ -82,7 +85,7 @@ class System:
 
 
 def system(tree: Tree) -> System:
-    """A mechanism in Exudyn, its motions at their rates."""
+    """Build a mechanism in Exudyn, with its motions at their rates."""
     exu, container, mbs = ex.system()
     item, turned = _plant(exu, mbs, tree, velocity(tree))
     _close(exu, mbs, tree, item, turned)
@@ -91,7 +94,7 @@ def system(tree: Tree) -> System:
 
 
 def velocity(tree: Tree) -> Array:
-    """(n,) rates of the tree's own coordinates in the steady state."""
+    """(n,) rates of the coordinates of the tree's joints in the steady state."""
     out = np.zeros(own_coordinates(tree))
     for m in tree.mechanism.motions:
         out[tree.coordinate(m.coordinate)] = m.rate
@@ -99,22 +102,22 @@ def velocity(tree: Tree) -> Array:
 
 
 def own_coordinates(tree: Tree) -> int:
-    """How many coordinates belong to the tree's own joints: they come first."""
+    """Number of coordinates of the tree's joints, which come first."""
     cut = {j.name for j in tree.mechanism.joints if j.name in tree.weld_names}
     return sum(name.rpartition(".")[0] not in cut for name in tree.coordinates)
 
 
 def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[Array]]:
-    """The tree, a link for each coordinate with the inertia of the bodies that ride on it, and the links' turns.
+    """The tree, one link per coordinate with the inertia of the bodies on it, and the rotations of the links.
 
-    Exudyn's joints run along positive axes: a link's turn makes one of them point along its screw.
+    Exudyn's joints are along positive axes; the rotation of a link aligns one of them with its screw.
     """
     items, n = exu.itemInterface, len(velocity)
     kinds, turned, steps = [], [], []
     for j in range(n):
         axis = int(np.abs(tree.screw[j]).argmax())
         flip = np.eye(4)
-        if tree.screw[j, axis] < 0:  # half a turn about another axis reverses this one
+        if tree.screw[j, axis] < 0:  # a rotation by π about another axis reverses this one
             flip = sp.pose(sp.rotation((axis + 1) % 3, np.array(np.pi)), np.zeros(3))
         before = tree.before[j]
         start = sp.inverse(turned[before]) if before >= 0 else np.eye(4)

@@ -1,12 +1,12 @@
 """A mechanism in Exudyn: a kinematic tree in relative coordinates, each loop closed by a generic joint.
 
-What is shared with core is the description: which joints make the tree, and their frames. Motion, inertia forces, springs,
-the steady state and its linearisation are Exudyn's own, and a loop is closed by the joint itself (its locked axes as
+Shared with core is only the description: which joints form the tree, and their frames. Exudyn computes motion, inertia
+forces, springs, the steady state and its linearisation. A loop is closed by the joint itself (its locked axes as
 algebraic equations), not by core's weld beyond a copy of the body.
 
-Exudyn leaves the constraints' curvature, ∂(Jλ)/∂q, out of its stiffness matrix: Newton's method does without. A modal analysis
-does not (a hanging pendulum on a joint would have no stiffness at all), so it is added here from differences of Exudyn's own
-constraint Jacobian. Modes are those in the null space of the constraints (García de Jalón and Bayo 1994, ch. 5).
+Exudyn's stiffness matrix omits the curvature of the constraints, ∂(Jλ)/∂q, which Newton's method does not need. A modal
+analysis needs it (a hanging pendulum on a joint would have no stiffness), so it is added here by differences of
+Exudyn's constraint Jacobian. Modes are those in the null space of the constraints (García de Jalón and Bayo 1994, ch. 5).
 """
 
 import time
@@ -31,16 +31,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stages:
-    """The linearised tree and its loops, over the n coordinates of the tree's own joints.
+    """The linearised tree and its loops, in the n coordinates of the tree's joints.
 
     Attributes:
         coordinates: their names.
         q: (n,) values in the steady state.
         M, C: (n, n) mass, and damping and gyroscopic matrix.
-        K: (n, n) stiffness, the constraints' curvature not in it.
-        curvature: (n, n) stiffness from the constraints' curvature under their reactions.
+        K: (n, n) stiffness, without the curvature of the constraints.
+        curvature: (n, n) stiffness of the curvature of the constraints under their reactions.
         J: (n, c) constraint directions: the equations of motion have ``J @ multipliers`` on their right.
-        multipliers: (c,).
+        multipliers: (c,) Lagrange multipliers.
         free: indices of the coordinates whose motion is not prescribed.
     """
 
@@ -60,7 +60,7 @@ class Stages:
         return ranked(self.J[self.free].T).null
 
     def reduced(self, basis: Array) -> tuple[Array, Array, Array]:
-        """M, C, K over a basis (f, i) of the free coordinates' motion."""
+        """M, C, K (i, i) in a basis (f, i) of the free coordinates' motion."""
         pick = np.ix_(self.free, self.free)
         M, C, K = (basis.T @ a[pick] @ basis for a in (self.M, self.C, self.K + self.curvature))
         return M, C, K
@@ -89,9 +89,9 @@ class ExudynMechanism:
     def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
         """A reason if there are beams, accelerations, or springs or motions on a cut joint."""
         if mechanism.beams:
-            return "beams or bushings: its elastic elements measure strain otherwise"
+            return "beams or bushings: Exudyn's elastic elements use other strain measures"
         if any(m.acceleration for m in mechanism.motions):
-            return "an accelerating motion: its static solver knows rates only"
+            return "an accelerating motion: Exudyn's static solver supports rates only"
         tree = compile_tree(mechanism)
         own = own_coordinates(tree)
         for what in (*mechanism.motions, *mechanism.coordinate_springs):
@@ -118,7 +118,7 @@ class ExudynMechanism:
 
 
 def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
-    """Settle a mechanism in Exudyn and linearise it there.
+    """Find the steady state of a mechanism in Exudyn and linearise about it.
 
     Raises:
         CodeError: no steady state near the guess, or loops that move in it.
@@ -131,11 +131,11 @@ def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
         if m.position is not None:
             q[tree.coordinate(m.coordinate)] = m.position
     made = system(tree)
-    return stages(tree, made, _settle(tree, made, q))
+    return stages(tree, made, _steady_state(tree, made, q))
 
 
 def _check_constant(tree: Tree, found: Stages) -> None:
-    """Compare Exudyn's own reduced matrices with those at another azimuth of what turns.
+    """Compare Exudyn's reduced matrices with those at another azimuth.
 
     Raises:
         CodeError: they differ: the equations are periodic.
@@ -149,11 +149,11 @@ def _check_constant(tree: Tree, found: Stages) -> None:
     here, there = ([fastest**p * m for p, m in zip(powers, one.reduced(null), strict=True)] for one in (found, later))
     size = max(float(np.abs(a).max()) for a in here)
     if max(float(np.abs(a - b).max()) for a, b in zip(here, there, strict=True)) > 1e-6 * size:
-        raise CodeError("periodic: its matrices change with the azimuth, which this adapter would freeze")
+        raise CodeError("periodic: the matrices change with the azimuth; this adapter needs constant ones")
 
 
 def stages(tree: Tree, made: System, q: Array) -> Stages:
-    """The linearisation at given coordinates q (n,), with the reactions that balance it best there.
+    """Linearise at given coordinates q (n,), with the reactions that balance the forces best.
 
     Raises:
         CodeError: loops that move in the steady state.
@@ -163,16 +163,17 @@ def stages(tree: Tree, made: System, q: Array) -> Stages:
     free = np.setdiff1d(np.arange(len(q)), prescribed)
     force, _, J = made.balance(q)
     if np.abs(J.T @ v).max(initial=0.0) > 1e-9 * np.abs(v).max(initial=0.0):
-        raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
+        raise CodeError("the loops move in the steady state: only mechanisms that rotate as a whole are supported")
     multipliers = ranked(J[free]).solve(-force[free])
     M, C, K = made.matrices(q)
     return Stages(tree.coordinates[: len(q)], q, M, C, K, made.curvature(q, multipliers), J, multipliers, free)
 
 
-def _settle(tree: Tree, made: System, q: Array) -> Array:
-    """Newton's method on Exudyn's residual: close the loops, then balance along what they leave free.
+def _steady_state(tree: Tree, made: System, q: Array) -> Array:
+    """Newton's method on Exudyn's residual: close the loops, then balance the forces in the null space of the
+    constraints.
 
-    Exudyn's own static solver leaves the constraints' curvature out of its Jacobian and stops at 1e-8.
+    Exudyn's static solver omits the curvature of the constraints from its Jacobian and stops at 1e-8.
 
     Raises:
         CodeError: no steady state near q.
@@ -184,7 +185,7 @@ def _settle(tree: Tree, made: System, q: Array) -> Array:
         force, gap, J = made.balance(q)
         force, J = force[free], J[free]
         close = -ranked(J.T).solve(gap)
-        if np.abs(gap).max(initial=0.0) > 1e-3:  # assemble first
+        if np.abs(gap).max(initial=0.0) > 1e-3:  # close the loops first
             q = q.copy()
             q[free] += close * min(1.0, 0.5 / max(float(np.abs(close).max()), 0.5))
             continue
@@ -203,11 +204,12 @@ def _settle(tree: Tree, made: System, q: Array) -> Array:
                 return q
             break
         before = change
-    raise CodeError("Exudyn finds no steady state near the guess: give a better one")
+    raise CodeError("Exudyn finds no steady state near the guess: give a better guess")
 
 
 def _balanced(K: Array, force: Array) -> Array:
-    """Newton's step of coordinates of unlike units, each by its own stiffness; least along what nothing resists."""
+    """Newton step with each coordinate scaled by its stiffness (units differ); of least norm where the stiffness is
+    singular."""
     size = np.sqrt(np.abs(np.diagonal(K)))
     size = np.where(size > 0, size, 1.0)
     return ranked(K / size[:, None] / size).solve(force / size) / size

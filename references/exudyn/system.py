@@ -1,4 +1,4 @@
-"""What both Exudyn codes need: a silent system, its steady state, and its linearisation about that.
+"""Common to the Exudyn codes: a silent system, its steady state, and its linearisation about it.
 
 Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multibody systems", Multibody System Dynamics
 60 (2024) 533–561.
@@ -27,7 +27,7 @@ def version() -> str | None:
 
 
 def system() -> tuple[Any, Any, Any]:
-    """Exudyn itself, printing nothing, with an empty system in its container (to be kept alive as long as it)."""
+    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive)."""
     import exudyn
 
     exudyn.config.printToConsole = False
@@ -45,20 +45,20 @@ def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:
 
 
 def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:
-    """Move an assembled system to its static equilibrium, and its initial values with it.
+    """Move an assembled system and its initial values to its static equilibrium.
 
-    The initial values matter: it is about them that Exudyn linearises. ``rounding`` (N or N m) is what rounding leaves of
-    the stiffest forces: a residual below it cannot be had, and Newton's method would not end.
+    Exudyn linearises about the initial values. ``rounding`` (N or N m) is the rounding error of the stiffest forces:
+    Newton's method cannot reduce the residual below it and would not end.
 
     Raises:
-        CodeError: Newton's method found none.
+        CodeError: Newton's method did not converge.
     """
     try:
         settings = _settings(exu)
         settings.staticSolver.newton.absoluteTolerance = max(settings.staticSolver.newton.absoluteTolerance, rounding)
         mbs.SolveStatic(settings, updateInitialValues=True, showCausingItems=False)
     except exu.ExudynError as error:
-        raise CodeError(f"omega: {omega:g} rad/s: Exudyn finds no steady state ({error}): lower the speed") from error
+        raise CodeError(f"omega: {omega:g} rad/s: Exudyn finds no steady state ({error}); lower the speed") from error
 
 
 def linearized(exu: Any, mbs: Any) -> tuple[Array, Array, Array]:
@@ -72,7 +72,7 @@ def _settings(exu: Any) -> Any:
     settings.solution.file.write = False
     settings.staticSolver.verboseMode = 0
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
-    # where Exudyn differentiates numerically it steps by relativeEpsilon × max(|q|, this): 1e-7 rad or m instead of
-    # 1e-9, which leaves 1e-10 of rounding in the matrices
+    # step of Exudyn's numerical differentiation: relativeEpsilon × max(|q|, this); 1e-7 rad or m instead of 1e-9
+    # leaves a rounding error of 1e-10 in the matrices
     settings.staticSolver.newton.numericalDifferentiation.minimumCoordinateSize = 1.0
     return settings

@@ -1,10 +1,10 @@
 """Exudyn's kinematic tree: a blade as rigid segments on elastic hinges, in relative coordinates.
 
-The model is ``hinged_segments``'. Exudyn's recursive equations of motion (R. Featherstone, *Rigid Body Dynamics
-Algorithms*, 2008) make the large motions, hence the steady tension's stiffening, and all inertia forces.
+The model is that of ``hinged_segments``. Exudyn's recursive equations of motion (R. Featherstone, *Rigid Body Dynamics
+Algorithms*, 2008) include large motions, hence the stiffening by steady tension, and all inertia forces.
 
-Where the blade has no moments of inertia the segments have none about their own line, and torsion has no modes: M and C
-vanish there, and a semi-definite M is all the eigenproblem asks for.
+If the blade has no moments of inertia, the segments have none about their axis, and there are no torsional modes. M is
+then semi-definite, which the eigensolver allows.
 """
 
 import time
@@ -30,7 +30,7 @@ JOINT = ("PrismaticX", "PrismaticY", "PrismaticZ", "RevoluteX", "RevoluteY", "Re
 
 
 RAMPS = (1, 4, 16)
-"""Numbers of equal increments of the speed's square in which it is raised, tried in turn."""
+"""Numbers of equal increments of the squared speed, tried in turn."""
 
 
 class ExudynTree:
@@ -50,11 +50,11 @@ class ExudynTree:
         return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if the curve has kinks, or the blade is rigid in bending."""
+        """A reason if the curve has kinks or the blade is rigid in bending."""
         if blade.kinks:
-            return f"a kink at {blade.kinks[0]:g} m: the sections of an element have one hinge's axes"
+            return f"a kink at {blade.kinks[0]:g} m: all sections of an element use the axes of its hinge"
         if np.isinf(blade.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any():
-            return "rigid in bending: a hinge without joints"
+            return "rigid in bending: a hinge needs finite EI_y and EI_z"
         return None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
@@ -74,9 +74,9 @@ class ExudynTree:
 
 
 def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
-    """M, C, K (n, n) about the steady state at ``omega``, and the joints' coordinates (n,) there.
+    """M, C, K (n, n) about the steady state at ``omega`` (rad/s), and the joints' coordinates (n,) there.
 
-    The hub is a turning link whose angle is held and whose rate is given; being prescribed, it has no row.
+    The hub is a rotating link with fixed angle and given rate. Its motion is prescribed, so it has no row.
     """
     exu, _container, mbs = ex.system()
     items, n = exu.itemInterface, len(tree.strain) + 1
@@ -115,18 +115,18 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
     ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
     if omega:
-        _settle(exu, mbs, omega, n)
+        _steady_state(exu, mbs, omega, n)
     M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 
-def _settle(exu: Any, mbs: Any, omega: float, n: int) -> None:
-    """Move the tree to its steady state, the speed raised from rest in as few steps as suffice.
+def _steady_state(exu: Any, mbs: Any, omega: float, n: int) -> None:
+    """Move the tree to its steady state, raising the speed from zero in as few steps as suffice.
 
-    Exudyn's Newton method is undamped, and its load steps scale no inertia forces: far from the steady state it wanders.
+    Exudyn's Newton method is undamped, and its load steps do not scale inertia forces: far from the steady state it diverges.
 
     Raises:
-        CodeError: none was found by the finest steps either.
+        CodeError: no steady state was found, even with the smallest steps.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     for steps in RAMPS:
@@ -145,7 +145,7 @@ def _settle(exu: Any, mbs: Any, omega: float, n: int) -> None:
 def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
     """(e, 6, n): velocity of each segment's ``point`` (e, 3), m in its axes, and its angular velocity, per joint rate.
 
-    In the axes of the first link's parent, with the joints at ``q`` (n,).
+    The result is in the axes of the first link's parent, with the joints at ``q`` (n,).
     """
     n = len(q)
     to = np.repeat(point, np.diff(tree.segment, prepend=-1), axis=0)
@@ -170,7 +170,7 @@ def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
 
 
 def _shapes(blade: Blade, tree: HingedSegments, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) at the common stations: a spline through the elements' ends, level at a clamped root across the blade."""
+    """(m, 21, 4) at the common stations: a spline through the elements' ends, with zero transverse slope at a clamped root."""
     moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
     cone = rotation(1, np.array(-blade.precone))
     moved[:, :3] = cone.T @ moved[:, :3]

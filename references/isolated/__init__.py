@@ -1,6 +1,6 @@
-"""Codes whose dependencies conflict with ours, in environments of their own: pinned, made once in a cache, spoken to in JSON.
+"""Codes whose dependencies conflict with this package, in isolated environments: pinned, cached, called by JSON.
 
-A script in this folder is all of ours that runs there, and it imports nothing but the code.
+Only a script in this folder runs there; it imports nothing but the code and NumPy.
 """
 
 import json
@@ -20,7 +20,7 @@ from .hashes import PLATFORMS, requirements
 
 
 class EnvironmentMissingError(RuntimeError):
-    """An environment that cannot be made: which, and what pip says."""
+    """An environment could not be created; the message names it and quotes pip."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,10 @@ class Environment:
     """One code's environment.
 
     Attributes:
-        name: of the code.
-        requires: what it needs, pinned.
-        bare: what is installed without the dependencies it asks for, pinned; the code itself comes first.
-        script: of this folder, without ``.py``: answers one request.
+        name: name of the code.
+        requires: pinned requirements.
+        bare: pinned packages installed without their declared dependencies; the code itself is first.
+        script: name of the script in this folder, without ``.py``, that answers one request.
     """
 
     name: str
@@ -41,22 +41,22 @@ class Environment:
 
     @property
     def folder(self) -> Path:
-        """Where it is, or would be: another for other pins or another Python."""
+        """Folder of the environment, which depends on the pins and the Python version; it need not exist."""
         pins = sha256("\n".join((sys.version, *self.requires, *self.bare)).encode()).hexdigest()[:12]
         return cache() / f"{self.name}-{pins}"
 
     @property
     def python(self) -> Path:
-        """Its interpreter."""
+        """Its Python interpreter."""
         return self.folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
     def version(self) -> str | None:
-        """The code's version, or None if the environment has not been made."""
+        """The code's version; None if the environment has not been created."""
         return self.bare[0].partition("==")[2] if (self.folder / READY).exists() else None
 
 
 READY = "ready"
-"""A file in a folder whose environment is complete."""
+"""Name of the file that marks a complete environment."""
 
 SHARPY = Environment(
     "sharpy", ("numpy==1.26.4", "scipy==1.13.1", "colorama==0.4.6"), ("ic-sharpy==2.4",), "sharpy_worker"
@@ -65,7 +65,7 @@ SHARPY = Environment(
 FRAME3DD = Environment("frame3dd", ("numpy==1.26.4",), ("wisdem==4.2.9",), "frame3dd_worker")
 
 ENVIRONMENTS = {e.name: e for e in (SHARPY, FRAME3DD)}
-"""By the code's name."""
+"""Environments by the code's name."""
 
 
 def cache() -> Path:
@@ -76,7 +76,7 @@ def cache() -> Path:
 
 
 def install(environment: Environment) -> Path:
-    """Make an environment, replacing what is left of an earlier attempt; its folder.
+    """Create an environment, replacing an earlier incomplete one; return its folder.
 
     Raises:
         EnvironmentMissingError: pip could not install it.
@@ -87,7 +87,7 @@ def install(environment: Environment) -> Path:
     pip = [str(environment.python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     pins = (*environment.requires, *environment.bare)
     (folder / "requirements.txt").write_text(requirements(pins), encoding="utf-8")
-    # no dependencies: all are pinned; no source: what builds it would be fetched without a hash
+    # no dependencies: all are pinned; no source packages: build requirements would be fetched without a hash
     options = [
         "--require-hashes",
         "--no-deps",
@@ -99,18 +99,18 @@ def install(environment: Environment) -> Path:
     if done.returncode:
         said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
         raise EnvironmentMissingError(
-            f"{environment.name}: pip install {' '.join(pins)}: {said[0]} (hashes are known of the files for {PLATFORMS})"
+            f"{environment.name}: pip install {' '.join(pins)}: {said[0]} (hashes are available for {PLATFORMS} only)"
         )
     (folder / READY).write_text(f"southwell {version('southwell')}\n", encoding="utf-8")
     return folder
 
 
 def ask(environment: Environment, request: dict[str, Any], timeout: float) -> dict[str, Any]:
-    """What the environment's script answers.
+    """Run the environment's script on a request and return its answer.
 
     Raises:
-        CodeError: the environment has not been made, or the script crashed, took longer than ``timeout`` seconds, or says
-            that it could not answer.
+        CodeError: the environment has not been created, or the script crashed, took longer than ``timeout`` seconds, or
+            reported an error.
     """
     if environment.version() is None:
         raise CodeError(f"{environment.name} is not installed: southwell codes install {environment.name}")
@@ -128,7 +128,7 @@ def ask(environment: Environment, request: dict[str, Any], timeout: float) -> di
         raise CodeError(f"{environment.name}: no answer within {timeout:g} s") from None
     if done.returncode or not done.stdout:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise CodeError(f"{environment.name}: its process ended with {done.returncode}: {last}")
+        raise CodeError(f"{environment.name}: its process ended with exit status {done.returncode}: {last}")
     answer = json.loads(done.stdout)
     if "error" in answer:
         raise CodeError(f"{environment.name}: {answer['error']}")

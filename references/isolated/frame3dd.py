@@ -1,14 +1,15 @@
 """Frame3DD, of WISDEM: straight frame elements with the geometric stiffness of their axial force, masses at the nodes.
 
-H. P. Gavin, "Frame3DD: static and dynamic structural analysis of 2D and 3D frames" (2010), in NREL's WISDEM, in an environment
-of its own. Turning is told it as a static load, the centrifugal force of every node. When a node moves in the plane of rotation
-that force grows, as by a spring of stiffness −m Ω². Frame3DD's first step has no tension yet and would buckle under them; it is
-given +m Ω² across the plane instead and none within, so that all its ω² are higher by Ω², which is taken off.
+H. P. Gavin, "Frame3DD: static and dynamic structural analysis of 2D and 3D frames" (2010), in NREL's WISDEM, in an
+isolated environment. Rotation is modelled as a static load, the centrifugal force of every node. Displacement of a node
+in the plane of rotation increases that force, which is equivalent to a spring of stiffness −m Ω². Frame3DD's first step
+has no tension yet and would buckle under these springs. Springs of +m Ω² across the plane and none within are used
+instead, so all ω² are higher by Ω², which is subtracted.
 
-What it leaves out: the Coriolis force; the steady stretch, as masses stay where they were; the sections' inertia. Its mass
-matrix has sections of one material, whose inertia goes as EI / EA: EA is therefore given ten thousand times as large, which
-bending does not feel, and there are no axial or torsional modes. Elements have the mean compliance and mass of their stretch of
-the blade: of second order.
+Frame3DD leaves out the Coriolis force; the steady stretch, as masses keep their undeformed positions; and the inertia
+of the sections. Its mass matrix assumes one material, with a rotary inertia proportional to EI / EA. EA is therefore
+increased by a factor of ten thousand, which does not affect bending, and there are no axial or torsional modes.
+Elements have the mean compliance and mass of their part of the blade: second order.
 """
 
 import time
@@ -28,16 +29,16 @@ from . import FRAME3DD, ask
 Array = NDArray[np.float64]
 
 SECTIONS = 10
-"""Intervals between stations that the coarsest level can follow: two elements in each."""
+"""Largest number of intervals between stations for the coarsest level, with two elements in each."""
 
 STIFF = 1e4
-"""How many times too stiff against stretch and torsion."""
+"""Factor on the stiffness in stretch and torsion."""
 
 POINTS = 4
-"""Of Gauss in an element."""
+"""Gauss points per element."""
 
 MAX_ELEMENTS = 120
-"""Elements: the time grows as their cube, and is a quarter of a minute at this many."""
+"""Largest number of elements: the time grows as its cube, and is a quarter of a minute for this number."""
 
 TIMEOUT = 300.0
 
@@ -55,7 +56,7 @@ class Frame3DD:
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
-    digits = 8  # it iterates, on equations that ``STIFF`` makes ill-conditioned
+    digits = 8  # it iterates on equations that ``STIFF`` makes ill-conditioned
     hint = "southwell codes install frame3dd"
 
     def version(self) -> str | None:
@@ -63,29 +64,29 @@ class Frame3DD:
         return FRAME3DD.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if a frame of elements on a line has no place for something of this blade's."""
+        """A reason if the frame does not support a property of the blade."""
         if coupled(blade):
-            return "sections couple (off-diagonal entries): elements have principal axes through the reference curve"
+            return "sections couple (off-diagonal entries): elements need principal axes through the reference curve"
         if not straight(blade) or blade.precone:
-            return "prebend, sweep or precone: the springs that stand for the rotation are those of a line in its plane"
+            return "prebend, sweep or precone: the springs that model the rotation need a straight blade in its plane"
         if not clamped(blade):
-            return "the root is not clamped: the first node is held"
+            return "the root is not clamped: the first node is clamped"
         if np.diagonal(blade.tip_mass)[3:].any() or (blade.tip_mass - np.diag(np.diagonal(blade.tip_mass))).any():
-            return "tip_mass: a body with inertia or offset; nodes here have mass alone"
+            return "tip_mass: a body with inertia or offset; nodes support mass only"
         if (parts := len(intervals(blade)) - 1) > SECTIONS:
             return f"{parts} intervals between stations: uniform elements need more than the {MAX_ELEMENTS} allowed"
         if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
-            return "mass differs with direction: a node has one"
+            return "mass differs with direction: a node has one mass"
         at = sample(blade, blade.stations)
         if np.isfinite([at.GA_y, at.GA_z]).any():
-            return "finite shear stiffness: elements are used shear-free (Euler–Bernoulli)"
+            return "finite shear stiffness: the elements are used without shear (Euler–Bernoulli)"
         for name in ("EA", "GJ", "EI_y", "EI_z"):
             if np.isinf(getattr(at, name)).any():
-                return f"{name} is infinite: an element's is finite"
+                return f"{name} is infinite: the elements need it finite"
         return None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. There may be more elements, between kinks: ``Modes.elements``.
+        """The lowest modes; see ``interface.Code``. Elements end at kinks; ``Modes.elements`` gives their number.
 
         Raises:
             CodeError: an unsupported blade, too many elements, Frame3DD missing or failing, or no stable steady state.
@@ -104,7 +105,7 @@ class Frame3DD:
                 f"{blade.name}: squares of frequencies {squares.tolist()}: no stable steady state; lower the speed"
             )
         order = np.argsort(squares)
-        shapes[:, [0, 3]] = 0.0  # along and about the axis it is all but rigid: rounding
+        shapes[:, [0, 3]] = 0.0  # along and about the axis it is nearly rigid: only rounding
         at_stations = CubicSpline(ends / blade.length, shapes, axis=2)(STATIONS).transpose(0, 2, 1)
         return Modes(
             omega, np.sqrt(squares[order]), at_stations[order].astype(complex), n, seconds=time.perf_counter() - begun
@@ -112,7 +113,7 @@ class Frame3DD:
 
 
 def request(blade: Blade, omega: float, ends: Array, count: int) -> dict[str, object]:
-    """What the script in Frame3DD's environment is asked; elements lie between arc lengths ``ends`` (n+1,)."""
+    """The request for the script in Frame3DD's environment; elements lie between arc lengths ``ends`` (n+1,), m."""
     h = np.diff(ends)
     s, weight = gauss(ends, POINTS)
     at = sample(blade, s)
@@ -137,7 +138,7 @@ def request(blade: Blade, omega: float, ends: Array, count: int) -> dict[str, ob
 
 
 def _at_nodes(ends: Array, s: Array, amount: Array) -> Array:
-    """(n+1,) what acts in each element at ``s``, shared between its nodes so that sum and moment stay."""
+    """(n+1,) nodal values of amounts at ``s`` in each element, distributed to its nodes with the same sum and moment."""
     along = (s.reshape(-1, POINTS) - ends[:-1, None]) / np.diff(ends)[:, None]
     amount = amount.reshape(-1, POINTS)
     left, right = np.sum(amount * (1 - along), axis=1), np.sum(amount * along, axis=1)

@@ -1,9 +1,9 @@
-"""Frame3DD's frame along x, turning about z through the origin, asked for by one JSON object on standard input.
+"""Frame3DD's frame along x, rotating about z through the origin: one JSON object on standard input, one on standard output.
 
-This file alone runs in Frame3DD's environment: it imports nothing but the code and NumPy. Asked: ``x`` (n,) places of nodes,
-the first held; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements, about their own axes;
-``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at the nodes; ``count`` of modes. Answered: ``frequencies``
-(m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes; or ``error``.
+Only this file runs in Frame3DD's environment; it imports nothing but the code and NumPy. Request: ``x`` (n,) positions
+of nodes, the first clamped; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements,
+in their axes; ``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at the nodes; ``count`` of modes.
+Answer: ``frequencies`` (m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes; or ``error``.
 """
 
 import importlib.util
@@ -18,10 +18,11 @@ HELD = 1e30
 """What a reaction's stiffness is called where there is no motion at all."""
 
 JACOBI, STODOLA = 1, 2
-"""Subspace iteration, which gives up on some blades; Stodola's, which may leave out a plane where planes do not couple."""
+"""Subspace iteration, which fails for some blades; Stodola's, which may miss the modes of one plane if planes do not couple."""
 
 MORE, ONE_PLANE = 3, 1e-6
-"""Numbers of modes that subspace iteration is asked for, until it has an answer; how little motion across a plane is none."""
+"""Numbers of modes requested from subspace iteration, in turn, until it converges; motion across a plane that counts as
+zero."""
 
 CONSISTENT, TOLERANCE = 0, 1e-9
 
@@ -30,10 +31,10 @@ def main():
     """Answer one request."""
     request = json.load(sys.stdin)
     reply = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what Frame3DD prints is not the answer
+    os.dup2(2, 1)  # keep Frame3DD's prints out of the answer
     try:
         answer = solve(request)
-    except Exception as error:  # whatever Frame3DD raises is its answer
+    except Exception as error:  # report whatever Frame3DD raises
         answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
     reply.write(json.dumps(answer) + "\n")
     reply.flush()
@@ -41,7 +42,7 @@ def main():
 
 def solve(request):
     """Static solution, and modes with the geometric stiffness there."""
-    # the folder alone: WISDEM's other packages need what is not here
+    # the folder only: WISDEM's other packages have requirements that are not installed
     spec = importlib.util.find_spec("wisdem")
     if spec is None or spec.origin is None:
         raise ImportError("wisdem is not in this environment")
@@ -77,7 +78,7 @@ def solve(request):
 
 
 def modes(frame, count):
-    """The answer; RuntimeError where there is none to be trusted."""
+    """The answer; RuntimeError if no reliable one is found."""
     for method, asked in (*((JACOBI, count + more) for more in range(MORE)), (STODOLA, count)):
         try:
             modal = run(frame, asked, method)
@@ -88,13 +89,13 @@ def modes(frame, count):
     shapes = np.stack([modal.xdsp, modal.ydsp, modal.zdsp, modal.xrot], axis=1)
     across, along = np.linalg.svd(shapes[:, 1:3].transpose(0, 2, 1).reshape(-1, 2), compute_uv=False)[::-1]
     if method == STODOLA and count > 1 and across < ONE_PLANE * along:
-        raise RuntimeError("Stodola's iteration left out a plane, and subspace iteration gave up")
+        raise RuntimeError("Stodola's iteration missed the modes of one plane, and subspace iteration failed")
     order = np.argsort(modal.freq)[:count]
     return {"frequencies": (2 * np.pi * np.array(modal.freq)[order]).tolist(), "shapes": shapes[order].tolist()}
 
 
 def run(frame, count, method):
-    """The modes, by one of Frame3DD's methods; RuntimeError where that gives up."""
+    """The modes by one of Frame3DD's methods; RuntimeError if it fails."""
     frame.enableDynamics(count, method, CONSISTENT, TOLERANCE, 0.0)
     return frame.run()[-1]
 

@@ -1,6 +1,7 @@
-"""SHA-256 of every file that ``codes install`` may install, so that what is run is what was looked at.
+"""SHA-256 of every file that ``codes install`` may install, so that only reviewed files are run.
 
-Of CPython 3.11 and 3.12 on Linux x86_64, or any. For another pin: ``pip download --no-deps``, then ``sha256sum``.
+For CPython 3.11 and 3.12 on Linux x86_64, or any platform. For another pin: ``pip download --no-deps``, then
+``sha256sum``.
 """
 
 PLATFORMS = "CPython 3.11 and 3.12 on Linux x86_64"
@@ -27,6 +28,6 @@ def requirements(pins: tuple[str, ...]) -> str:
     """The text of a requirements file for ``pip install --require-hashes``.
 
     Raises:
-        KeyError: a pin whose files are not known.
+        KeyError: no hashes are available for a pin.
     """
     return "".join(f"{pin} {' '.join(f'--hash=sha256:{h}' for h in HASHES[pin])}\n" for pin in pins)

@@ -1,13 +1,14 @@
-"""SHARPy: a geometrically exact beam with everything a section can have, in an environment of its own.
+"""SHARPy: a geometrically exact beam with full 6×6 sections, in an isolated environment.
 
-A. del Carre, A. Muñoz-Simón, N. Goizueta and R. Palacios, "SHARPy: A dynamic aeroelastic simulation toolbox for very flexible
-aircraft and wind turbines", Journal of Open Source Software 4 (2019) 1885. Elements have three nodes, displacements and
-rotation vectors quadratic in between, reduced integration, and one 6×6 of stiffness and of mass each: of fourth order for
-uniform blades, of second where properties vary. Each has the mean compliance and mass of its stretch of the blade.
+A. del Carre, A. Muñoz-Simón, N. Goizueta and R. Palacios, "SHARPy: A dynamic aeroelastic simulation toolbox for very
+flexible aircraft and wind turbines", Journal of Open Source Software 4 (2019) 1885. Elements have three nodes,
+displacements and rotation vectors quadratic in between, reduced integration, and one 6×6 stiffness and mass each:
+fourth order for uniform blades, second order where properties vary. Each element has the mean compliance and mass of
+its part of the blade.
 
-Core says where the sections are (``core.sections.frames``: that is what a blade's description means); beam, inertia, steady
-state and linearisation are SHARPy's. Twist is in the elements' stiffness and mass and not in their axes, as SHARPy lets no axes
-jump between elements and a blade's may. Rigid shears are given a large stiffness.
+Core gives the positions and axes of the sections (``core.element.sections.frames``). Beam, inertia, steady state and
+linearisation are SHARPy's. Twist is included in the elements' stiffness and mass, not in their axes, because SHARPy
+does not allow axes to jump between elements, and a blade's may. Rigid shears are given a large stiffness.
 """
 
 import base64
@@ -33,17 +34,16 @@ from . import SHARPY, ask
 Array = NDArray[np.float64]
 
 RIGID = 1e7
-"""Shear stiffness of sections that are rigid in shear, in EI/L²: shear then lowers the fifth frequency by 1e-5, the first by
-less than 1e-6."""
+"""Shear stiffness of sections rigid in shear, in EI/L²; it lowers the fifth frequency by 1e-5, the first by less than 1e-6."""
 
 INTERVALS = 12
-"""Between kinks, that the coarsest level can follow without more elements."""
+"""Largest number of intervals between kinks for which the coarsest level needs no more elements."""
 
 JUMP = 1e-4
-"""Of the length: stations closer than this are the two sides of a jump, and no element lies between."""
+"""Relative to the length: stations closer than this are the two sides of a jump, with no element between them."""
 
 MAX_ELEMENTS = 200
-"""Elements: dense matrices of 12 rows each."""
+"""Largest number of elements: the matrices are dense, with 12 rows per element."""
 
 TIMEOUT = 120.0
 
@@ -58,7 +58,7 @@ class Sharpy:
     effects = ALL_EFFECTS
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
-    digits = 8  # its steady state is iterated to a tolerance
+    digits = 8  # its steady state converges to a tolerance
     hint = "southwell codes install sharpy"
 
     def version(self) -> str | None:
@@ -68,16 +68,16 @@ class Sharpy:
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if the root is not clamped, the curve has kinks, or a strain other than shear is rigid."""
         if not clamped(blade):
-            return "the root is not clamped: the beam's first node is held"
+            return "the root is not clamped: the beam's first node is clamped"
         if blade.kinks:
-            return f"a kink at {blade.kinks[0]:g} m: SHARPy lets no axes jump between elements"
+            return f"a kink at {blade.kinks[0]:g} m: SHARPy does not allow axes to jump between elements"
         rigid = {int(strain) for strain in np.argwhere(np.isinf(blade.stiffness))[:, 1]} - {SHEAR_Y, SHEAR_Z}
         if rigid:
-            return f"infinite stiffness against strain {min(rigid)}: only shears can be rigid here"
+            return f"infinite stiffness of strain {min(rigid)}: only shears can be rigid here"
         return None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. Elements end at kinks, so there may be more: ``Modes.elements``.
+        """The lowest modes; see ``interface.Code``. Elements end at kinks; ``Modes.elements`` gives their number.
 
         Raises:
             CodeError: an unsupported blade, too many elements, SHARPy missing or failing, or no stable steady state.
@@ -88,7 +88,7 @@ class Sharpy:
         spans = _spans(blade, elements)
         n = len(spans)
         if n > MAX_ELEMENTS:
-            raise CodeError(f"elements: {n}: dense matrices; at most {MAX_ELEMENTS}")
+            raise CodeError(f"elements: {n}: the matrices are dense; at most {MAX_ELEMENTS}")
         s = nodes(spans)
         answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
         q = _unpacked(answer["q"])
@@ -99,7 +99,7 @@ class Sharpy:
 
 
 def _spans(blade: Blade, elements: int) -> Array:
-    """Ends of each element (e, 2): as many elements in every interval between kinks, none in a jump."""
+    """Ends of each element (e, 2), m: the same number of elements in every interval between kinks, none in a jump."""
     kinks = intervals(blade)
     between = np.column_stack([kinks[:-1], kinks[1:]])
     between = between[np.diff(kinks) > JUMP * blade.length]
@@ -109,12 +109,12 @@ def _spans(blade: Blade, elements: int) -> Array:
 
 
 def nodes(spans: Array) -> Array:
-    """Arc lengths of the nodes (2e+1,): ends and middles of elements."""
+    """Arc lengths of the nodes (2e+1,), m: ends and middles of elements."""
     return np.append(np.column_stack([spans[:, 0], spans.mean(1)]).ravel(), spans[-1, 1])
 
 
 def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
-    """What the script in SHARPy's environment is asked; ``spans`` (e, 2) are the arc lengths of the elements' ends."""
+    """The request for the script in SHARPy's environment; ``spans`` (e, 2) are the arc lengths of the elements' ends, m."""
     untwisted = replace(blade, twist=np.zeros_like(blade.twist))
     frame = sections.frames(untwisted, nodes(spans))
     place, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
@@ -144,7 +144,7 @@ def _unpacked(text: str) -> Array:
 
 
 def _shapes(s: Array, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) by a spline through the nodes; a change of a rotation vector ψ turns by J(ψ) times it.
+    """(m, 21, 4) by a spline through the nodes; a change of a rotation vector ψ is a rotation by J(ψ) times it.
 
     J = 1 + (1 − cos θ)/θ² ψ× + (θ − sin θ)/θ³ ψ×ψ×, θ = |ψ| (M. Géradin and A. Cardona, *Flexible Multibody Dynamics*,
     2001, §4.12).

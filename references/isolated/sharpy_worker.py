@@ -1,10 +1,11 @@
-"""SHARPy's beam about its steady state of rotation, asked for by one JSON object on standard input; the answer is another.
+"""SHARPy's beam about its steady rotating state: one JSON object on standard input, one on standard output.
 
-This file alone runs in SHARPy's environment: it imports nothing but SHARPy and NumPy. Asked: ``nodes`` (n, 3) along the beam,
-in axes that turn at ``omega`` (rad/s) about z through their origin; ``turn`` (e, 3, 3) the sections' rotation vectors at the
-nodes of each three-node element, in SHARPy's order of them (ends, then middle); ``stiffness`` and ``mass`` (e, 6, 6); ``tip``
-(6, 6). Answered: ``M``, ``C``, ``K`` (d, d) about the steady state and its coordinates ``q`` (d,), little-endian doubles in
-base64: place and rotation vector of every node but the first, which is held; or ``error``.
+Only this file runs in SHARPy's environment; it imports nothing but SHARPy and NumPy. Request: ``nodes`` (n, 3) along
+the beam, in axes that rotate at ``omega`` (rad/s) about z through their origin; ``turn`` (e, 3, 3) the sections'
+rotation vectors at the nodes of each three-node element, in SHARPy's order (ends, then middle); ``stiffness`` and
+``mass`` (e, 6, 6); ``tip`` (6, 6). Answer: ``M``, ``C``, ``K`` (d, d) about the steady state and its coordinates ``q``
+(d,), little-endian doubles in base64: position and rotation vector of every node except the first, which is clamped; or
+``error``.
 """
 
 import base64
@@ -21,17 +22,17 @@ def main():
     """Answer one request."""
     request = json.load(sys.stdin)
     reply = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what SHARPy prints is not the answer
+    os.dup2(2, 1)  # keep SHARPy's prints out of the answer
     try:
         answer = solve(request)
-    except Exception as error:  # whatever SHARPy raises is its answer
+    except Exception as error:  # report whatever SHARPy raises
         answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
     reply.write(json.dumps(answer) + "\n")
     reply.flush()
 
 
 def solve(request):
-    """Steady state by Newton's method, the load raised in steps where that fails, and the matrices there."""
+    """The steady state by Newton's method, with load steps if that fails, and the matrices there."""
     import sharpy.structure.utils.xbeamlib as xbeam  # pyright: ignore[reportMissingImports]
 
     beam = built(request)
@@ -52,13 +53,13 @@ def solve(request):
         elif step > 2.0**-6:
             step /= 2
         else:
-            return {"error": f"no steady state past {done:.0%} of the centrifugal load"}
+            return {"error": f"no steady state above {done:.0%} of the centrifugal load"}
     M, C, K, _ = assembled(xbeam, beam, state, request["omega"], settled)
     return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", settled))}
 
 
 def newton(xbeam, beam, state, omega, start, size):
-    """Coordinates where no force is left, or None."""
+    """Coordinates of the equilibrium; None if Newton's method does not converge."""
     q, before = start.copy(), np.inf
     for _ in range(STEPS):
         _, _, K, Q = assembled(xbeam, beam, state, omega, q)
@@ -74,7 +75,7 @@ def newton(xbeam, beam, state, omega, start, size):
 
 
 def assembled(xbeam, beam, state, omega, q):
-    """M, C, K and the forces left at ``q``."""
+    """M, C, K and the unbalanced forces at ``q``."""
     settings = {
         "dt": 1.0,
         "print_info": False,
@@ -95,10 +96,11 @@ def assembled(xbeam, beam, state, omega, q):
 
 
 def built(request):
-    """SHARPy's beam, its first node held.
+    """SHARPy's beam with its first node clamped.
 
-    Sections are turned as asked and not as SHARPy 2.4 turns them: it has tangents in the order of the nodes along an element
-    (``algebra.tangent_vector``) and takes them in its own, so that middle and end of a curved element are exchanged.
+    The sections' rotations are set to those of the request, because those of SHARPy 2.4 are wrong: it computes tangents
+    in the order of the nodes along an element (``algebra.tangent_vector``) but reads them in the order of the
+    connectivities, which exchanges middle and end of a curved element.
     """
     from sharpy.structure.models.beam import Beam  # pyright: ignore[reportMissingImports]
 
@@ -141,7 +143,7 @@ def across(turn):
 
 
 def packed(array):
-    """Doubles as text."""
+    """Encode doubles as base64 text."""
     return base64.b64encode(np.ascontiguousarray(array, dtype="<f8").tobytes()).decode()
 
 

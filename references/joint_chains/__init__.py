@@ -1,4 +1,5 @@
 """Core's discretisation as a chain of joints in Pinocchio, Drake and MuJoCo.
 
-These codes check the implementation: nodes, inertias and element stiffness are core's, kinematics and dynamics are theirs.
+These codes check the implementation only: nodes, inertias and element stiffness come from core, kinematics and dynamics
+from the code.
 """

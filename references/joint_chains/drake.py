@@ -1,9 +1,9 @@
 """Drake: core's own lumped discretisation as a chain of joints (see ``joint_chain``), differentiated automatically.
 
-R. Tedrake and the Drake Development Team, *Drake: Model-based design and verification for robotics*, 2019. Inverse dynamics in
-numbers that carry their derivatives gives the inertial forces' by coordinates and rates, to rounding. Drake's joint of six
-coordinates turns about z, y, x in this order and not, as the elements' strain, about x, y, z: six joints of one coordinate
-take its place, on links without mass.
+R. Tedrake and the Drake Development Team, *Drake: Model-based design and verification for robotics*, 2019. Inverse
+dynamics with automatic differentiation gives the derivatives of the inertial forces by coordinates and rates, to
+rounding. Drake's joint of six coordinates rotates about z, y, x in this order, but the strain of the elements about x,
+y, z. It is therefore replaced by six joints of one coordinate, on massless links.
 """
 
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ from .joint_chain import JointChain, bodies, check, places, rigid
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 80
-"""Elements: every number in the recursion over 6·elements joints carries 12·elements derivatives."""
+"""Largest number of elements: every number in the recursion over 6·elements joints has 12·elements derivatives."""
 
 SYMMETRY_TOLERANCE = 1e-9
-"""Relative departure from symmetry of Drake's derivatives that counts as rounding."""
+"""Largest relative asymmetry of Drake's derivatives attributed to rounding."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Bodies:
 
     Attributes:
         plant, context: in floating point.
-        auto, auto_context: the same in numbers with derivatives.
+        auto, auto_context: the same with automatic differentiation.
         bodies: (elements,) the last link of each node's joints.
-        position, velocity: (n,) where Drake has each coordinate and its rate; ``hub`` where it has the hub's rate.
+        position, velocity: (n,) Drake's index of each coordinate and its rate; ``hub``: of the hub's rate.
     """
 
     plant: Any
@@ -47,7 +47,7 @@ class Bodies:
     hub: int
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
-        """Force and derivatives by inverse dynamics at acceleration zero."""
+        """Force and derivatives by inverse dynamics with zero acceleration; see ``joint_chain.Plant``."""
         ad = _drake("autodiffutils")
         n, state = len(q), self._state(q, omega)
         seeds = np.zeros((len(state), 2 * n))
@@ -62,12 +62,12 @@ class Bodies:
         return ad.ExtractValue(force).ravel(), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
-        """(n, n), by composite rigid bodies."""
+        """Mass matrix (n, n), by composite rigid bodies."""
         self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
         return self.plant.CalcMassMatrix(self.context)[np.ix_(self.velocity, self.velocity)]
 
     def jacobian(self, q: Array) -> Array:
-        """(elements, 4, n)."""
+        """(elements, 4, n); see ``joint_chain.Plant``."""
         rates = _drake("multibody.tree").JacobianWrtVariable.kV
         self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
         world, origin = self.plant.world_frame(), np.zeros(3)
@@ -89,7 +89,7 @@ def _drake(module: str) -> Any:
 
 
 def plant(chain: Chain) -> Bodies:
-    """A hub turning about z, then six links on joints of one coordinate for every node but the clamped one."""
+    """A hub rotating about z, then six links on joints of one coordinate for every node except the clamped one."""
     tree, pose = _drake("multibody.tree"), _drake("math").RigidTransform
     made = _drake("multibody.plant").MultibodyPlant(0.0)
     made.mutable_gravity_field().set_gravity_vector(np.zeros(3))
@@ -120,7 +120,7 @@ def plant(chain: Chain) -> Bodies:
 
 
 def _inertia(lump: Array) -> Any:
-    """Drake's form of an inertia (6, 6), which no solid need have: moments over mass about the node, not checked."""
+    """Drake's form of an inertia (6, 6): moments over mass about the node. Not validated, as it need not be that of a solid."""
     tree = _drake("multibody.tree")
     mass, centre, moments = rigid(lump)
     xx, yy, zz, xy, xz, yz = (moments / mass)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]

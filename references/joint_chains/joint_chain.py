@@ -1,10 +1,10 @@
-"""Core's own lumped discretisation as a chain of joints, for any code that can move and differentiate one.
+"""Core's lumped discretisation as a chain of joints, for codes with kinematics, dynamics and their derivatives.
 
-Core gives the nodes, the bodies at them and the elements' stiffness, all as plain numbers (``half_end`` masses, stiffness
-linear in the parent body's frame: the discretisation of Park et al. 2010). Each body hangs on the one before by a
-translation and then rotations about x, y, z, whose coordinates are the element's six strains; kinematics, dynamics and the
-derivatives of the inertial forces are the other code's. Agreement to rounding shows that core solves its model, not that
-the model is right.
+Core gives the nodes, the bodies at them and the elements' stiffness as numbers (``half_end`` masses, stiffness linear
+in the parent body's frame: the discretisation of Park et al. 2010). Each body is joined to the previous one by a
+translation followed by rotations about x, y, z, whose coordinates are the element's six strains. The other code
+computes kinematics, dynamics and the derivatives of the inertial forces. Agreement to rounding shows that core solves
+its model correctly, not that the model is right.
 """
 
 import time
@@ -30,50 +30,51 @@ from ..protocol.quadratic import gyroscopic_modes
 Array = NDArray[np.float64]
 
 STEPS, SMALLEST_RAMP = 40, 2.0**-8
-"""Of Newton's method for the steady state; of the load, where Newton fails with all of it at once."""
+"""Largest number of Newton steps for the steady state; smallest load increment if Newton's method fails with the full load."""
 
 EPS = float(np.finfo(float).eps)
 
 STALL_FACTOR, CONVERGED_FACTOR = 10.0, 1e-4
-"""Times a bound of rounding's energy: Newton's steps may stop shrinking at the first, and go on to the second at most."""
+"""Factors on a bound of the rounding energy: below the first, Newton's steps may stall; below the second, they have
+converged."""
 
 MIN_REDUCTION = 1e-2
-"""Least factor between the energies of steps that converge."""
+"""Ratio of the energies of successive steps above which they have stalled."""
 
 RIGID = 1e-9
-"""Departure from a rigid body's inertia that is taken for rounding, of its largest entry."""
+"""Departure from a rigid body's inertia attributed to rounding, relative to its largest entry."""
 
 
 class Plant(Protocol):
-    """A chain in another code: a hub that turns about z, then a body on six joints for every node but the clamped one.
+    """A chain in another code: a hub that rotates about z, then a body on six joints for every node except the clamped one.
 
-    Coordinates q (n,) are all but the hub's: x, y, z, then about x, y, z, of one body after the other.
+    Coordinates q (n,) are all except the hub's: x, y, z, then about x, y, z, for each body in turn.
     """
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
-        """Generalised inertial force (n,) of steady turning, and its derivatives (n, n) by q and by q̇.
+        """Generalised inertial force (n,) in steady rotation at ``omega`` (rad/s), and its derivatives (n, n) by q and by q̇.
 
         Raises:
-            CodeError: by q they are not symmetric, or by q̇ not skew, as they must be.
+            CodeError: the derivative by q is not symmetric, or that by q̇ not skew.
         """
         ...
 
     def mass(self, q: Array) -> Array:
-        """M (n, n)."""
+        """Mass matrix (n, n)."""
         ...
 
     def jacobian(self, q: Array) -> Array:
-        """(e, 4, n) by q̇: velocity of each body's origin and rate of turning about x, in the hub's axes."""
+        """(e, 4, n) by q̇: velocity of each body's origin and rate of rotation about x, in the hub's axes."""
         ...
 
 
 def refusal(blade: Blade) -> str | None:
-    """Why a blade is not such a chain: its root moves, or an inertia is a rigid body's only roughly, as published ones are."""
+    """The reason if the root is not clamped, or an inertia is not exactly that of a rigid body, as with published data."""
     if not clamped(blade):
-        return "the root is not clamped: the chain begins at the hub"
+        return "the root is not clamped: the chain is clamped to the hub"
     for name, inertia in (("mass", blade.mass), ("tip_mass", blade.tip_mass[None])):
         if (far := _from_rigid(inertia)) > RIGID:
-            return f"{name} is not a rigid body's to {far:.1e}: one mass in all directions, antisymmetric in its offset"
+            return f"{name} is not a rigid body's to {far:.1e}: one mass in all directions, antisymmetric offset"
     return None
 
 
@@ -81,15 +82,14 @@ def refusal(blade: Blade) -> str | None:
 class JointChain:
     """A code that solves core's lumped discretisation as a chain of joints; see ``interface.Code``.
 
-
-    It takes every blade that core can discretise, coupled and curved ones too, if the root is clamped.
+    It supports every blade that core can discretise, including coupled and curved ones, if the root is clamped.
 
     Attributes:
         name, title, hint: see ``interface.Code``.
-        engine: the code's name in its declaration of independence.
-        distribution: the installed package whose version counts.
-        max_elements: more take too much of the code's time or memory.
-        plant: makes the chain in the code.
+        engine: the code's name in ``Independence``.
+        distribution: the installed package that gives the version.
+        max_elements: largest number of elements, limited by the code's time or memory.
+        plant: builds the chain in the code.
     """
 
     name: str
@@ -106,7 +106,7 @@ class JointChain:
 
     @property
     def independence(self) -> Independence:
-        """Equations of motion by the code, everything else by core."""
+        """Equations of motion from the code, everything else from core."""
         return Independence(self.engine, CORE, self.engine, sections=CORE)
 
     def version(self) -> str | None:
@@ -150,9 +150,9 @@ class JointChain:
 def rounding(
     mass: Array, elastic: Array, stiffness: Array, before: Array, frequencies: Array, vectors: NDArray[np.complex128]
 ) -> Array:
-    """(m,) relative error of the frequencies that the rounding of K and M brings: δω/ω = x*(δK − ω²δM)x / 2x*Kx.
+    """(m,) relative error of the frequencies due to rounding of K and M: δω/ω = x*(δK − ω²δM)x / 2x*Kx.
 
-    δK is bounded by what breaks the symmetry of the code's derivative and by what a step of rounding changes in it.
+    δK is bounded by the asymmetry of the code's derivative and by its change over a step of the size of rounding.
     """
     error = np.maximum(np.abs(stiffness - before), np.abs(stiffness - stiffness.T))
     error += EPS * (np.abs(elastic) + np.abs(stiffness))
@@ -163,10 +163,10 @@ def rounding(
 
 
 def places(chain: Chain) -> Array:
-    """(e, 4, 4) undeformed pose of each body in the frame of the one before, the first's in the hub's.
+    """(e, 4, 4) undeformed pose of each body in the frame of the previous one, of the first in the hub's.
 
-    A body's frame is that of the end of the element before it, along which its joints lie; at a kink the next element
-    begins turned from it.
+    A body's frame is that of the end of the element before it, and its joints are along its axes. At a kink the next
+    element begins rotated relative to it.
     """
     before = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
     return before @ chain.beams.undeformed
@@ -178,7 +178,7 @@ def bodies(chain: Chain) -> Array:
 
 
 def _from_rigid(inertia: Array) -> float:
-    """How far inertias (k, 6, 6) are from the form [[m, −m c×], [m c×, J]], of their largest entry."""
+    """Deviation of inertias (k, 6, 6) from the form [[m, −m c×], [m c×, J]], relative to their largest entry."""
     linear, offset = inertia[:, :3, :3], inertia[:, :3, 3:]
     wrong = [
         linear - inertia[:, :1, :1] * np.eye(3),
@@ -195,10 +195,10 @@ def rigid(lump: Array) -> tuple[float, Array, Array]:
 
 
 def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:
-    """Hold a code's derivatives by q and by q̇ to the symmetry they must have, relative ``rounding`` aside.
+    """Check the symmetry of a code's derivatives by q (symmetric) and by q̇ (skew), to the relative error ``rounding``.
 
     Raises:
-        CodeError: they have not.
+        CodeError: a derivative does not have its symmetry.
     """
     for name, matrix, sign in (("dtau_dq", stiffness, 1), ("dtau_dv", gyroscopic, -1)):
         wrong = np.abs(matrix - sign * matrix.T).max()
@@ -210,12 +210,12 @@ def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> No
 
 
 def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Array, Array]:
-    """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial ones.
+    """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial forces.
 
-    The load, Ω², is raised in steps only if all of it at once is too much for Newton's method.
+    The load, Ω², is raised in steps only if Newton's method fails with the full load.
 
     Returns:
-        The coordinates, and the derivative (n, n) of the inertial forces one step of rounding before.
+        The coordinates, and the derivative (n, n) of the inertial forces one step, of the size of rounding, earlier.
 
     Raises:
         CodeError: no steady state near the undeformed chain.
@@ -230,14 +230,15 @@ def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Ar
         elif step > SMALLEST_RAMP:
             step /= 2
         else:
-            raise CodeError(f"omega: {omega:g} rad/s: no steady state past {done:.0%} of Ω²; lower the speed")
+            raise CodeError(f"omega: {omega:g} rad/s: no steady state above {done:.0%} of Ω²; lower the speed")
     return q, stiffness
 
 
 def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) -> tuple[Array, Array] | None:
-    """Newton's method until the energy of its step, the square of the error in the energy norm, is that of rounding.
+    """Newton's method until the energy of its step, the square of the error in the energy norm, is at rounding; None if
+    it fails.
 
-    The inertial forces are sums over all bodies further out, so they are known to the rounding of the largest, at the
+    The inertial forces are sums over all bodies further out, so their rounding error is that of the largest, at the
     radius of the tip.
     """
     size = np.tile(np.repeat([chain.scale, 1.0], 3), len(q) // 6)

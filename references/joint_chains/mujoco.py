@@ -1,8 +1,9 @@
-"""MuJoCo: core's own lumped discretisation as a chain of joints (see ``joint_chain``), differentiated numerically.
+"""MuJoCo: core's lumped discretisation as a chain of joints (see ``joint_chain``), differentiated numerically.
 
 E. Todorov, T. Erez and Y. Tassa, "MuJoCo: A physics engine for model-based control", IEEE/RSJ IROS 2012, 5026–5033. Its
-recursive Newton–Euler algorithm gives the inertial forces. They are quadratic in the rates, so that a central difference by
-these has no error; by coordinates it is extrapolated (Richardson), with steps so wide that rounding stays at 1e-12.
+recursive Newton–Euler algorithm gives the inertial forces. They are quadratic in the rates, so central differences by
+the rates are exact. Differences by the coordinates use Richardson extrapolation, with steps so large that rounding
+stays at 1e-12.
 """
 
 from dataclasses import dataclass
@@ -19,14 +20,14 @@ from .joint_chain import JointChain, bodies, check, places, rigid
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 80
-"""Elements: differences take time that grows as their square, the eigenproblem as their cube."""
+"""Largest number of elements: the time of the differences grows as its square, of the eigenproblem as its cube."""
 
 STEP = 2e-3
-"""Of a coordinate, rad or elements' lengths, in a central difference; the truncation left is of fourth order in it."""
+"""Step of a coordinate in a central difference, rad or element lengths; the truncation error is of fourth order in it."""
 
 
 SYMMETRY_TOLERANCE = 1e-8
-"""Relative departure from symmetry of the differences that counts as rounding."""
+"""Largest relative asymmetry of the differences attributed to rounding."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Bodies:
 
     Attributes:
         model, data: MuJoCo's; coordinate 0 is the hub's.
-        step: (n,) of each coordinate in a difference.
+        step: (n,) of each coordinate in a difference, m or rad.
     """
 
     model: Any
@@ -43,7 +44,7 @@ class Bodies:
     step: Array
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
-        """Force and derivatives by differences."""
+        """Force and derivatives by differences; see ``joint_chain.Plant``."""
         n, turning = len(q), np.append(omega, np.zeros(len(q)))
         unit = np.eye(n)
         stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
@@ -62,7 +63,7 @@ class Bodies:
         return self._of_rates(turning), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
-        """(n, n), by composite rigid bodies."""
+        """Mass matrix (n, n), by composite rigid bodies."""
         self._place(q)
         mujoco = _mujoco()
         mujoco.mj_crb(self.model, self.data)
@@ -103,9 +104,10 @@ def _mujoco() -> Any:
 
 
 def plant(chain: Chain) -> Bodies:
-    """A hub turning about z, then a body on six joints for every node but the clamped one.
+    """A hub rotating about z, then a body on six joints for every node except the clamped one.
 
-    MuJoCo's compiler wants inertias that a solid can have; the chain's, which may be point masses, are set after it.
+    MuJoCo's compiler requires inertias of solids. The chain may have point masses, so its inertias are set after
+    compilation.
     """
     mujoco = _mujoco()
     spec = mujoco.MjSpec()

@@ -1,8 +1,8 @@
-"""Pinocchio: core's own lumped discretisation as a chain of joints (see ``joint_chain``).
+"""Pinocchio: core's lumped discretisation as a chain of joints (see ``joint_chain``).
 
-J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", Robotics: Science and Systems 14, 2018.
-One joint of six coordinates would be shorter, but the derivatives of Pinocchio's composite joint are wrong where it
-translates and rotates; hence four joints a body, and the symmetries are checked.
+J. Carpentier, N. Mansard, "Analytical derivatives of rigid body dynamics algorithms", Robotics: Science and Systems 14,
+2018. One joint of six coordinates would be simpler, but the derivatives of Pinocchio's composite joint are wrong if it
+translates and rotates. Each body therefore has four joints, and the symmetries are checked.
 """
 
 from dataclasses import dataclass
@@ -18,10 +18,10 @@ from .joint_chain import JointChain, bodies, check, places
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 60
-"""Elements: Pinocchio's workspace holds four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
+"""Largest number of elements: Pinocchio's workspace has four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
 
 SYMMETRY_TOLERANCE = 1e-9
-"""Relative departure from symmetry of Pinocchio's derivatives that counts as rounding."""
+"""Largest relative asymmetry of Pinocchio's derivatives attributed to rounding."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class PinocchioTree:
         return inertial(self.model, self.data, q, omega)
 
     def mass(self, q: Array) -> Array:
-        """(n, n), by composite rigid bodies."""
+        """Mass matrix (n, n), by composite rigid bodies."""
         return _pinocchio().crba(self.model, self.data, np.append(0.0, q))[1:, 1:]
 
     def jacobian(self, q: Array) -> Array:
@@ -50,7 +50,7 @@ class PinocchioTree:
 
 
 def tree(chain: Chain) -> PinocchioTree:
-    """The chain in Pinocchio."""
+    """Build the chain in Pinocchio."""
     model = plant(chain)
     return PinocchioTree(model, model.createData(), chain.elements)
 
@@ -62,7 +62,7 @@ def _pinocchio() -> Any:
 
 
 def plant(chain: Chain) -> Any:
-    """Pinocchio's model: a hub turning about z, then a body on four joints for every node but the clamped one."""
+    """Pinocchio's model: a hub rotating about z, then a body on four joints for every node except the clamped one."""
     pin = _pinocchio()
     model = pin.Model()
     model.gravity.setZero()
@@ -83,10 +83,10 @@ def _parameters(inertia: Array) -> Array:
 
 
 def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Array, Array]:
-    """Generalised inertial force (n,) of steady turning, and its derivatives (n, n) by q and by q̇, the hub's row left out.
+    """Generalised inertial force (n,) in steady rotation, and its derivatives (n, n) by q and by q̇, without the hub's row.
 
     Raises:
-        CodeError: by q it is not symmetric, or by q̇ not skew, as both must be.
+        CodeError: the derivative by q is not symmetric, or that by q̇ not skew.
     """
     pin = _pinocchio()
     q, v = np.append(0.0, q), np.append(omega, np.zeros_like(q))

@@ -1,4 +1,4 @@
-"""Mechanisms in Pinocchio: bodies and joints as described come in; modes about the steady state go out.
+"""Mechanisms in Pinocchio. Input: bodies and joints. Output: modes about the steady state.
 
-The spanning tree, the loop closure and the reduction are this package's own; nothing of core's solver is imported.
+The spanning tree, the loop closure and the reduction are implemented here; nothing of core's solver is imported.
 """

@@ -1,8 +1,8 @@
-"""Loop joints as equations between two frames: points that coincide, and products of directions that vanish.
+"""Loop joints as equations between two frames: coincident points, and products of directions that vanish.
 
-E. J. Haug, *Computer-Aided Kinematics and Dynamics of Mechanical Systems* (1989), ch. 9: the basic constraints dot-1 (two
-directions perpendicular), dot-2 (a direction perpendicular to the line between the points) and spherical. A product also
-vanishes where axes are opposed instead of aligned, so ``reversed_axes`` has to be asked as well.
+E. J. Haug, *Computer-Aided Kinematics and Dynamics of Mechanical Systems* (1989), ch. 9: the basic constraints dot-1
+(two directions perpendicular), dot-2 (a direction perpendicular to the line between the points) and spherical. A
+product also vanishes where axes are opposed instead of aligned, so check ``reversed_axes`` as well.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ ALIGNED = {"revolute": (Z,), "cylindrical": (Z,), "planar": (Z,), "prismatic": (
 
 
 def equations(joint: Joint, p: Frame, c: Frame) -> list[Function]:
-    """What vanishes where a joint is closed; ``p`` and ``c`` are its frames on the parent and on the child."""
+    """Functions that vanish where a joint is closed; ``p`` and ``c`` are its frames on the parent and the child."""
     point = [apart(p, c, axis) for axis in (X, Y, Z)]
     parallel = [between(p, axis, c, Z) for axis in (X, Y)]
     in_line = [along(p, axis, c) for axis in (X, Y)]

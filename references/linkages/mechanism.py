@@ -1,11 +1,11 @@
 """Mechanisms with closed loops in Pinocchio, reduced to the null space of the loops' equations.
 
-What is shared with core is the description: bodies, joints with their coordinates, springs, loads. The spanning tree, which
-may cut other joints, is read from it here (``spanning``); inertia forces and their derivatives are Pinocchio's; loops are
-closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body; and the equations of
-motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not by core's
-partition into independent and dependent coordinates. The reduction's derivative, the curvature of the constraints under their
-reactions, is analytical. The eigensolver is ``protocol.damped``, as of ``exudyn-loops``.
+Shared with core is only the description: bodies, joints with their coordinates, springs, loads. The spanning tree is
+built here (``spanning``) and may cut other joints. Pinocchio computes inertia forces and their derivatives. Loops are
+closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body. The equations of
+motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not
+by core's partition into independent and dependent coordinates. The curvature of the constraints under their reactions
+is analytical. The eigensolver is ``protocol.damped``, as for ``exudyn-loops``.
 """
 
 import time
@@ -30,13 +30,13 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 RANK = 1e-9
-"""Singular values of the constraint Jacobian below this fraction of the largest are redundant equations."""
+"""Singular values of the constraint Jacobian below this fraction of the largest belong to redundant equations."""
 
 PERIODIC = 1e-8
-"""Relative change of the reduced matrices with the azimuth that counts as rounding."""
+"""Largest relative change of the reduced matrices with the azimuth attributed to rounding."""
 
 AZIMUTH = 1.9
-"""rad, or m: how far the fastest motion goes on before the matrices are formed again."""
+"""Displacement of the fastest motion, rad or m, after which the matrices are compared."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ class Reduced:
     Attributes:
         names: (n) of the coordinates.
         q: (n,) their values.
-        free: (f,) which of them are not prescribed.
+        free: (f,) indices of those that are not prescribed.
         null: (f, i) orthonormal directions in which these can move.
-        M, C, K: (i, i) over these directions.
+        M, C, K: (i, i) in these directions.
     """
 
     names: tuple[str, ...]
@@ -83,20 +83,20 @@ class PinocchioMechanism:
             return None
 
     def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
-        """A reason if there are beams, accelerations, or springs or motions on a joint that cannot but close a loop."""
+        """A reason if there are beams, accelerations, or springs or motions on a joint that must close a loop."""
         if mechanism.beams:
-            return "beams or bushings: it has rigid bodies only"
+            return "beams or bushings: this adapter supports rigid bodies only"
         if any(m.law or m.acceleration for m in mechanism.motions):
-            return "an accelerating motion: it has no steady state"
+            return "an accelerating motion: no steady state"
         if odd := next((j for j in mechanism.joints if j.kind == "elastic"), None):
-            return f"joint {odd.name!r}: elastic: it has rigid bodies only"
+            return f"joint {odd.name!r}: elastic: this adapter supports rigid bodies only"
         try:
             names = spanning(mechanism).names
         except ValueError as error:
             return str(error)
         for what in (*mechanism.motions, *mechanism.coordinate_springs):
             if what.coordinate not in names:
-                return f"{what.coordinate}: every joint of its loop has a spring or a motion: one has to close the loop"
+                return f"{what.coordinate}: every joint of its loop has a spring or a motion: leave one without"
         return None
 
     def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
@@ -128,14 +128,14 @@ def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:
         if m.position is not None:
             q[names.index(m.coordinate)] = m.position
     moved = [names.index(m.coordinate) for m in mechanism.motions]
-    q = _settle(plant, q, np.setdiff1d(np.arange(len(q)), moved))
+    q = _steady_state(plant, q, np.setdiff1d(np.arange(len(q)), moved))
     prescribed = [names.index(m.coordinate) for m in mechanism.motions if m.prescribed]
     free = np.setdiff1d(np.arange(len(q)), prescribed)
     here = plant.at(q)
     if here.reversed:
-        raise CodeError(f"joint {here.reversed!r} closes with its axes opposed: give a better guess")
+        raise CodeError(f"joint {here.reversed!r} closes with opposed axes: give a better guess")
     if np.abs(here.J @ plant.v).max(initial=0.0) > RANK * np.abs(plant.v).max(initial=0.0):
-        raise CodeError("the loops move in the steady state: only mechanisms that turn as a whole are linearised here")
+        raise CodeError("the loops move in the steady state: only mechanisms that rotate as a whole are supported")
     null = null_space(here.J[:, free])
     out = Reduced(names, q, free, null, *reduced(here, free, null))
     _check_constant(plant, out)
@@ -143,7 +143,7 @@ def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:
 
 
 def reduced(here: Tangent, free: Index, null: Array) -> tuple[Array, Array, Array]:
-    """M, C, K (i, i) along directions (f, i) of the free coordinates, the reactions' own stiffness in K."""
+    """M, C, K (i, i) along directions (f, i) of the free coordinates; K includes the stiffness of the reactions."""
     multipliers = _least_squares(here.J[:, free].T, here.force[free])
     pick = np.ix_(free, free)
     M, C, K = (null.T @ a[pick] @ null for a in (here.M, here.C, here.K + here.curvature(multipliers)))
@@ -151,17 +151,17 @@ def reduced(here: Tangent, free: Index, null: Array) -> tuple[Array, Array, Arra
 
 
 def _least_squares(A: Array, b: Array) -> Array:
-    """The least x (n,) that minimises |A x − b|; either size may be 0."""
+    """The x (n,) of least norm that minimises |A x − b|; either size may be 0."""
     return np.asarray(np.linalg.lstsq(A, b, rcond=RANK)[0], np.float64) if A.size else np.zeros(A.shape[1])
 
 
 def null_space(J: Array) -> Array:
-    """(f, i) orthonormal basis of the directions that no equation (c, f) holds."""
+    """(f, i) orthonormal basis of the null space of the equations J (c, f)."""
     return scipy.linalg.null_space(J, rcond=RANK) if len(J) else np.eye(J.shape[1])
 
 
-def _settle(plant: Plant, q: Array, free: Index) -> Array:
-    """Newton's method: the loops closed, the forces along what they leave free balanced.
+def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
+    """Newton's method: close the loops and balance the forces in their null space.
 
     Raises:
         CodeError: it does not converge.
@@ -183,25 +183,25 @@ def _settle(plant: Plant, q: Array, free: Index) -> Array:
             _check_balance(plant, q, free)
             return q
         before = change
-    raise CodeError("no steady state near the guess: give a better one")
+    raise CodeError("no steady state near the guess: give a better guess")
 
 
 def _least(K: Array, force: Array) -> Array:
-    """The least step that balances the forces, each direction in its own stiffness."""
+    """The step of least norm that balances the forces, each direction scaled by its stiffness."""
     size = np.sqrt(np.maximum(np.abs(K).max(axis=1, initial=0.0), np.finfo(float).tiny))
     return np.linalg.lstsq(K / size / size[:, None], force / size, rcond=1e-12)[0] / size
 
 
 def _check_balance(plant: Plant, q: Array, free: Index) -> None:
-    """Compare the forces left with the stiffness.
+    """Check that the unbalanced forces are small compared with the stiffness.
 
     Raises:
-        CodeError: there is no balance, as of a mass that falls freely.
+        CodeError: they are not, as for a mass in free fall.
     """
     here = plant.at(q)
     left = np.abs(null_space(here.J[:, free]).T @ here.force[free]).max(initial=0.0)
     if left > 1e-8 * np.abs(here.force[free]).max(initial=0.0) + 1e-12 * np.abs(here.K).max(initial=0.0):
-        raise CodeError("no steady state near the guess: forces remain that nothing balances")
+        raise CodeError("no steady state near the guess: unbalanced forces remain")
 
 
 def _check_constant(plant: Plant, found: Reduced) -> None:
@@ -221,7 +221,7 @@ def _check_constant(plant: Plant, found: Reduced) -> None:
     size = max(float(np.abs(s * a).max()) for s, a in zip(scale, here, strict=True))
     change = max(float(np.abs(s * (a - b)).max()) for s, a, b in zip(scale, here, there, strict=True))
     if change > PERIODIC * size or max(open_, moved) > PERIODIC:
-        raise CodeError("periodic: its matrices change with the azimuth, and it has no steady modes")
+        raise CodeError("periodic: the matrices change with the azimuth; this adapter needs constant ones")
 
 
 CODE = PinocchioMechanism()

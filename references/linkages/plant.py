@@ -1,6 +1,6 @@
-"""A mechanism's tree in Pinocchio: forces that are out of balance, and their derivatives, with springs and loads.
+"""A mechanism's tree in Pinocchio: unbalanced forces and their derivatives, including springs and loads.
 
-Inertia and gyroscopic forces, gravity and their analytical derivatives are Pinocchio's (J. Carpentier, N. Mansard,
+Pinocchio computes inertia and gyroscopic forces, gravity and their analytical derivatives (J. Carpentier, N. Mansard,
 "Analytical derivatives of rigid body dynamics algorithms", Robotics: Science and Systems 14, 2018).
 """
 
@@ -20,13 +20,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tangent:
-    """The tree at one configuration, all over its n coordinates.
+    """The tree at one configuration, in its n coordinates.
 
     Attributes:
-        force: (n,) what the loops' reactions have to balance.
+        force: (n,) to be balanced by the reactions of the loops.
         M, C, K: (n, n) its derivatives by acceleration, velocity and coordinate.
         loops: (c) the equations of the loops.
-        reversed: a loop joint whose axes are opposed; empty if there is none.
+        reversed: name of a loop joint whose axes are opposed; empty if there is none.
     """
 
     force: Array
@@ -82,7 +82,7 @@ class Plant:
             self.v[self.tree.names.index(m.coordinate)] = m.rate
 
     def _add_frames(self) -> None:
-        """Frames of the loop joints, then of the springs, then of the loads, two of each."""
+        """Add frames of the loop joints, then of the springs, then of the loads, two each."""
         ends = [(b, at) for j in self.tree.loops for b, at in ((j.parent, j.at_parent), (j.child, j.at_child))]
         points = [(b, p) for s in self.mechanism.springs for b, p in ((s.body_a, s.point_a), (s.body_b, s.point_b))]
         points += [(b, np.zeros(3)) for f in self.mechanism.loads for b in (f.axes_of, f.body)]
@@ -121,7 +121,7 @@ class Plant:
             K += tension * line.hessian + np.outer(line.gradient, s.stiffness * line.gradient + s.damping * turn)
             C += s.damping * np.outer(line.gradient, line.gradient)
         for load, (axes, point) in zip(m.loads, pairs[second:], strict=True):
-            pushed = axes.R @ np.asarray(load.force, float)  # its axes turn by prescribed coordinates alone
+            pushed = axes.R @ np.asarray(load.force, float)  # its axes rotate by prescribed coordinates only
             force -= point.V.T @ pushed
             K -= by(point.V1, pushed)
         closing = list(zip(self.tree.loops, pairs[:first], strict=True))
@@ -136,4 +136,4 @@ def _inertia(pin: Any, about_origin: Array) -> Any:
     centre = np.array([about_origin[1, 5], about_origin[2, 3], about_origin[0, 4]]) / (mass or 1.0)
     cross = np.array([[0, -centre[2], centre[1]], [centre[2], 0, -centre[0]], [-centre[1], centre[0], 0]])
     moments, axes = np.linalg.eigh(about_origin[3:, 3:] + mass * cross @ cross)
-    return pin.Inertia(mass, centre, (axes * np.maximum(moments, 0.0)) @ axes.T)  # rounding may leave a moment below 0
+    return pin.Inertia(mass, centre, (axes * np.maximum(moments, 0.0)) @ axes.T)  # rounding may make a moment negative

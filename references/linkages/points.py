@@ -1,8 +1,9 @@
-"""Frames on the links of a Pinocchio model, and functions of two of them with gradient and Hessian over the coordinates.
+"""Frames on the links of a Pinocchio model, and functions of two of them with gradient and Hessian over the
+coordinates.
 
-A loop that closes, the length of a spring and the work of a load are such functions. Their Hessians come from Pinocchio's
-time variation of a frame's Jacobian, which is linear in the velocity: at the k-th unit velocity it is the Jacobian's
-derivative by the k-th coordinate. Nothing is differenced.
+The closure of a loop, the length of a spring and the work of a load are such functions. Their Hessians follow from
+Pinocchio's time variation of a frame's Jacobian, which is linear in the velocity: at the k-th unit velocity it is the
+derivative of the Jacobian by the k-th coordinate. No finite differences are used.
 """
 
 from collections.abc import Sequence
@@ -17,10 +18,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame at one configuration of n coordinates, all in the ground's axes.
+    """One frame at one configuration of n coordinates, in the ground's axes.
 
     Attributes:
-        r: (3,) its origin.
+        r: (3,) its origin, m.
         R: (3, 3) its axes, in columns.
         V, W: (3, n) Jacobians of the origin's velocity and of the angular velocity.
         V1, W1: (n, 3, n) their derivatives by each coordinate.
@@ -57,7 +58,9 @@ def frames(pin: Any, model: Any, data: Any, q: Array, ids: Sequence[int]) -> lis
     pin.updateFramePlacements(model, data)
     out = []
     for place, i in enumerate(ids):
-        J = np.reshape(pin.getFrameJacobian(model, data, i, axes), (6, n)).copy()  # of one coordinate it has one axis
+        J = np.reshape(
+            pin.getFrameJacobian(model, data, i, axes), (6, n)
+        ).copy()  # with one coordinate it is one-dimensional
         pose, dJ = data.oMf[i], slopes[:, place]
         out.append(Frame(np.array(pose.translation), np.array(pose.rotation), J[:3], J[3:], dJ[:, :3], dJ[:, 3:]))
     return out
@@ -87,7 +90,7 @@ def along(p: Frame, a: Array, c: Frame) -> Function:
 
 
 def distance(p: Frame, c: Frame) -> Function:
-    """Length of the line from origin p to origin c; the two must be apart."""
+    """Distance between origins p and c, which must not coincide."""
     d, V = c.r - p.r, c.V - p.V
     length = float(np.linalg.norm(d))
     u = d / length
@@ -96,5 +99,5 @@ def distance(p: Frame, c: Frame) -> Function:
 
 
 def by(slopes: Array, vector: Array) -> Array:
-    """(n, n) from derivatives (n, 3, n) of a Jacobian: of ``J.T @ vector``, in columns by coordinate."""
+    """(n, n) derivative of ``J.T @ vector`` from the derivatives (n, 3, n) of a Jacobian J; column k by coordinate k."""
     return np.einsum("kij,i->jk", slopes, vector)

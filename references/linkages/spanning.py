@@ -1,7 +1,7 @@
-"""A mechanism's spanning tree, read from its bodies and joints independently of core: one link for each coordinate.
+"""A mechanism's spanning tree, built from its bodies and joints independently of core: one link per coordinate.
 
-Joints that have a motion or a spring belong to the tree, so that these act on its coordinates; those marked as cut are left
-out first. Which other joints close the loops is immaterial.
+Joints with a motion or a spring belong to the tree, so that these act on its coordinates; joints marked as cut are left
+out first. The choice of the other joints that close the loops is immaterial.
 """
 
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ AXES = {
     "planar": "x y rz",
     "free": "x y z rx ry rz",
 }
-"""Coordinates of each kind of joint in their order from parent to child: along (x, y, z) or about (rx, ry, rz) an axis."""
+"""Coordinates of each kind of joint, in order from parent to child: along (x, y, z) or about (rx, ry, rz) an axis."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ class Link:
     """One coordinate.
 
     Attributes:
-        name: the coordinate's, ``flap.rz``.
-        before: index of the link it hangs on, −1 for the ground.
+        name: of the coordinate, e.g. ``flap.rz``.
+        before: index of its parent link, −1 for the ground.
         place: (4, 4) pose of its axes in that link.
-        axis: (3,) unit vector along or about which it moves; reversed where the joint is laid from child to parent.
+        axis: (3,) unit vector along or about which it moves; reversed if the joint is traversed from child to parent.
         turns: whether it rotates.
     """
 
@@ -53,8 +53,8 @@ class Spanning:
     """The tree.
 
     Attributes:
-        links: (n) one for each coordinate, each followed by all that hang on it: Pinocchio's matrices are wrong otherwise.
-        bodies: name → the link it rides on (−1: the ground) and its pose (4, 4) there.
+        links: (n) one per coordinate, each followed by its subtree: Pinocchio's matrices are wrong otherwise.
+        bodies: name → index of its link (−1: the ground) and its pose (4, 4) on the link.
         loops: joints that are not in the tree.
     """
 
@@ -64,15 +64,15 @@ class Spanning:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the coordinates."""
+        """Names of the coordinates."""
         return tuple(link.name for link in self.links)
 
 
 def spanning(mechanism: Mechanism) -> Spanning:
-    """The tree that keeps the joints with motions and springs, and leaves out those marked as cut, as far as possible.
+    """Build the tree, with the joints that have motions or springs and, as far as possible, without those marked as cut.
 
     Raises:
-        ValueError: a body that no joint reaches, or a kind of joint that is not known here.
+        ValueError: a body is not connected to the ground, or the kind of a joint is unknown.
     """
     needed = {m.coordinate.rpartition(".")[0] for m in mechanism.motions}
     needed |= {s.coordinate.rpartition(".")[0] for s in mechanism.coordinate_springs}
@@ -81,12 +81,12 @@ def spanning(mechanism: Mechanism) -> Spanning:
     waiting = list(mechanism.joints)
     for joint in waiting:
         if joint.kind not in AXES:
-            raise ValueError(f"joint {joint.name!r}: kind {joint.kind!r} is not known here")
+            raise ValueError(f"joint {joint.name!r}: kind {joint.kind!r} is not supported by this adapter")
     while len(bodies) <= len(mechanism.bodies):
         within = [j for j in waiting if (j.parent in bodies) != (j.child in bodies)]
         if not within:
             lost = next(b.name for b in mechanism.bodies if b.name not in bodies)
-            raise ValueError(f"body {lost!r}: no joint leads to it from the ground")
+            raise ValueError(f"body {lost!r}: no joint connects it to the ground")
         joint = min(within, key=lambda j: (j.name not in needed, j.cut))
         waiting.remove(joint)
         _lay(joint, links, bodies)
@@ -94,7 +94,7 @@ def spanning(mechanism: Mechanism) -> Spanning:
 
 
 def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops: tuple[Joint, ...]) -> Spanning:
-    """The tree with each link followed by all that hang on it."""
+    """The tree with each link followed by its subtree."""
     order: list[int] = []
     ahead = [-1]
     while ahead:
@@ -107,7 +107,7 @@ def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops:
 
 
 def _lay(joint: Joint, links: list[Link], bodies: dict[str, tuple[int, Array]]) -> None:
-    """Add a joint's links from the end that is placed, and place its other end."""
+    """Add a joint's links from the end in the tree, and place the body at its other end."""
     forward = joint.parent in bodies
     near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
     before, pose = bodies[joint.parent if forward else joint.child]

@@ -1,7 +1,6 @@
 """Validate the replies of foreign codes: types, lengths, finite, ascending and plausible values.
 
-The checks run in this process and do not rely on the other one. A violation raises ``NonsenseError``, which quotes the
-value.
+The checks run in this process and do not rely on the other one. A violation raises ``NonsenseError``, which quotes the value.
 """
 
 import json

@@ -28,8 +28,7 @@ def serve(answer: Any) -> None:
 
 
 def answers_pipe() -> TextIO:
-    """Reserve standard output for answers: redirect prints of the code to standard error, and its input to the null
-    device."""
+    """Reserve standard output for answers: redirect prints of the code to standard error, and its input to the null device."""
     pipe = os.fdopen(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, HIGH), "w", encoding="utf-8")
     os.dup2(2, 1)
     nothing = os.open(os.devnull, os.O_RDONLY)

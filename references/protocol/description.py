@@ -1,8 +1,7 @@
 """Descriptions of codes as plain data, which is all that the rest of the program uses.
 
 A code is imported in a separate process and its declarations are validated; if that fails, the description has a
-``failure``. The codes of the package share one process; a code that crashes it is described again alone, as are those
-after it.
+``failure``. The codes of the package share one process; a code that crashes it is described again alone, as are those after it.
 """
 
 import inspect

@@ -72,8 +72,7 @@ class Failure:
 
 
 def converse(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
-    """Send a request to a module in a separate process; return its lines, at most ``expected``, and why there are no
-    more.
+    """Send a request to a module in a separate process; return its lines, at most ``expected``, and why there are no more.
 
     Args:
         module: has ``main()``, which writes an empty line when it is ready and then its answers. Its process, and all

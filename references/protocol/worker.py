@@ -1,13 +1,11 @@
-"""Run codes that solve blades in separate processes. ``process`` enforces the limits, ``boundary`` validates the
-answers.
+"""Run codes that solve blades in separate processes. ``process`` enforces the limits, ``boundary`` validates the answers.
 
 The process reads one request ::
 
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
 
 imports the code, checks its version and ``unsupported``, and writes one line per run as soon as it is solved:
-``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished runs are
-kept.
+``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished runs are kept.
 """
 
 import json
@@ -55,8 +53,7 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> lis
 def exchange(
     module: str, request: bytes, count: int, limits: Limits, made: Callable[[int, Any], T]
 ) -> list[T | Failure]:
-    """Send a request; return ``count`` answers, each validated by ``made(number, data)``, or failures in their
-    place."""
+    """Send a request; return ``count`` answers, each validated by ``made(number, data)``, or failures in their place."""
     lines, ended = converse(module, request, count, limits)
     out: list[T | Failure] = []
     for number, line in enumerate(lines):

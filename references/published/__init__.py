@@ -1,8 +1,8 @@
-"""Printed tables as data, one TOML file a source, every number as it is printed.
+"""Published tables as data, one TOML file per source, with every number as printed.
 
-A number is kept as its digits, so that its rounding is known: half a unit of the last one. A datum that exact computation
-contradicts by more than that stays, marked ``suspect``, with the evidence. ``provenance`` says where the digits were read:
-a reprint is no proof of what the original prints.
+Numbers are stored as their digits, so that the rounding is known: half a unit of the last digit. A datum that exact
+computation contradicts by more than its rounding stays in the table, marked ``suspect``, with the evidence.
+``provenance`` gives the document that was read, since a reprint may differ from the original.
 """
 
 import tomllib
@@ -16,7 +16,7 @@ from msgspec import Meta, Struct
 from ...core.effects import Effects
 
 COARSEST = 0.02
-"""Largest relative target that a table may be given: twenty times the paper's 0.1 %."""
+"""Largest relative target allowed for a table: twenty times the paper's 0.1 %."""
 
 Family = Literal["chordwise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
@@ -24,7 +24,7 @@ Unit = Literal["rad/s", "rpm, Hz", "dimensionless"]
 
 
 class TableError(ValueError):
-    """A table that cannot be had: the message names the file and field, the likely cause, and the remedy."""
+    """Unknown or invalid table; the message gives the file, field, likely cause and remedy."""
 
 
 class Datum(Struct, frozen=True, forbid_unknown_fields=True):
@@ -50,7 +50,7 @@ class Datum(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def half_unit(self) -> float:
-        """Half a unit of the last digit, in the table's unit: the most that rounding can have moved the value."""
+        """Half a unit of the last digit, in the table's unit: the largest rounding error."""
         return 0.5 * 10.0 ** -len(self.printed.partition(".")[2])
 
 
@@ -64,15 +64,12 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
     lacks: Annotated[tuple[Effect, ...], Meta(description="effects that the authors' model leaves out")]
     data: Annotated[tuple[Datum, ...], Meta(min_length=1)]
     hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length; of a uniform beam")] = 0.0
-    blade: Annotated[str, Meta(description="the case's blade it is about, where that is no uniform beam")] = ""
+    blade: Annotated[str, Meta(description="blade of the case, if it is not a uniform beam")] = ""
     target: (
-        Annotated[
-            float, Meta(gt=0, le=COARSEST, description="what the numbers can be held to, where coarser than the case's")
-        ]
-        | None
+        Annotated[float, Meta(gt=0, le=COARSEST, description="target of the numbers, if larger than the case's")] | None
     ) = None
-    grounds: Annotated[str, Meta(description="of such a target")] = ""
-    theory: Annotated[str, Meta(description="that a code has too, as its ``Independence`` names it")] = ""
+    grounds: Annotated[str, Meta(description="reason for such a target")] = ""
+    theory: Annotated[str, Meta(description="theory shared with a code, as named in ``Independence``")] = ""
     slenderness: Annotated[float, Meta(gt=0, description="α = √(A L² / I); none: inextensible")] | None = None
     tip_mass_ratio: Annotated[float, Meta(ge=0, description="μ, tip mass over the beam's mass")] = 0.0
     height_taper: Annotated[
@@ -96,7 +93,7 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Table(Struct, frozen=True, forbid_unknown_fields=True):
-    """All that was taken from one source."""
+    """All data from one source."""
 
     citation: str
     beam: Annotated[str, Meta(description="what vibrates")]
@@ -132,7 +129,7 @@ def parse(text: str, path: str) -> Table:
     """The table in a TOML document; ``path`` is for messages.
 
     Raises:
-        TableError: broken TOML, an unknown or missing key, a wrong type, a number that is none.
+        TableError: invalid TOML, an unknown or missing key, a wrong type, or an invalid number.
     """
     try:
         return msgspec.convert(tomllib.loads(text), Table)

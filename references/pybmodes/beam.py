@@ -1,15 +1,18 @@
-"""pyBModes: the finite elements of NREL's BModes again in Python, driven as its user drives it, by an input file.
+"""pyBModes: NREL's BModes finite elements in Python, run through its input file.
 
-A linear Euler–Bernoulli beam in axes that turn with the rotor, with the tension of the undeformed blade (G. S. Bir, "User's
-Guide to BModes", NREL/TP-500-39133, 2005; pyBModes: J. H. Seo, Inha University). Elements have the properties of their middle,
-except the twist, which varies: of second order where a blade tapers, of fourth where it does not.
+A linear Euler–Bernoulli beam in axes that rotate with the rotor, with the tension of the undeformed blade (G. S. Bir,
+"User's Guide to BModes", NREL/TP-500-39133, 2005; pyBModes: J. H. Seo, Inha University). Elements have the properties
+at their middle, except the twist, which varies: second order for a tapered blade, fourth order for a uniform one.
 
-What it leaves out, as its element matrices and results show: the gyroscopic term; the steady stretch; the inertia of the
-sections in bending, though not in torsion; displacements along the blade in what it returns, and with them the axial modes
-(whose spin softening it lacks too); precone and pitch, which its input file has and nothing reads. Pitch is twist here.
-A mass at the tip is in its mass matrix but neither pulls the blade nor is softened by the rotation, hence refused. So are mass
-centres off the axis, for which its input file has a column: right at rest, but turning it leaves out the steady moment that
-they make, up to 2.7 % in ``defects/pybmodes_mass_centre.py``; a shear centre off the axis is half applied, at rest too
+Its element matrices and results show that it leaves out the gyroscopic term; the steady stretch; the inertia of the
+sections in bending, but not in torsion; displacements along the blade in its results, and with them the axial modes
+(whose spin softening it also lacks); precone and pitch, which are in its input file but are not used. This adapter
+includes pitch in the twist.
+
+Blades with a tip mass are declined, because it is added to the mass matrix only: it causes no tension and no spin
+softening. Blades with mass centres off the axis are declined too. The input file has a column for them, which is
+correct at zero speed, but in rotation their steady moment is missing, up to 2.7 % in
+``defects/pybmodes_mass_centre.py``. A shear centre off the axis is only partly applied, even at zero speed
 (``defects/pybmodes_shear_centre.py``).
 """
 
@@ -33,10 +36,11 @@ from ..theories.grading import element_ends
 Array = NDArray[np.float64]
 
 SECTIONS = 20
-"""Intervals between stations that the coarsest level can follow without more elements."""
+"""Largest number of intervals between stations for which the coarsest level needs no more elements."""
 
 ZERO_SHAPE = 1e-9
-"""Largest lateral motion, of a vector of norm one, that counts as none: an axial mode, of which pyBModes shows nothing."""
+"""Largest lateral motion, of a vector of norm one, that counts as zero: an axial mode, whose motion pyBModes does not
+return."""
 
 MAIN = """==== pyBModes main input file ====
 {name}
@@ -101,27 +105,25 @@ class PyBModes:
             return None
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if pyBModes's beam or its input file has no place for something of this blade's."""
+        """A reason if pyBModes's beam or its input file does not support a property of the blade."""
         if coupled(blade):
             return (
-                "sections couple (off-diagonal entries): of mass centres off the axis pyBModes leaves out the steady moment "
-                "when turning, shear centres it applies by half, and other couplings its input file has none of"
+                "sections couple (off-diagonal entries): for mass centres off the axis pyBModes omits the steady moment in "
+                "rotation, shear centres are only partly applied, and its input file has no other couplings"
             )
         if not straight(blade):
             return "prebend or sweep: the elements lie on a straight line"
         if not clamped(blade):
             return "the root is not clamped: the input file has no springs for a blade's root"
         if blade.precone:
-            return f"precone = {blade.precone:g} rad: the input file has it, but pyBModes does nothing with it"
+            return f"precone = {blade.precone:g} rad: it is in the input file, but pyBModes does not use it"
         if blade.tip_mass.any():
-            return (
-                "tip_mass: pyBModes adds it to the mass matrix only, so that turning it neither pulls nor spin-softens"
-            )
+            return "tip_mass: pyBModes adds it to the mass matrix only, without tension and spin softening"
         section = sample(blade, blade.stations)
         if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
             return "mass differs with direction: the section table has one mass per length"
         if np.isfinite([section.GA_y, section.GA_z]).any():
-            return "finite shear stiffness: the elements are shear-free (Euler–Bernoulli)"
+            return "finite shear stiffness: the elements are rigid in shear (Euler–Bernoulli)"
         for name in ("EA", "GJ", "EI_y", "EI_z"):
             if np.isinf(getattr(section, name)).any():
                 return f"{name} is infinite: the section table needs it finite"
@@ -130,8 +132,8 @@ class PyBModes:
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes of bending and torsion; see ``interface.Code``.
 
-        A blade of more than ``SECTIONS`` intervals between kinks has more elements in proportion (see ``grading``), which
-        ``Modes.elements`` says.
+        A blade with more than ``SECTIONS`` intervals between kinks has proportionally more elements (see ``grading``);
+        ``Modes.elements`` gives the number.
 
         Raises:
             CodeError: an unsupported blade, or a stiffness that is not positive at this speed.
@@ -153,10 +155,10 @@ def _pybmodes() -> Any:
 
 
 def _write(folder: Path, blade: Blade, omega: float, s: Array, count: int) -> Path:
-    """The input file; its section table lies beside it.
+    """Write the input file, and the section table in the same folder; return the path of the input file.
 
-    Their axes: v and w as our y and z, twist counted the other way. Polar inertia is the sum of a section's two, and its
-    spin softening goes by their difference; they are chosen so that both are the blade's.
+    pyBModes's axes: v and w are y and z here, and twist has the opposite sign. Its polar inertia is the sum of a
+    section's two inertias, and spin softening depends on their difference; they are chosen to match both values of the blade.
     """
     at = sample(blade, blade.stations)
     difference = at.I_z - at.I_y
@@ -187,19 +189,19 @@ def _write(folder: Path, blade: Blade, omega: float, s: Array, count: int) -> Pa
 
 
 def _most(blade: Blade, elements: int) -> int:
-    """How many modes pyBModes can be asked for: nine an element; past half of them it factorises the mass matrix.
+    """The largest number of modes pyBModes can compute: nine per element; above half of them it factorises the mass matrix.
 
-    Where sections have no polar inertia it cannot, so that of the upper half none are to be had.
+    Without polar inertia the mass matrix is singular, so only the lower half is available.
     """
     polar = (blade.mass[:, 3, 3] > 0).any()
     return 9 * elements if polar else 9 * elements // 2
 
 
 def _moving(rotor: Any, blade: Blade, count: int, most: int) -> tuple[Array, NDArray[np.complex128]]:
-    """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes that move sideways or twist.
+    """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
 
     Raises:
-        CodeError: if one of pyBModes's eigenvalues is not positive (it reports zero for those).
+        CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
     """
     asked, moving = min(count, most), []
     while True:
@@ -220,7 +222,7 @@ def _moves(shape: Any) -> bool:
 
 
 def _shape(shape: Any, blade: Blade) -> Array:
-    """(21, 4) at the common stations, by the element's own cubics in bending; displacements come in tip radii."""
+    """(21, 4) at the common stations, by the element's cubics in bending; pyBModes's displacements are in tip radii."""
     radius = blade.hub_radius + blade.length
     s, at = shape.span_loc * blade.length, STATIONS * blade.length
     out = np.zeros((len(at), 4))

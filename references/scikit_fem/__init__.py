@@ -1,1 +1,1 @@
-"""scikit-fem: a prestressed rotating beam by finite elements. A blade comes in; modes go out."""
+"""scikit-fem: a prestressed rotating beam by finite elements. Input: a blade. Output: its modes."""

@@ -1,7 +1,7 @@
-"""scikit-fem: a prestressed rotating beam by finite elements in the textbook's sense, sparse and of fourth order.
+"""scikit-fem: a prestressed rotating beam by standard finite elements, sparse and of fourth order.
 
-Bending fields are cubic (Hermite), stretch and torsion quadratic; the weak forms and their derivation are in
-``scikit_fem_forms``. First the steady stretch and twist, then the matrices about them. Nothing is shared with core.
+Bending fields are cubic (Hermite), stretch and torsion quadratic; ``forms`` contains the weak forms and their
+derivation. The steady stretch and twist are computed first, then the matrices about them. Nothing is shared with core.
 scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
 """
 
@@ -26,14 +26,14 @@ from . import forms as forms
 Array = NDArray[np.float64]
 
 COARSEST = 20
-"""Elements of the coarsest level, and how many intervals between stations it can follow without more."""
+"""Elements of the coarsest level, and the largest number of intervals between stations that needs no more."""
 
 QUADRATURE = 9
-"""Degree integrated exactly: products of cubics with linear properties, and two to spare for twist and stretch."""
+"""Degree integrated exactly: products of cubics with linear properties, and two more for twist and stretch."""
 
 
 NEWTON = 30
-"""Steps allowed for the steady twist."""
+"""Largest number of Newton steps for the steady twist."""
 
 
 class ScikitFemBeam:
@@ -59,18 +59,20 @@ class ScikitFemBeam:
         """A reason if the blade's steady state is not straight, its sections couple or shear, or a strain is rigid."""
         if coupled(blade):
             return (
-                "sections couple (off-diagonal entries): the weak form has principal axes through the reference curve"
+                "sections couple (off-diagonal entries): the weak form needs principal axes through the reference curve"
             )
         if not straight(blade):
             return "prebend or sweep: the weak form is linearised about a straight steady state"
         if blade.precone:
-            return f"precone = {blade.precone:g} rad: it bends the blade, and the weak form is about a straight steady state"
+            return (
+                f"precone = {blade.precone:g} rad: it bends the blade, and the weak form needs a straight steady state"
+            )
         if (blade.tip_mass != _rigid_body(blade.tip_mass)).any():
-            return "tip_mass is not a mass and moments of inertia about the tip's axes: off centre, it would bend the blade"
+            return "tip_mass is not a mass with moments of inertia on the axis: off the axis, it would bend the blade"
         if np.isfinite(blade.root[:4]).any():
-            return "the root can slide or twist: the weak form holds its displacements and the sections there"
+            return "the root can slide or twist: the weak form clamps displacements and torsion at the root"
         if not clamped(blade) and blade.pitch:
-            return f"pitch = {blade.pitch:g} rad with a joint at the root: its axes would not be the fields'"
+            return f"pitch = {blade.pitch:g} rad with a joint at the root: the joint's axes are not those of the fields"
         section = sample(blade, blade.stations)
         if np.ptp(np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3], axis=1).any():
             return "mass differs with direction: the weak form has one mass per length"
@@ -84,9 +86,10 @@ class ScikitFemBeam:
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes; see ``interface.Code``.
 
-        Every interval between the blade's kinks is divided into the same number of elements, so that properties are smooth
-        within each and the order of convergence survives: at least ``elements`` in all; ``Modes.elements`` says how many.
-        A blade of more than ``COARSEST`` intervals gets more in proportion, so that refinements stay distinct.
+        Every interval between the blade's kinks is divided into the same number of elements, so that properties are
+        smooth within each and the order of convergence is preserved. There are at least ``elements``;
+        ``Modes.elements`` gives the number. A blade with more than ``COARSEST`` intervals has proportionally more, so
+        that refinements stay distinct.
 
         Raises:
             CodeError: an unsupported blade, or no stable steady state at this speed.
@@ -113,21 +116,21 @@ def _skfem() -> Any:
 
 
 def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
-    """The slopes at the root that its joint leaves free, and the springs on them."""
+    """Indices of the slopes at the root that its joint leaves free → stiffness of their springs, N m."""
     slopes = basis.get_dofs("root").nodal
     about = {int(slopes["u_x^3"][0]): BEND_Y, int(slopes["u_x^2"][0]): BEND_Z}
     return {slope: blade.root[axis] for slope, axis in about.items() if np.isfinite(blade.root[axis])}
 
 
 def _rigid_body(inertia: Array) -> Array:
-    """What of a 6×6 inertia is a mass and three moments of inertia."""
+    """The mass and the three moments of inertia of a 6×6 inertia, as a 6×6 diagonal matrix."""
     return np.diag([inertia[0, 0]] * 3 + list(np.diag(inertia)[3:]))
 
 
 def _basis(nodes: Array) -> Any:
     """Fields u, v, w, φ: quadratic, cubic (Hermite), cubic, quadratic.
 
-    Hermite elements remember the mesh they are first used on, hence new ones here.
+    New elements are made each time, because Hermite elements keep the mesh they are first used on.
     """
     fem = _skfem()
     ends = {"root": lambda x: x[0] == nodes[0], "tip": lambda x: x[0] == nodes[-1]}
@@ -138,14 +141,14 @@ def _basis(nodes: Array) -> Any:
 
 @dataclass(frozen=True)
 class Part:
-    """What has inertia: the line, with properties per length, or the tip, with lumped ones.
+    """A part with inertia: the line, with properties per length, or the tip, with lumped properties.
 
     Attributes:
         basis: of the fields u, v, w, φ.
-        steady: of the steady stretch and twist, cubic: their derivatives are wanted.
+        steady: of the steady stretch and twist; cubic, because their derivatives are needed.
         x: (elements, points) arc length, m.
         mass, I_x, I_y, I_z: (elements, points) in section axes.
-        angle: (elements, points) from the axes y, z to the sections' at rest, rad.
+        angle: (elements, points) from the axes y, z to those of the undeformed sections, rad.
     """
 
     basis: Any
@@ -159,7 +162,7 @@ class Part:
 
 
 def _parts(blade: Blade, basis: Any) -> list[Part]:
-    """The line, and the tip if it has a mass."""
+    """The line, and the tip if it has mass."""
     fem = _skfem()
     steady = basis.with_element(fem.ElementLineHermite())
     x, at = _sections(blade, basis)
@@ -180,7 +183,7 @@ def _sections(blade: Blade, basis: Any) -> tuple[Array, Sections]:
 
 
 def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Array:
-    """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, linear however large."""
+    """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, which is linear for any amplitude."""
     fem = _skfem()
     spring, bedding, load = (
         fem.BilinearForm(forms.spring),
@@ -196,7 +199,7 @@ def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Arr
 
 
 def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
-    """Steady turn of the sections about x: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, the propeller moment, by Newton."""
+    """Steady rotation of the sections about x by the propeller moment: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, by Newton's method."""
     fem = _skfem()
     spring, bedding, load = (
         fem.BilinearForm(forms.spring),
@@ -213,20 +216,20 @@ def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
             f = f + omega**2 * load.assemble(p.steady, k=J_yz)
         step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
         turn = turn + step
-        if np.abs(step).max() < 1e-8:  # and the next would be its square
+        if np.abs(step).max() < 1e-8:  # the error of the next is its square
             return turn
     raise CodeError(f"omega: {omega:g} rad/s: no steady twist of the sections in {NEWTON} steps; lower the speed")
 
 
 def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
-    """M, C, K of all coordinates about the steady state, in axes that turn with the hub."""
+    """M, C, K of all coordinates about the steady state, in axes that rotate with the hub."""
     fem = _skfem()
     parts, at = _parts(blade, basis), _sections(blade, basis)[1]
     stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
     U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, turn))
     if not (U.grad[0] > -1).all():
         raise CodeError(
-            f"omega: {omega:g} rad/s: no steady stretch, the centrifugal force outgrows EA; lower the speed"
+            f"omega: {omega:g} rad/s: no steady stretch: centrifugal force exceeds axial stiffness; lower the speed"
         )
     EI_yy, EI_zz, EI_yz = forms.rotated(at.EI_y, at.EI_z, parts[0].angle + rotation)
     stiffness = {"EA": at.EA, "GJ": at.GJ, "EI_yy": EI_yy, "EI_zz": EI_zz, "EI_yz": EI_yz}
@@ -243,7 +246,7 @@ def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
     springs = np.zeros(basis.N)
     root = 1 + stretch[parts[0].steady.get_dofs("root").nodal["u_x"][0]]
     for slope, spring in _hinges(blade, basis).items():
-        springs[slope] = spring / root**2  # the section turns by the slope over the stretch
+        springs[slope] = spring / root**2  # the section rotates by the slope over the stretch
     return M, C, K + dia_array((springs[None], [0]), shape=K.shape)
 
 

@@ -1,20 +1,20 @@
-"""A straight, twisted, stretched and turning Kirchhoff beam, linearised: weak forms in scikit-fem's manner.
+"""Weak forms for scikit-fem of a straight, twisted, stretched and rotating Kirchhoff beam, linearised.
 
 The beam is extensible and shear-free, its material linear in the stretch and curvatures per unit of unstrained length:
-``N = EA e``, ``M = EI κ``, ``M₁ = GJ κ₁`` (S. S. Antman, *Nonlinear Problems of Elasticity*, 2005, ch. 8). The steady state
-is straight: stretched by ``g = 1 + U'``, and its sections rotated about x by their propeller moment. Let a small motion
-move the line by u, v, w along x, y, z and turn the sections by p about it. With ``α = v'/g`` and ``β = w'/g`` the smallest
-rotation that brings x on to the moved tangent is ``(0, −β, α)``; in axes so rotated, to second order,
+``N = EA e``, ``M = EI κ``, ``M₁ = GJ κ₁`` (S. S. Antman, *Nonlinear Problems of Elasticity*, 2005, ch. 8). The steady
+state is straight: stretched by ``g = 1 + U'``, and its sections rotated about x by their propeller moment. A small
+motion displaces the line by u, v, w along x, y, z and rotates the sections by p about it. With ``α = v'/g`` and ``β =
+w'/g`` the smallest rotation that brings x onto the displaced tangent is ``(0, −β, α)``. In the rotated axes, to second order,
 
     e = U' + u' + g (α² + β²)/2,   κ = steady + (p' − (αβ' − βα')/2, −β', α'),
     ω = (Ωβ + ṗ − (αβ̇ − βα̇)/2, −Ωαβ/2 − β̇, Ω (1 − β²/2) + α̇)
 
-are stretch, curvature and angular velocity, and with the sections' stiffness and inertia in axes y, z (which p turns) the
-Lagrangian gives the forms below. About an equilibrium what p means to second order is immaterial.
+are stretch, curvature and angular velocity. With the sections' stiffness and inertia in axes y, z (which p rotates) the
+Lagrangian gives the forms below. About an equilibrium the second-order definition of p is immaterial.
 
-Arguments: trial functions u, v, w, p, test functions ending in ``_``, and q with what is given at the quadrature points:
-``g``, ``g_s`` its derivative; ``EA``, ``GJ``, ``EI_yy``, ``EI_zz``, ``EI_yz``, ``tension``, ``torque`` for the elastic form;
-``mass`` and the inertia matrix's entries ``J_xx``, ``J_yy``, ``J_zz``, ``J_yz`` for the other three. All SI.
+Arguments: trial functions u, v, w, p, test functions ending in ``_``, and q with the values at the quadrature points:
+``g``, ``g_s`` its derivative; ``EA``, ``GJ``, ``EI_yy``, ``EI_zz``, ``EI_yz``, ``tension``, ``torque`` for the elastic
+form; ``mass`` and the inertia matrix's entries ``J_xx``, ``J_yy``, ``J_zz``, ``J_yz`` for the other three. All SI.
 """
 
 from typing import Any
@@ -42,7 +42,7 @@ def slope_s(f: Any, q: Any) -> Any:
 
 
 def elastic(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, q: Any) -> Any:
-    """Second variation of ``(EA e² + GJ κ₁² + EI κ²)/2``, the steady tension and torque included."""
+    """Second variation of ``(EA e² + GJ κ₁² + EI κ²)/2``, including the steady tension and torque."""
     a, b, a_, b_ = (slope(f, q) for f in (v, w, v_, w_))
     a_s, b_s, a_s_, b_s_ = (slope_s(f, q) for f in (v, w, v_, w_))
     return (
@@ -57,7 +57,7 @@ def elastic(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, 
 
 
 def inertia(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, q: Any) -> Any:
-    """What of the kinetic energy is quadratic in the rates."""
+    """Mass form: the part of the kinetic energy that is quadratic in the rates."""
     a, b, a_, b_ = (slope(f, q) for f in (v, w, v_, w_))
     return (
         q.mass * (u * u_ + v * v_ + w * w_)
@@ -69,7 +69,7 @@ def inertia(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, 
 
 
 def gyroscopic(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, q: Any) -> Any:
-    """What of it is linear in the rates, over Ω: Coriolis forces and gyroscopic moments; skew."""
+    """Gyroscopic form over Ω, from the part linear in the rates: Coriolis forces and gyroscopic moments; skew."""
     a, b, a_, b_ = (slope(f, q) for f in (v, w, v_, w_))
     return (
         2 * q.mass * (u * v_ - v * u_) + (q.J_xx + q.J_yy - q.J_zz) * (b * p_ - p * b_) + 2 * q.J_yz * (p * a_ - a * p_)
@@ -77,7 +77,7 @@ def gyroscopic(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: An
 
 
 def centrifugal(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: Any, q: Any) -> Any:
-    """What of it is free of rates, over Ω²: spin softening, and the propeller moment's stiffness."""
+    """Centrifugal form over Ω², from the part without rates: spin softening and the stiffness of the propeller moment."""
     a, b, a_, b_ = (slope(f, q) for f in (v, w, v_, w_))
     return (
         q.mass * (u * u_ + v * v_)
@@ -88,15 +88,15 @@ def centrifugal(u: Any, v: Any, w: Any, p: Any, u_: Any, v_: Any, w_: Any, p_: A
 
 
 def spring(u: Any, u_: Any, q: Any) -> Any:
-    """k u' u_': a bar's or a shaft's."""
+    """k u' u_': axial or torsional stiffness."""
     return q.k * u.grad[0] * u_.grad[0]
 
 
 def bedding(u: Any, u_: Any, q: Any) -> Any:
-    """k u u_."""
+    """k u u_: distributed springs or mass."""
     return q.k * u * u_
 
 
 def load(u_: Any, q: Any) -> Any:
-    """k u_."""
+    """k u_: distributed load."""
     return q.k * u_

@@ -1,11 +1,12 @@
-"""scikit-fem: a geometrically exact beam with everything a section, a root and a tip can have.
+"""scikit-fem: a geometrically exact beam that supports every property of a section, a root and a tip.
 
-Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced integration),
-and section forces, linear and discontinuous, are fields of their own (E. Hellinger 1914, E. Reissner 1950): no strain locks,
-and a rigid strain is an exact constraint, with no penalty. The weak forms are in ``reissner_forms``, their derivation in
-docs/geometrically-exact-beam.md. First comes the steady state, by Newton's method down to rounding; then the matrices about
-it, in the strains that are not rigid as coordinates. Frequencies converge with the fourth power of the element size.
-scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
+Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced
+integration), and section forces are separate fields, linear and discontinuous (E. Hellinger 1914, E. Reissner 1950):
+there is no locking, and a rigid strain is an exact constraint, without a penalty. The weak forms are in
+``reissner_forms``, their derivation in docs/geometrically-exact-beam.md. The steady state is computed first, by
+Newton's method to rounding, then the matrices about it, with the strains that are not rigid as coordinates. Frequencies
+converge with the fourth power of the element size. scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source
+Software 5 (2020) 2369.
 """
 
 import time
@@ -30,17 +31,17 @@ from .reissner_steady import steady
 Array = NDArray[np.float64]
 
 COARSEST = 8
-"""Elements of the coarsest level, and how many intervals between stations it can follow without more."""
+"""Elements of the coarsest level, and the largest number of intervals between stations that needs no more."""
 
 MOST = 300
-"""Elements: the matrices are dense, with up to 12 rows an element."""
+"""Largest number of elements: the matrices are dense, with up to 12 rows per element."""
 
 RIGID_BODY = 1e-6
-"""Departure from a rigid body's mass matrix that is taken for rounding, of its masses and moments of inertia."""
+"""Departure from a rigid body's mass matrix attributed to rounding, relative to its masses and moments of inertia."""
 
 
 class ScikitFemReissner:
-    """See the module; all blades but those whose mass matrix is not a rigid body's."""
+    """See the module; all blades except those whose mass matrix is not that of a rigid body."""
 
     name = "scikit-fem-reissner"
     title = "scikit-fem, geometrically exact beam"
@@ -61,22 +62,24 @@ class ScikitFemReissner:
             return None
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason if a section's mass matrix is not a rigid body's, or nothing can strain."""
+        """A reason if a mass matrix is not that of a rigid body, or all strains are rigid."""
         for name, mass in (("mass", blade.mass), ("tip_mass", blade.tip_mass)):
             body = moments(mass)
             again = np.einsum("ail,bij,...jl->...ab", forms.MOVE, forms.MOVE, body)
             scale = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
             if (np.abs(again - mass) > RIGID_BODY * scale[..., None] * scale[..., None, :]).any():
-                return f"{name}: not a rigid body's matrix to {RIGID_BODY:g}: the weak form integrates over particles"
+                return (
+                    f"{name}: not the matrix of a rigid body to {RIGID_BODY:g}: the weak form integrates over particles"
+                )
         if np.isinf(blade.stiffness).any(axis=(0, 2)).all():
-            return "stiffness: all strains are rigid: strains are the coordinates here"
+            return "stiffness: all strains are rigid: this code uses the strains as coordinates"
         return None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes; see ``interface.Code``.
 
-        Every interval between stations where a property or the line has a kink is divided into the same number of elements:
-        at least ``elements`` in all; ``Modes.elements`` says how many.
+        Every interval between stations where a property or the line has a kink is divided into the same number of
+        elements, at least ``elements`` in total; ``Modes.elements`` gives the number.
 
         Raises:
             CodeError: an unsupported blade, too many elements, or no stable steady state at this speed.
@@ -98,9 +101,9 @@ class ScikitFemReissner:
 
 
 def _coordinates(beam: Beam, state: State) -> Array:
-    """(all, n) what motion each coordinate is: the root's free ones with no strain, then each strain that is not rigid.
+    """(all, n) motion of each coordinate: the root's free motions without strain, then each strain that is not rigid.
 
-    With the root given, the strains at the Gauss points determine the motion: B is square.
+    Given the motion of the root, the strains at the Gauss points determine the motion: B is square.
     """
     B = (strain_rate(beam, state) @ beam.to_free).tocsc()
     roots = len(beam.springs) - B.shape[0]

@@ -1,7 +1,7 @@
-"""A blade on scikit-fem's line elements: its mesh, its fields, a configuration, and the matrices and forces there.
+"""A blade on scikit-fem's line elements: mesh, fields, configuration, and the matrices and forces there.
 
-Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced integration),
-and section forces, linear and discontinuous, are fields of their own. Weak forms: ``reissner_forms``.
+Displacement and rotation are quadratic in each element, the strains are taken at its two Gauss points (reduced
+integration), and section forces are separate fields, linear and discontinuous. Weak forms: ``reissner_forms``.
 """
 
 from dataclasses import dataclass
@@ -18,17 +18,17 @@ from . import reissner_forms as forms
 Array = NDArray[np.float64]
 
 STRAIN, INERTIA = 3, 7
-"""Degrees integrated exactly: by two points, where the strains do not lock; products of quadratics with linear properties."""
+"""Degrees integrated exactly: by two points, to avoid locking; of products of quadratics with linear properties."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """What has inertia: the line, with properties per length, or the tip, with lumped ones; arrays (elements, points, …).
+    """A part with inertia: the line, with properties per length, or the tip, lumped; arrays (elements, points, …).
 
     Attributes:
         basis: of the displacements and rotations, at these points.
-        place: (…, 3) m, at rest.
-        axes: (…, 3, 3) the section's axes, at rest.
+        place: (…, 3) m, undeformed.
+        axes: (…, 3, 3) the section's axes, undeformed.
         moments: (…, 4, 4) ∫ Y Yᵀ dm in the section's axes; see ``theories.reference_line.moments``.
     """
 
@@ -46,13 +46,13 @@ class Beam:
         blade: the blade.
         basis: of (w, φ), quadratic, at the strains' points.
         forces: of the section forces, linear and discontinuous, at the same points.
-        parts: what has inertia.
-        slope, axes: (e, q, 3), (e, q, 3, 3) of the line at rest, at the strains' points.
+        parts: the parts with inertia.
+        slope, axes: (e, q, 3), (e, q, 3, 3) of the undeformed line, at the strains' points.
         compliance: of the sections; rigid strains have zero rows.
         gram: of the fields of section forces.
-        rigid: (6,) whether the strain is.
-        to_free: from the free coordinates (the root's in its own axes, and not those that are held) to all.
-        springs: (free,) stiffness of the root's springs, in the root's own places.
+        rigid: (6,) whether each strain is rigid.
+        to_free: (all, free) from the free coordinates (the root's in its axes, without the clamped ones) to all.
+        springs: (free,) stiffness of the root's springs at its coordinates, zero elsewhere.
     """
 
     blade: Blade
@@ -78,7 +78,7 @@ class State:
     """A configuration, at the points of each basis.
 
     Attributes:
-        slope, axes, curvature: (e, q, …) at the strains' points; curvature is what the rotation has added.
+        slope, axes, curvature: (e, q, …) at the strains' points; curvature is the change from the undeformed one.
         place, turned: per part (e, q, 3) and (e, q, 3, 3).
         force: coefficients of the section forces.
         root: (free,) the root's displacements and rotations, in its axes, zero elsewhere.
@@ -94,7 +94,7 @@ class State:
 
 
 def skfem() -> Any:
-    """scikit-fem, imported when it is needed."""
+    """Import scikit-fem when it is first needed."""
     import skfem
 
     return skfem
@@ -142,7 +142,7 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
 
 
 def _compliance(blade: Blade, basis: Any, soft: NDArray[np.bool_]) -> Array:
-    """(e, q, 6, 6) of the sections at a basis's points, zero in what is rigid."""
+    """Compliance (e, q, 6, 6) of the sections at the points of a basis, zero for rigid strains."""
     s = np.array(basis.global_coordinates())[0]
     stiffness = stiffness_at(blade, s.ravel()).reshape(*s.shape, 6, 6)
     out = np.zeros_like(stiffness)
@@ -173,7 +173,7 @@ def at_rest(beam: Beam) -> State:
 
 
 def moved(beam: Beam, state: State, step: Array, force: Array) -> State:
-    """The state after a motion of the free coordinates, ``step``, and with section forces ``force``."""
+    """The state after a motion ``step`` of the free coordinates, with section forces ``force``."""
     q = beam.to_free @ step
     u = beam.basis.interpolate(q)
     w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], np.asarray(u)[3:], u.grad[3:, 0]))
@@ -202,13 +202,13 @@ def spatial(part: Part, axes: Array) -> Array:
 
 
 def strain_rate(beam: Beam, state: State) -> Any:
-    """B: section forces times the strain's rate by all coordinates."""
+    """B: section forces times the first variation of the strains by all coordinates."""
     on = forms.for_fem(forms.strain_rate(state.slope, state.axes), 2)
     return skfem().BilinearForm(forms.mixed).assemble(beam.basis, beam.forces, on=on)
 
 
 def stiffening(beam: Beam, state: State, omega: float) -> Any:
-    """Stiffness of all coordinates by the steady section forces and by the centrifugal force's change."""
+    """Stiffness of all coordinates due to the steady section forces and the change of the centrifugal force."""
     fem = skfem()
     force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
     on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
@@ -220,7 +220,7 @@ def stiffening(beam: Beam, state: State, omega: float) -> Any:
 
 
 def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
-    """On all coordinates."""
+    """Centrifugal force on all coordinates."""
     fem = skfem()
     force = np.zeros(beam.basis.N)
     for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):
@@ -230,7 +230,7 @@ def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
 
 
 def strain(beam: Beam, state: State) -> Array:
-    """(e, q, 6) Γ and κ."""
+    """Strains Γ and κ, (e, q, 6)."""
     gamma = np.swapaxes(state.axes, -1, -2) @ state.slope[..., None]
     rest = np.swapaxes(beam.axes, -1, -2) @ beam.slope[..., None]
     return np.concatenate([(gamma - rest)[..., 0], state.curvature], axis=-1)

@@ -1,20 +1,21 @@
-"""Weak forms of a geometrically exact beam that turns with its hub, about any state; see docs/geometrically-exact-beam.md.
+"""Weak forms of a geometrically exact beam that rotates with its hub, about any state; see
+docs/geometrically-exact-beam.md.
 
-Reissner's beam (E. Reissner, Studies in Applied Mathematics 52 (1973) 87–95; J. C. Simo, Comput. Methods Appl. Mech. Eng.
-49 (1985) 55–70): a section at arc length s has the place r(s) and the axes Λ(s), and the strains, per unit of arc length and
-in its own axes,
+Reissner's beam (E. Reissner, Studies in Applied Mathematics 52 (1973) 87–95; J. C. Simo, Comput. Methods Appl. Mech.
+Eng. 49 (1985) 55–70): a section at arc length s has the position r(s) and the axes Λ(s), and the strains, per unit of
+arc length and in its axes,
 
     Γ = Λᵀ r′ − Λ₀ᵀ r₀′,    κ = ax(Λᵀ Λ′ − Λ₀ᵀ Λ₀′).
 
-A small motion is ``r → r + w``, ``Λ → exp(φ×) Λ``, with w and φ in axes that turn with the hub. To second order
+A small motion is ``r → r + w``, ``Λ → exp(φ×) Λ``, with w and φ in axes that rotate with the hub. To second order
 
     Λ δΓ = (w′ + r′ × φ) − φ × w′ + ½ φ × (φ × r′),    Λ δκ = φ′ − ½ φ × φ′,    δx = w + φ × y + ½ φ × (φ × y)
 
-with y = Λ ξ the place of a particle relative to r. The forms follow from virtual work, ``∫ σ·δε ds = −∫ δx·a dm`` with
-d'Alembert's acceleration ``a = ẍ + 2 Ω × ẋ + Ω × (Ω × x)`` of the particles at ``x = r + y``.
+with y = Λ ξ the position of a particle relative to r. The forms follow from virtual work, ``∫ σ·δε ds = −∫ δx·a dm``
+with d'Alembert's acceleration ``a = ẍ + 2 Ω × ẋ + Ω × (Ω × x)`` of the particles at ``x = r + y``.
 
-Here are the forms' coefficients at the quadrature points, (…, e, q) for scikit-fem. Local quantities are q = (w, φ), or
-z = (w, φ, w′, φ′); section forces σ = (n, m) are in the section's axes.
+This module computes the coefficients of the forms at the quadrature points, (…, e, q) for scikit-fem. Local quantities
+are q = (w, φ), or z = (w, φ, w′, φ′); section forces σ = (n, m) are in the section's axes.
 """
 
 from typing import Any
@@ -40,7 +41,7 @@ OUT_OF_AXIS = np.diag([1.0, 1.0, 0.0])
 MOVE = np.zeros((6, 3, 4))
 MOVE[:3, :, 3] = np.eye(3)
 MOVE[3:, :, :3] = CROSS
-"""``MOVE[a] @ (y, 1)`` is what coordinate a of q moves a particle by, to first order."""
+"""``MOVE[a] @ (y, 1)`` is the displacement of a particle by coordinate a of q, to first order."""
 
 MOVE_TWICE = np.zeros((6, 6, 3, 4))
 MOVE_TWICE[3:, 3:, :, :3] = 0.5 * (np.einsum("aij,bjk->abik", CROSS, CROSS) + np.einsum("bij,ajk->abik", CROSS, CROSS))
@@ -53,7 +54,7 @@ def skew(v: Array) -> Array:
 
 
 def for_fem(coefficients: Array, trailing: int) -> Array:
-    """Coefficients (e, q, …) with ``trailing`` own dimensions, as scikit-fem wants them: (…, e, q)."""
+    """Coefficients (e, q, …) with ``trailing`` dimensions after e, q, in scikit-fem's order (…, e, q)."""
     return np.moveaxis(coefficients, range(-trailing, 0), range(trailing))
 
 
@@ -95,7 +96,8 @@ def centrifugal_force(place: Array, moments: Array) -> Array:
 
 
 def centrifugal(place: Array, moments: Array) -> Array:
-    """(e, q, 6, 6) minus the change of that with the motion, first and second order of δx: symmetric."""
+    """(e, q, 6, 6) minus the derivative of ``centrifugal_force`` by the motion, from first and second order of δx;
+    symmetric."""
     first = np.einsum("ail,ik,bkj,...jl->...ab", MOVE, OUT_OF_AXIS, MOVE, moments, optimize=True)
     second = np.einsum("...il,ik,abkj,...jl->...ab", _position(place), OUT_OF_AXIS, MOVE_TWICE, moments, optimize=True)
     return -first - second
@@ -114,7 +116,7 @@ def exponential(phi: Array) -> Array:
 
 
 def bending_rate(phi: Array, rate: Array) -> Array:
-    """(…, 3) ax(exp(−φ×) exp(φ×)′) of ``rate`` = φ′: what rotating by φ adds to the curvature, seen from before."""
+    """(…, 3) ax(exp(−φ×) exp(φ×)′) of ``rate`` = φ′: the curvature that a rotation by φ adds, in the axes before it."""
     angle = np.linalg.norm(phi, axis=-1)[..., None]
     small = angle < 1e-2
     safe = np.where(small, 1.0, angle)

@@ -1,4 +1,4 @@
-"""The steady state of a geometrically exact beam at a rotor speed: Newton's method on virtual work, down to rounding."""
+"""The steady state of a geometrically exact beam at a rotor speed: Newton's method on virtual work, to rounding."""
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,20 +12,20 @@ from .reissner_beam import Beam, State, at_rest, centrifugal_force, moved, skfem
 Array = NDArray[np.float64]
 
 NEWTON, CONVERGED, ROUNDING = 40, 1e-6, 1e-13
-"""Steps allowed; a step (of the length, or rad) from which on it must only fall; one that is rounding."""
+"""Largest number of steps; step size (relative to the length, or rad) below which steps must decrease; size of rounding."""
 
 RAMPS = (1, 4, 16)
-"""Numbers of steps in which the speed is raised, tried in turn."""
+"""Numbers of equal increments of the squared speed, tried in turn."""
 
 COMMUTE = 1e-8
-"""rad²: product of steady rotations about two axes of the root's joint up to which their order does not matter."""
+"""Largest product of steady rotations about two axes of the root joint for which their order does not matter, rad²."""
 
 
 def steady(beam: Beam, omega: float) -> State:
-    """The steady state at ``omega``, raised from rest in as few steps as suffice.
+    """The steady state at ``omega`` (rad/s), reached from zero speed in as few steps as suffice.
 
     Raises:
-        CodeError: none was found, or the root's joint turned about two axes, of which the order is not told.
+        CodeError: none was found, or the root joint is rotated about two axes, whose order is undefined.
     """
     state = at_rest(beam)
     if not omega:
@@ -35,21 +35,19 @@ def steady(beam: Beam, omega: float) -> State:
         if found is not None:
             break
     else:
-        raise CodeError(
-            f"omega: {omega:g} rad/s: no steady state found in {RAMPS[-1]} steps from rest; lower the speed"
-        )
+        raise CodeError(f"omega: {omega:g} rad/s: no steady state found in {RAMPS[-1]} steps from zero speed; lower it")
     joint = np.flatnonzero(np.isfinite(beam.blade.root))
     turns = np.sort(np.abs(found.root[: len(joint)][joint >= 3]))
     if len(turns) > 1 and turns[-1] * turns[-2] > COMMUTE:
         raise CodeError(
-            f"{beam.blade.name}: the root turns steadily about two axes, by {turns[-1]:.2g} and {turns[-2]:.2g} rad: "
-            "the weak form does not say about which first"
+            f"{beam.blade.name}: the root rotates about two axes, by {turns[-1]:.2g} and {turns[-2]:.2g} rad: "
+            "the weak form does not define their order"
         )
     return found
 
 
 def _raised(beam: Beam, omega: float, steps: int) -> State | None:
-    """The steady state at ``omega`` by way of ``steps`` equal increments of the speed's square; None if one fails."""
+    """The steady state at ``omega`` after ``steps`` equal increments of the squared speed; None if one fails."""
     state = at_rest(beam)
     for k in range(1, steps + 1):
         speed = omega * np.sqrt(k / steps)
@@ -63,14 +61,14 @@ def _raised(beam: Beam, omega: float, steps: int) -> State | None:
 
 
 def _statics(beam: Beam, state: State, omega: float) -> Array:
-    """Section forces that balance the centrifugal force on the undeformed blade as if clamped: a start that is stiff."""
+    """Section forces that balance the centrifugal force on the undeformed, clamped blade: a stiff initial guess."""
     inner = np.setdiff1d(np.arange(beam.basis.N), beam.basis.get_dofs("root").flatten())
     B = strain_rate(beam, state).tocsc()[:, inner]
     return spla.splu(B.T.tocsc()).solve(centrifugal_force(beam, state, omega)[inner])
 
 
 def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:
-    """Newton's method on virtual work, ``δq · (Bᵀσ − f) + δσ · (ε − cσ)``, until rounding; None if it does not converge."""
+    """Newton's method on virtual work, ``δq · (Bᵀσ − f) + δσ · (ε − cσ)``, to rounding; None if it does not converge."""
     fem, n, last = skfem(), len(beam.springs), np.inf
     for _ in range(NEWTON):
         B = strain_rate(beam, state) @ beam.to_free
@@ -91,7 +89,7 @@ def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:
         size = _size(beam, change[:n])
         if not np.isfinite(size) or size > 1e3:
             return None
-        largest = max(1.0, size / 0.5)  # no more than half a radian, or half the length, at once
+        largest = max(1.0, size / 0.5)  # at most half a radian, or half the length, per step
         state = moved(beam, state, change[:n] / largest, state.force + change[n:] / largest)
         if size < ROUNDING or (size < CONVERGED and size > 0.5 * last):
             return state
@@ -100,7 +98,7 @@ def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:
 
 
 def _size(beam: Beam, step: Array) -> float:
-    """Of a step: displacements as a share of the length, or rotations, whichever is larger."""
+    """Size of a step: the largest displacement over the length, or the largest rotation."""
     q = np.abs(beam.to_free @ step)
     first = beam.basis.nodal_dofs[:3].ravel(), beam.basis.interior_dofs[:3].ravel()
     moved = np.concatenate([q[i] for i in first]).max() / beam.blade.length

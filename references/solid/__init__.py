@@ -1,4 +1,4 @@
 """Three-dimensional solid blades: scikit-fem hexahedra and CalculiX.
 
-A box or a blade of one material comes in; modes go out, or the matrices that ``core.condense`` takes.
+Input: a box or a blade of one material. Output: its modes, or matrices for ``core.condense``.
 """

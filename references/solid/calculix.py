@@ -1,9 +1,9 @@
-"""CalculiX (``ccx``): solid blades of 20-node hexahedra, rotating; and its matrices, to condense.
+"""CalculiX (``ccx``): rotating solid blades of 20-node hexahedra, and their matrices for condensation.
 
 G. Dhondt, *The Finite Element Method for Three-Dimensional Thermomechanical Applications*, 2004. The static step is
 geometrically nonlinear (St Venant–Kirchhoff), the frequencies are those about it, with stress stiffening and spin
 softening, without Coriolis forces: ``*COMPLEX FREQUENCY, CORIOLIS`` works in a modal basis and loses modes.
-Elements have reduced integration; one of them across a section has hourglass motions, so two at least are asked for.
+Elements have reduced integration. A single element across a section has hourglass modes, so at least two are required.
 """
 
 import os
@@ -29,7 +29,7 @@ from ..protocol.interface import CodeError
 from .mesh import TWENTY, Bricks, Clamp, Material, fixed_by, mean_motions
 
 FACE = TWENTY[[0, 3, 7, 4, 11, 19, 15, 16]][:, 1:]
-"""Of these, the 8 nodes of the face towards the root, by their places across: corners, then edges between them."""
+"""The 8 nodes of an element's face towards the root, by lattice position across: corners, then mid-edges."""
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -37,18 +37,18 @@ Index = NDArray[np.intp]
 HINT = "apt-get install calculix-ccx"
 
 EFFECTS = Effects(coriolis=False)
-"""The effects it keeps."""
+"""The effects it includes."""
 
 TIMEOUT = 600.0
 
 
 @dataclass(frozen=True)
 class Orthotropic:
-    """Stiff alike along x, y and z, without Poisson's effect, but sheared along y and along z by moduli of their own.
+    """Equal Young's modulus along x, y and z, zero Poisson's ratio, and separate shear moduli along y and z.
 
     Attributes:
         young: Pa.
-        shear_y, shear_z: Pa, of the planes x–y and x–z; the section's own plane has the larger of them.
+        shear_y, shear_z: Pa, of the planes x–y and x–z; the plane of the section has the larger of the two.
         density: kg/m³.
     """
 
@@ -68,13 +68,15 @@ def version() -> str | None:
 
 
 def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count: int, clamp: Clamp) -> Modes:
-    """The lowest modes of a solid blade that turns steadily at ``omega`` (rad/s), as ``solid.modes`` gives them.
+    """The lowest modes of a solid blade in steady rotation at ``omega`` (rad/s), as from ``hexahedra.modes``.
 
     Raises:
         CodeError: ``ccx`` is missing or failed, no stable steady state, or fewer than two elements across a section.
     """
     if min(bricks.counts[1:]) < 2:
-        raise CodeError(f"across: {bricks.counts[1:]} elements: with reduced integration a section needs two each way")
+        raise CodeError(
+            f"across: {bricks.counts[1:]} elements: with reduced integration a section needs at least two each way"
+        )
     begun = time.perf_counter()
     places, nodes = numbered(bricks)
     share = (nodes[:, 0] - nodes[:, 0].min()) / np.ptp(nodes[:, 0])
@@ -93,10 +95,10 @@ def modes(bricks: Bricks, material: Material | Orthotropic, omega: float, count:
 
 
 def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") -> FiniteElements:
-    """A block as CalculiX assembles it, to condense: ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, all nodes kept.
+    """The matrices of a block for condensation: ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, all nodes kept.
 
-    Its ``*SUBSTRUCTURE GENERATE`` cannot give a condensed one: as of 2.20 it holds the nodes
-    that are not retained instead of eliminating them, and is caught by ``segments.between``.
+    CalculiX's ``*SUBSTRUCTURE GENERATE`` cannot be used: up to version 2.20 it fixes the nodes that are not retained
+    instead of eliminating them. ``segments.between`` detects this.
 
     Raises:
         CodeError: ``ccx`` is missing or failed.
@@ -109,11 +111,11 @@ def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") 
 
 
 def section_weights(bricks: Bricks, layer: int) -> Array:
-    """(k, k) ∫NᵀN over a layer of faces, N the shape functions of its 8-node faces, nodes as in ``numbered``.
+    """(k, k) ∫NᵀN over a layer of faces, with the shape functions N of 8-node faces; nodes as in ``numbered``.
 
     Args:
         bricks: the block.
-        layer: of corners along the span, 0 at the root.
+        layer: index of the layer of corners along the span, 0 at the root.
     """
     places = numbered(bricks)[0]
     here = places[2 * layer]
@@ -139,7 +141,7 @@ def section_weights(bricks: Bricks, layer: int) -> Array:
 
 
 def numbered(bricks: Bricks) -> tuple[Index, Array]:
-    """Index of the node at each place of the lattice, −1 where 20-node elements have none; and the nodes (n, 3)."""
+    """Index of the node at each lattice point, −1 where 20-node elements have none, and the nodes (n, 3), m."""
     lattice = bricks.lattice()
     odd = (np.indices(lattice.shape[:3]) % 2).sum(axis=0)
     places = np.full(odd.shape, -1)
@@ -148,7 +150,7 @@ def numbered(bricks: Bricks) -> tuple[Index, Array]:
 
 
 def deck(places: Index, nodes: Array, material: Material | Orthotropic) -> list[str]:
-    """Lines of mesh and material. Fields have 20 characters and are cut there, exponent and all: 12 digits fit."""
+    """Lines of mesh and material. CalculiX truncates fields at 20 characters, so numbers have 12 digits."""
     lines = ["*NODE,NSET=ALL", *(f"{k + 1},{x:.12g},{y:.12g},{z:.12g}" for k, (x, y, z) in enumerate(nodes))]
     lines += ["*ELEMENT,TYPE=C3D20R,ELSET=ALL"]
     first = np.stack(np.meshgrid(*(np.arange(0, n - 1, 2) for n in places.shape), indexing="ij"), axis=-1).reshape(
@@ -177,7 +179,7 @@ def _elastic(material: Material | Orthotropic) -> list[str]:
 
 @contextmanager
 def run(lines: Sequence[str]) -> Iterator[Path]:
-    """Run a deck named ``blade`` in a folder of its own, which is there to read from within the context.
+    """Run a deck named ``blade`` in a temporary folder, which exists within the context.
 
     Raises:
         CodeError: ``ccx`` is missing, failed or took too long.
@@ -198,11 +200,11 @@ def run(lines: Sequence[str]) -> Iterator[Path]:
                 env={**os.environ, "OMP_NUM_THREADS": "1"},
             )
         except subprocess.TimeoutExpired:
-            raise CodeError(f"ccx took longer than {TIMEOUT:g} s: a coarser mesh?") from None
+            raise CodeError(f"ccx took longer than {TIMEOUT:g} s: use a coarser mesh") from None
         error = re.search(r"\*ERROR[^\n]*\n?[^\n]*", done.stdout)
         if done.returncode or error:
             said = " ".join(error[0].split()) if error else done.stderr.strip()
-            raise CodeError(f"ccx ended with {done.returncode}: {said or 'no message'}")
+            raise CodeError(f"ccx ended with status {done.returncode}: {said or 'no message'}")
         yield folder
 
 

@@ -1,13 +1,14 @@
-"""CalculiX as a code among the others: a uniform blade as the solid bar that has its stiffness and its mass.
+"""The CalculiX adapter: a uniform blade as a solid bar with the same stiffness and mass.
 
-A rectangle has ``EI/EA = side²/12`` in each plane, so that the two bending stiffnesses and EA set its sides and Young's
-modulus, and the mass its density; the rotary inertia then is the solid's, and another one is refused. Poisson's ratio is 0,
-hence a full clamp is a beam's clamp. The shear moduli follow from the blade's shear stiffness by G. R. Cowper's coefficient
-for ν = 0 (J. Appl. Mech. 33 (1966) 335); shear-rigid sections get moduli so large that shear does nothing. They set torsion
-too, which therefore is not the blade's: modes that turn about the blade's axis are left out, as closed forms do.
+A rectangle has ``EI/EA = side²/12`` in each plane, so the two bending stiffnesses and EA determine its sides and
+Young's modulus, and the mass its density. The rotary inertia is then that of the solid; blades with another one are
+declined. Poisson's ratio is 0, so a full clamp is equivalent to a beam's clamp. The shear moduli follow from the
+blade's shear stiffness by G. R. Cowper's coefficient for ν = 0 (J. Appl. Mech. 33 (1966) 335); for sections rigid in
+shear they are so large that shear is negligible. They also determine torsion, which therefore differs from the blade's:
+torsional modes are left out, as by the closed forms.
 
-Coriolis forces are lacking (see ``calculix``), and the material is St Venant and Kirchhoff's: a strain ε stiffens it by 3ε/2,
-which moves frequencies by half of ε and more. Blades are refused at speeds that strain their roots by more than ``STRAIN``.
+Coriolis forces are missing (see ``calculix``). The material is St Venant–Kirchhoff: a strain ε stiffens it by 3ε/2,
+which changes frequencies by ε/2 and more. Speeds with a strain at the root above ``STRAIN`` are therefore an error.
 """
 
 from dataclasses import replace
@@ -24,21 +25,22 @@ from .mesh import Bricks, blade, clamped
 Array = NDArray[np.float64]
 
 ACROSS = (2, 2)
-"""Elements across the section: with reduced integration, fewer have hourglass motions."""
+"""Elements across the section: with reduced integration, fewer have hourglass modes."""
 
 LAYERS = 10
-"""Elements along the blade come in multiples of this, so that a layer of nodes lies at each of ``modes.STATIONS``."""
+"""The number of elements along the blade is a multiple of this, to have a layer of nodes at each of
+``modes.STATIONS``."""
 
 RIGID = 40.0
-"""Shear modulus over Young's of a section that is rigid in shear: E I / (κ G A L²) then is a fiftieth of what ν = 0.3 has."""
+"""Ratio of shear to Young's modulus for sections rigid in shear: E I / (κ G A L²) is then a fiftieth of that for ν = 0.3."""
 
 COWPER = 5.0 / 6.0
 
 STRAIN = 2e-3
-"""Largest centrifugal strain at the root at which the material is the blade's to 0.1 % of a frequency or so."""
+"""Largest centrifugal strain at the root for which the stiffening of the material changes frequencies by about 0.1 %."""
 
 SPARE = 2
-"""Modes asked for beyond those wanted: what turns about the axis lies far above, save for stubby bars."""
+"""Additional modes to compute: torsional modes are far above the others, except for stubby bars."""
 
 
 class Calculix:
@@ -52,7 +54,7 @@ class Calculix:
     effects = calculix.EFFECTS
     levels = (10, 20, 40)
     order = 4
-    digits = 5  # seven are printed; equations of slender solids are ill-conditioned, and cost two
+    digits = 5  # seven are printed; the ill-conditioned equations of slender solids cost two
     hint = calculix.HINT
 
     def version(self) -> str | None:
@@ -60,12 +62,12 @@ class Calculix:
         return calculix.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason unless the blade is uniform and there is a solid rectangle like its section."""
+        """A reason unless the blade is uniform and equivalent to a solid of rectangular section."""
         if not uniform(blade):
-            return "sections couple or vary, or there is curvature, twist, cone, pitch, tip mass or a joint; this bar has none"
+            return "sections couple or vary, or there is curvature, twist, precone, pitch, tip mass or a root joint"
         at = sample(blade, 0.0)
         if not np.isfinite([at.EA, at.EI_y, at.EI_z]).all():
-            return "rigid in bending or stretch: a solid has a finite EI and EA"
+            return "rigid in bending or stretch: a solid has finite EI and EA"
         mass = np.diagonal(blade.mass[0])
         if np.ptp(mass[:3]):
             return "mass differs with direction: a solid has one density"
@@ -86,7 +88,7 @@ class Calculix:
         strain = omega**2 * _stretching(blade)
         if strain > STRAIN:
             raise CodeError(
-                f"omega: {omega:g} rad/s: strains the root by {strain:.1e}, beyond {STRAIN:g} its material stiffens; lower it"
+                f"omega: {omega:g} rad/s: strain at the root {strain:.1e}, the material stiffens above {STRAIN:g}; lower it"
             )
         bricks, material = bar(blade, LAYERS * -(-elements // LAYERS))
         wanted = count + SPARE
@@ -101,7 +103,7 @@ class Calculix:
 
 
 def bar(of: Blade, elements: int) -> tuple[Bricks, calculix.Orthotropic]:
-    """The solid that a uniform blade is, from the rotor's axis outwards, and its material."""
+    """The solid equivalent to a uniform blade, from the rotor's axis outwards, and its material."""
     at = sample(of, 0.0)
     chord, thickness = (float(np.sqrt(12.0 * EI[0] / at.EA[0])) for EI in (at.EI_z, at.EI_y))
     area = chord * thickness
@@ -120,7 +122,7 @@ def _stretching(blade: Blade) -> float:
 
 
 def _turning(modes: Modes, at: Sections) -> NDArray[np.bool_]:
-    """Which modes turn about the blade's axis more than they move, the polar radius of gyration taken for measure."""
+    """(m,) whether each mode is torsional: its rotation times the polar radius of gyration exceeds its displacement."""
     radius = np.sqrt((at.EI_y[0] + at.EI_z[0]) / at.EA[0])
     return radius * np.abs(modes.shapes[:, :, 3]).max(1) > np.abs(modes.shapes[:, :, :3]).max((1, 2))
 

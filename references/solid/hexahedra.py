@@ -1,8 +1,8 @@
-"""Solid blades of 27-node hexahedra by scikit-fem: matrices to condense, and the whole solid's own modes, rotating.
+"""Solid blades of 27-node hexahedra by scikit-fem: matrices for condensation, and modes of the whole rotating solid.
 
-St Venant–Kirchhoff's material in the total Lagrangian form: with F the deformation gradient and E = ½(FᵀF − 1),
+St Venant–Kirchhoff material in the total Lagrangian form: with F the deformation gradient and E = ½(FᵀF − 1),
 ``S = λ tr(E) 1 + 2μ E`` and ``P = F S`` (J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element
-Analysis*, 2008, §6.4). In axes that turn with the hub, about the steady state, what remains is
+Analysis*, 2008, §6.4). In axes that rotate with the hub, the equations about the steady state are
 ``M q̈ + 2Ω M B q̇ + (K_T + Ω² M B²) q = 0`` with ``B = e_z ×`` at every node: centrifugal prestress and its geometric
 stiffness are in K_T, spin softening and Coriolis forces follow from M alone.
 """
@@ -42,11 +42,11 @@ def version() -> str | None:
 
 @dataclass(frozen=True)
 class Solid:
-    """A block's fields: one scalar basis for each of u_x, u_y, u_z, stacked in this order.
+    """The fields of a block: one scalar basis for each of u_x, u_y, u_z, stacked in this order.
 
     Attributes:
         basis: scikit-fem's, of 27-node hexahedra.
-        order: (n,) the basis's coordinate of each node of the block's lattice.
+        order: (n,) index in the basis of each node of the block's lattice.
         nodes: (n, 3) the lattice, m.
         material: what it is made of.
     """
@@ -58,7 +58,7 @@ class Solid:
 
 
 def solid(bricks: Bricks, material: Material) -> Solid:
-    """The fields of a block."""
+    """Build the fields of a block."""
     import skfem as fem
 
     straight = fem.MeshHex.init_tensor(*(2.0 * np.arange(n + 1) for n in bricks.counts))
@@ -73,7 +73,7 @@ def solid(bricks: Bricks, material: Material) -> Solid:
 
 
 def tangent(s: Solid, u: Array | None = None) -> ss.csr_array:
-    """Stiffness (3n, 3n) at displacements ``u`` (3n,), or undeformed.
+    """Tangent stiffness (3n, 3n) at displacements ``u`` (3n,) m, or undeformed.
 
     The tangent moduli are ``A_iIjJ = δ_ij S_IJ + λ F_iI F_jJ + μ (b_ij δ_IJ + F_iJ F_jI)``, b = F Fᵀ.
     """
@@ -93,7 +93,7 @@ def tangent(s: Solid, u: Array | None = None) -> ss.csr_array:
 
 
 def internal_force(s: Solid, u: Array) -> Array:
-    """(3n,) forces that hold the solid at displacements ``u`` (3n,)."""
+    """Internal forces (3n,), N, at displacements ``u`` (3n,), m."""
     import skfem as fem
 
     F, S = _deformed(s, u)
@@ -103,7 +103,7 @@ def internal_force(s: Solid, u: Array) -> Array:
 
 
 def mass(s: Solid) -> ss.csr_array:
-    """(n, n), of each displacement alone."""
+    """Mass matrix (n, n), kg, the same for each displacement component."""
     import skfem as fem
 
     rho = s.material.density
@@ -134,12 +134,12 @@ def freedoms(s: Solid) -> tuple[Array, NDArray[np.intp]]:
 
 
 def lumped(s: Solid) -> Array:
-    """(3n,) mass at the freedoms: row sums, which for 27 nodes is Simpson's rule."""
+    """Lumped mass (3n,), kg: row sums, which for 27 nodes is Simpson's rule."""
     return np.tile(mass(s).sum(axis=1), 3)
 
 
 def finite_elements(bricks: Bricks, material: Material, name: str = "solid") -> FiniteElements:
-    """A block as a model to condense."""
+    """A block as a model for condensation."""
     s = solid(bricks, material)
     return FiniteElements(name, *freedoms(s), tangent(s), lumped(s))
 
@@ -155,10 +155,10 @@ def lumped_by_part(bricks: Bricks, material: Material, cuts: NDArray[np.intp]) -
 
 
 def steady(s: Solid, omega: float, fixed: Bools) -> tuple[Array, Any]:
-    """Displacements (3n,) at which the solid turns steadily, and the stiffness there, spin softening included; by Newton.
+    """Displacements (3n,) of the steady state, and the stiffness there including spin softening, by Newton's method.
 
     Raises:
-        CodeError: if there is no such state.
+        CodeError: if no steady state is found.
     """
     across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
     place, free = s.nodes.T.ravel(), ~fixed.T.ravel()
@@ -174,21 +174,21 @@ def steady(s: Solid, omega: float, fixed: Bools) -> tuple[Array, Any]:
         u = u + step
         if not np.abs(u).max() < np.abs(place).max():
             break
-    raise CodeError(f"omega: {omega:g} rad/s: no steady state of the solid was found; lower the speed, or check units")
+    raise CodeError(f"omega: {omega:g} rad/s: no steady state of the solid found; lower the speed, or check the units")
 
 
 def modes(
     bricks: Bricks, material: Material, omega: float, count: int, clamp: Clamp, *, coriolis: bool = True
 ) -> Modes:
-    """The lowest modes of a solid blade that turns steadily at ``omega`` (rad/s); shapes are its sections' mean motions.
+    """The lowest modes of a solid blade in steady rotation at ``omega`` (rad/s); shapes are the sections' mean motions.
 
     Args:
         bricks: the blade; one of its layers of nodes along the span must lie at each of ``STATIONS``.
-        material: what it is made of.
+        material: its material.
         omega: rotor speed, rad/s.
-        count: how many modes.
+        count: number of modes.
         clamp: which displacements are fixed, see ``mesh``.
-        coriolis: whether Coriolis forces act.
+        coriolis: whether to include Coriolis forces.
 
     Raises:
         CodeError: no stable steady state at this speed.

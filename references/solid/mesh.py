@@ -1,6 +1,6 @@
-"""A solid blade as a block of hexahedra, for any finite element code: mesh, material, clamp, and its sections' motion.
+"""A solid blade as a block of hexahedra, for any finite element code: mesh, material, clamp, and mean motion of sections.
 
-Elements have straight edges (trilinear geometry), so codes with 8, 20 or 27 nodes an element have one shape of blade.
+Elements have straight edges (trilinear geometry), so the geometry is the same for 8, 20 or 27 nodes per element.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ TWENTY = np.array(
         *[(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)],
     ]
 )
-"""Places of a 20-node element's nodes on its own 3×3×3 lattice, in the order of CalculiX and Abaqus (C3D20)."""
+"""Positions of a 20-node element's nodes on its 3×3×3 lattice, in the order of CalculiX and Abaqus (C3D20)."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Bricks:
     """A block of nx × ny × nz hexahedra, x along the span.
 
     Attributes:
-        corners: (nx+1, ny+1, nz+1, 3) m, in blade axes from the rotor's axis (see ``core.blade``); every layer of
-            corners along the span has one x.
+        corners: (nx+1, ny+1, nz+1, 3) m, in blade axes from the rotor's axis (see ``core.blade``); all corners
+            of a layer along the span have the same x.
     """
 
     corners: Array
@@ -60,7 +60,7 @@ class Bricks:
         return nx - 1, ny - 1, nz - 1
 
     def lattice(self) -> Array:
-        """(2nx+1, 2ny+1, 2nz+1, 3) the corners and what lies midway between them: edges, faces, middles."""
+        """(2nx+1, 2ny+1, 2nz+1, 3) nodes: the corners and the midpoints of edges, faces and elements."""
         out = self.corners
         for axis in range(3):
             a = np.moveaxis(out, axis, 0)
@@ -86,12 +86,12 @@ def blade(
     """A straight solid blade.
 
     Args:
-        x: (nx+1,) m, from the rotor's axis: where layers of elements end.
-        chord: (nx+1,) or one, m; along y where there is no twist.
-        thickness: (nx+1,) or one, m, at mid-chord; along z where there is no twist.
-        twist: (nx+1,) or one, rad, about x from y towards z.
-        across: elements along the chord and through the thickness.
-        edge: thickness at the edges over that at mid-chord, parabolic between: 1 is a rectangle.
+        x: (nx+1,) ends of the layers of elements, m from the rotor's axis.
+        chord: (nx+1,) or scalar, m; along y without twist.
+        thickness: (nx+1,) or scalar, m, at mid-chord; along z without twist.
+        twist: (nx+1,) or scalar, rad, about x from y towards z.
+        across: number of elements along the chord and through the thickness.
+        edge: ratio of the thickness at the edges to that at mid-chord, parabolic between; 1 for a rectangle.
     """
     eta, zeta = (np.linspace(-1.0, 1.0, n + 1) for n in across)
     half_chord, half_thick, turn = (np.broadcast_to(v, x.shape)[:, None, None] for v in (chord, thickness, twist))
@@ -103,11 +103,11 @@ def blade(
 
 
 Clamp = Callable[[Array], Bools]
-"""Which displacements (n, 3) are fixed, of nodes at (n, 3)."""
+"""Function of node positions (n, 3), m, that returns which displacements (n, 3) are fixed."""
 
 
 def clamped(at: float) -> Clamp:
-    """All of the section at ``x = at`` is fixed."""
+    """Fix all displacements of the section at ``x = at`` (m)."""
 
     def fixed(nodes: Array) -> Bools:
         return np.repeat(_near(nodes[:, :1], at), 3, axis=1)
@@ -116,9 +116,9 @@ def clamped(at: float) -> Clamp:
 
 
 def clamped_free_to_contract(at: float) -> Clamp:
-    """The section at ``x = at`` stays plane and in place, but may change its width: fixed along x; y, z on the centre lines.
+    """Clamp the section at ``x = at`` (m) without restraining its width: fixed along x; y and z fixed on the centre lines.
 
-    A full clamp restrains the Poisson contraction of bending, which a beam's clamp knows nothing of.
+    A full clamp restrains the Poisson contraction due to bending, which a beam's clamp does not.
     """
 
     def fixed(nodes: Array) -> Bools:
@@ -128,14 +128,14 @@ def clamped_free_to_contract(at: float) -> Clamp:
 
 
 def fixed_by(clamp: Clamp, nodes: Array) -> Bools:
-    """(n, 3) which displacements a clamp holds.
+    """(n, 3) which displacements a clamp fixes.
 
     Raises:
-        CodeError: if it leaves the blade loose.
+        CodeError: if the blade is not fixed along x, y and z.
     """
     fixed = clamp(nodes)
     if not fixed.any(axis=0).all():
-        raise CodeError(f"clamp: holds {fixed.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
+        raise CodeError(f"clamp: fixes {fixed.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
     return fixed
 
 
@@ -144,11 +144,11 @@ def _near(values: Array, target: float) -> Bools:
 
 
 def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.complex128]:
-    """(m, 21, 4) displacement and rotation about x at ``STATIONS``: what the sections there do on average.
+    """(m, 21, 4) mean displacement, and mean rotation about x, of the sections at ``STATIONS``.
 
     Args:
         nodes: (n, 3), with a layer of them at every station along x; rotations are about the line y = z = 0.
-        weights: (n,) share of its section that each node stands for.
+        weights: (n,) weight of each node in its section.
         u: (3, n, m) displacements along x, y, z.
 
     Raises:
@@ -160,7 +160,7 @@ def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.co
     for k, at in enumerate(root + STATIONS * (tip - root)):
         here = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
         if not len(here):
-            raise CodeError(f"mesh: no layer of nodes at x = {at:g} m, a station: make the layers a multiple of ten")
+            raise CodeError(f"mesh: no layer of nodes at the station x = {at:g} m: use a multiple of ten layers")
         frame = np.eye(4)
         frame[0, 3] = at
         R = ties.motion(np.tile(nodes[here], (3, 1)), np.repeat(directions, len(here)), frame)

@@ -16,7 +16,7 @@ def shear_stiffness(material: Material, side: float) -> float:
 
 
 def cantilever(count: int, material: Material, side: float, length: float) -> Array:
-    """The ``count`` lowest frequencies (rad/s) in one plane of a bar of square section; lengths in m."""
+    """The ``count`` lowest frequencies (rad/s) in one plane of a bar of square section; ``side`` and ``length`` in m."""
     second = side**4 / 12
     return timoshenko.cantilever(
         count,

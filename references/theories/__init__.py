@@ -1,4 +1,4 @@
 """Closed forms and series for rotating beams and hinged rigid blades.
 
-A straight blade comes in; modes go out, from Rayleigh–Ritz (``ritz``), an exact spectral solution or a formula.
+Input: a straight blade. Output: its modes, by Rayleigh–Ritz (``ritz``), an exact spectral solution or a formula.
 """

@@ -1,13 +1,14 @@
 """Putter and Manor's rotating beam: inextensible, in assumed modes.
 
-A blade that does not stretch shortens as it bends, by half the square of its slope; the centrifugal force, working on
-that, stiffens it. With deflections v in and w out of the plane of rotation and T the tension of the straight blade,
+As an inextensible blade bends, its projected length decreases by half the square of its slope; the work of the
+centrifugal force on this shortening stiffens it. With deflections v in and w out of the plane of rotation and T the
+tension of the straight blade,
 
     2 V = ∫ E I_ij κ_i κ_j + T (v′² + w′²) − Ω² m v² ds,    2 T_kin = ∫ m (v̇² + ẇ²) ds,    T(s) = Ω² ∫ₛ m (R + s) ds
 
 (S. Putter and H. Manor, "Natural frequencies of radial rotating beams", J. Sound Vib. 56 (1978) 175–185; for twisted
-blades W. Carnegie, "Vibrations of rotating cantilever blading", J. Mech. Eng. Sci. 1 (1959) 235–240). The modes
-assumed are the polynomials of ``spectral``.
+blades W. Carnegie, "Vibrations of rotating cantilever blading", J. Mech. Eng. Sci. 1 (1959) 235–240). The assumed
+modes are the polynomials of ``spectral``.
 """
 
 from dataclasses import dataclass
@@ -34,7 +35,7 @@ class Bending:
     Attributes:
         elastic, centrifugal, mass: (n, n).
         shape: (21, 4, n) of the coordinates.
-        planes: the directions of motion, ``Y`` (chordwise), ``Z`` (flapwise) or both.
+        planes: the directions of motion, ``Y`` (edgewise), ``Z`` (flapwise) or both.
     """
 
     elastic: Array
@@ -44,12 +45,12 @@ class Bending:
     planes: tuple[int, ...]
 
     def stiffness(self, omega: float) -> Array:
-        """At rotor speed ``omega``, rad/s."""
+        """Stiffness (n, n) at rotor speed ``omega`` (rad/s)."""
         return self.elastic + omega**2 * self.centrifugal
 
 
 def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
-    """Chordwise and flapwise bending, apart if the blade is untwisted, with ``terms`` polynomials in each interval."""
+    """Edgewise and flapwise bending, separate if the blade is untwisted, with ``terms`` polynomials in each interval."""
     at = line(blade, terms)
     v, slope, curvature = clamped(at.ends, terms, at.s)
     angle = at.sections.twist + blade.pitch
@@ -81,10 +82,10 @@ def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
 
 
 class AssumedModes:
-    """The inextensible beam; twisted or not, of any straight shape.
+    """The inextensible straight beam, twisted or untwisted, uniform or varying.
 
-    It leaves out rotary inertia, and with the stretch both the steady one (the prestretch) and the oscillating one, to
-    which alone the Coriolis force couples chordwise motion. Bending modes only.
+    It neglects rotary inertia and stretch: the steady stretch (prestretch) and the oscillating one, through which alone
+    the Coriolis force acts on edgewise motion. Bending modes only.
     """
 
     name = "assumed-modes"
@@ -98,15 +99,15 @@ class AssumedModes:
     hint = ""
 
     def version(self) -> str | None:
-        """Of this package."""
+        """Version of this package."""
         return version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """Why the blade is not this beam."""
+        """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=True, stretch=False, tip_inertia=False)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest bending modes with ``elements`` polynomials in each interval (see ``references.interface``)."""
+        """The lowest bending modes with ``elements`` polynomials in each interval (see ``protocol.interface``)."""
         refuse(self.unsupported(blade))
         start = perf_counter()
         parts = [

@@ -1,7 +1,7 @@
 """Closed forms of rigid hinged blades: small motion about steady rotation in the plane of the rotor.
 
-Second-order Lagrangians, written out by hand. About the hinge at radius e: S = ∫x dm, inertias I; β flaps up, ζ lags forward
-(along the motion), θ pitches leading edge up about the blade's axis, inboard of nothing but the flap hinge.
+From second-order Lagrangians, derived by hand. About the hinge at radius e: S = ∫x dm, inertias I. β is flap up, ζ lag
+forward (along the motion), θ pitch with the leading edge up about the blade's axis, outboard of the flap hinge.
 """
 
 import time
@@ -30,10 +30,10 @@ def flap_lag(
     flap_damper: float = 0.0,
     lag_damper: float = 0.0,
 ) -> Matrices:
-    """Coincident flap and lag hinges, the blade's mass symmetric about its axis.
+    """Coincident flap and lag hinges; the blade's mass is symmetric about its axis.
 
-    I_β β̈ + c_β β̇ + (k_β + Ω² (I_ζ − I_x + e S)) β = 0 and I_ζ ζ̈ + c_ζ ζ̇ + (k_ζ + Ω² e S) ζ = 0: for a slender blade flap
-    Ω √(1 + e S/I), lag Ω √(e S/I) (W. Johnson, *Helicopter Theory*, 1980, sec. 9-2).
+    I_β β̈ + c_β β̇ + (k_β + Ω² (I_ζ − I_x + e S)) β = 0 and I_ζ ζ̈ + c_ζ ζ̇ + (k_ζ + Ω² e S) ζ = 0: for a slender blade
+    flap Ω √(1 + e S/I), lag Ω √(e S/I) (W. Johnson, *Helicopter Theory*, 1980, sec. 9-2).
 
     Args:
         omega: rotor speed, rad/s.
@@ -42,6 +42,9 @@ def flap_lag(
         flap_inertia, lag_inertia, own_inertia: I_β, I_ζ, I_x about the hinge, kg m².
         flap_spring, lag_spring: N m/rad.
         flap_damper, lag_damper: N m s/rad.
+
+    Returns:
+        names of the coordinates; M, C, K (2, 2).
     """
     flap = flap_spring + omega**2 * (lag_inertia - own_inertia + offset * first)
     lag = lag_spring + omega**2 * offset * first
@@ -72,18 +75,21 @@ def flap_pitch(
 ) -> Matrices:
     """Flap hinge, pitch bearing outboard of it, and a vertical pitch link from a horn to a rod on the control spring.
 
-    To second order a point (x, y, z) of the blade rises by x β + y θ, moves inwards by x β²/2 + y θ β (+ z β), back by
-    y θ²/2 (+ z θ); the horn's end carries link and rod along as it rises, and the link's middle by half as it moves in.
-    The blade is symmetric about z = 0, so nothing loads the link in the steady state.
+    To second order a point (x, y, z) of the blade moves up by x β + y θ, inwards by x β²/2 + y θ β (+ z β), and back by
+    y θ²/2 (+ z θ). Link and rod follow the vertical motion of the horn's end, the link's middle half of its inward
+    motion. The blade is symmetric about z = 0, so the link is unloaded in the steady state.
 
     Args:
         omega: rotor speed, rad/s.
         offset: e, m.
         xx, yy, zz, xy: ∫x², ∫y², ∫z², ∫xy dm of the blade about the hinge, kg m².
         first_x, first_y: ∫x, ∫y dm, kg m.
-        horn_x, horn_y: of the horn's end from the hinge, m.
+        horn_x, horn_y: position of the horn's end relative to the hinge, m.
         control_spring, control_damper: N/m, N s/m.
         rod_mass, link_mass: kg.
+
+    Returns:
+        names of the coordinates; M, C, K (2, 2).
     """
     rise = np.array([horn_x, horn_y])
     M = np.array([[xx + zz, xy], [xy, yy + zz]]) + (rod_mass + link_mass) * np.outer(rise, rise)
@@ -98,15 +104,15 @@ def flap_pitch(
 
 
 FORMULAE: Mapping[str, Callable[..., Matrices]] = {"flap-lag": flap_lag, "flap-pitch": flap_pitch}
-"""By the name that a case file gives."""
+"""Formulae by their names in case files."""
 
 
 def solve(formula: str, omega: float, parameters: Mapping[str, float]) -> MechanismModes:
-    """A formula's modes at rotor speed ``omega`` (rad/s), about its steady state, in which its coordinates are 0.
+    """A formula's modes at rotor speed ``omega`` (rad/s) about its steady state, where its coordinates are 0.
 
     Raises:
-        KeyError: if there is no such formula.
-        TypeError: if parameters are missing, or not the formula's.
+        KeyError: if the formula is unknown.
+        TypeError: if parameters are missing or unknown.
     """
     begun = time.perf_counter()
     names, M, C, K = FORMULAE[formula](omega, **parameters)

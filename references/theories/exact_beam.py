@@ -1,24 +1,24 @@
-"""The rotating Kirchhoff beam in full: extensible, geometrically nonlinear, with rotary inertia; linearised exactly.
+"""The complete rotating Kirchhoff beam: extensible, geometrically nonlinear, with rotary inertia; linearised exactly.
 
-A straight untwisted blade at rest stretches, when it turns, to the radius r(s) of the section at arc length s, with stretch
-λ = r′ and strain e = λ − 1. Its strain energy per rest length is ``½ (E A e² + G J φ′² + E I_y κ_y² + E I_z κ_z²)``,
-with curvatures per rest length; sections stay normal to the axis (G. Kirchhoff, 1859; A. E. H. Love, *A Treatise on the
-Mathematical Theory of Elasticity*, 4th ed. 1927, ch. XVIII; e as in E. Reissner, ZAMP 23 (1972) 795–804, without shear).
+In rotation a straight untwisted blade stretches: the section at arc length s moves to the radius r(s), with stretch λ =
+r′ and strain e = λ − 1. Its strain energy per undeformed length is ``½ (E A e² + G J φ′² + E I_y κ_y² + E I_z κ_z²)``,
+with curvatures per undeformed length; sections stay normal to the axis (G. Kirchhoff, 1859; A. E. H. Love, *A Treatise
+on the Mathematical Theory of Elasticity*, 4th ed. 1927, ch. XVIII; e as in E. Reissner, ZAMP 23 (1972) 795–804, without shear).
 
-Steady state: ``N = E A (r′ − 1)``, ``N′ + m Ω² r = 0``, r = R at the root, N at the tip from the tip mass: linear in r, and
-the only nonlinearity there is about a straight axis. Small motions (u, v, w) about it and torsion φ turn the section by
+Steady state: ``N = E A (r′ − 1)``, ``N′ + m Ω² r = 0``, r = R at the root, N at the tip from the tip mass: linear in r,
+and the only nonlinear effect on a straight axis. Small motions (u, v, w) about it and torsion φ turn the section by
 (φ, −β, θ), θ = v′/λ, β = w′/λ; to second order, with the moments of inertia I per length,
 
     2 V     = ∫ E A u′² + N/λ (v′² + w′²) + E I_z θ′² + E I_y β′² + G J φ′²
               − Ω² [m (u² + v²) + (I_x − I_z) β² + (I_y − I_z) φ²] ds
     2 T_kin = ∫ m (u̇² + v̇² + ẇ²) + I_z θ̇² + I_y β̇² + I_x φ̇² + 2 Ω [2 m u v̇ − (I_x + I_y − I_z) φ β̇] ds
 
-the last two up to a total time derivative. So stretch goes with chordwise bending and torsion, by the inertia of the
-sections alone, with flapwise bending. Spin softens the turning of a section out of the plane of rotation (β; φ by the
-tennis racket's I_z − I_y), not in it: θ turns about the rotor's axis. E I and G J being constants, tension does not stiffen
-torsion: a rod with such a diagonal stiffness has no trapeze effect, and neither has core.
+the last two up to a total time derivative. Stretch couples with edgewise bending. Torsion couples with flapwise
+bending, only through the inertia of the sections. Spin softening affects rotations of a section out of the plane of
+rotation (β; φ by the tennis racket term I_z − I_y), but not in it: θ is about the rotor's axis. Since E I and G J are
+constant, tension does not stiffen torsion: a rod with such a diagonal stiffness has no trapeze effect, and neither has core.
 
-Galerkin's method with the polynomials of ``spectral``, for u and φ of one degree less than for v and w.
+The solution is by Galerkin's method with the polynomials of ``spectral``, for u and φ of one degree less than for v and w.
 """
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ def steady(blade: Blade, at: Line, omega: float, terms: int) -> tuple[Array, Arr
     """Stretch λ (q,) of the steady state and its slope λ′ (q,), 1/m.
 
     Raises:
-        CodeError: if the centrifugal force outgrows the axial stiffness, so that there is no steady state.
+        CodeError: if the centrifugal force exceeds the axial stiffness, so that no steady state exists.
     """
     u, strain, bend = pinned(at.ends, terms, at.s)
     K = integral(at.weight * at.sections.EA, strain) - omega**2 * integral(at.mass, u)
@@ -52,23 +52,23 @@ def steady(blade: Blade, at: Line, omega: float, terms: int) -> tuple[Array, Arr
         q = scipy.linalg.solve(K, force, assume_a="pos")
     except np.linalg.LinAlgError as error:
         raise CodeError(
-            f"steady stretch: none at {omega:g} rad/s, the centrifugal force outgrows the axial stiffness; lower the speed"
+            f"no steady stretch at {omega:g} rad/s: the centrifugal force exceeds the axial stiffness; lower the speed"
         ) from error
     return 1.0 + strain @ q, bend @ q
 
 
 @dataclass(frozen=True)
 class Beam:
-    """One blade at one speed: its functions at the quadrature points, about its steady state.
+    """A blade at one speed: shape functions at the quadrature points, about the steady state.
 
     Attributes:
         at: the blade at those points.
         omega: rotor speed, rad/s.
         u, u_s: (q, n) functions for stretch and torsion, and their slopes.
         v: (q, n) functions for bending.
-        turn: (q, n) rotation of the section that each of them is, v′/λ.
-        curvature: (q, n) its slope.
-        tense: (n, n) stiffness by the steady tension, ``∫ N/λ v′²``.
+        turn: (q, n) rotation of the section for each function v, v′/λ.
+        curvature: (q, n) derivative of ``turn``.
+        tense: (n, n) stiffness due to the steady tension, ``∫ N/λ v′²``.
         u_shape, v_shape: (21, n) the functions at ``core.modes.STATIONS``.
     """
 
@@ -85,10 +85,10 @@ class Beam:
 
 
 def stretched(blade: Blade, omega: float, terms: int) -> Beam:
-    """The blade at ``omega`` (rad/s) with ``terms`` polynomials a field in each interval.
+    """The blade at ``omega`` (rad/s) with ``terms`` polynomials per field in each interval.
 
     Raises:
-        CodeError: if it has no steady state.
+        CodeError: if no steady state exists.
     """
     at = line(blade, terms)
     u, u_s, _ = pinned(at.ends, terms, at.s)
@@ -115,7 +115,7 @@ Problem = tuple[Array, Array, Array, Array]
 
 
 def in_plane(beam: Beam) -> Problem:
-    """Stretch and chordwise bending."""
+    """Stretch and edgewise bending."""
     at, square = beam.at, beam.omega**2
     m_uu, m_vv = integral(at.mass, beam.u), integral(at.mass, beam.v)
     M = apart(m_uu, m_vv + integral(at.I_z, beam.turn))
@@ -128,7 +128,7 @@ def in_plane(beam: Beam) -> Problem:
 
 
 def out_of_plane(beam: Beam, torsion: bool) -> Problem:
-    """Torsion, if wanted, and flapwise bending."""
+    """Flapwise bending, and torsion if requested."""
     at, square = beam.at, beam.omega**2
     M = integral(at.mass, beam.v) + integral(at.I_y, beam.turn)
     K = (
@@ -145,9 +145,9 @@ def out_of_plane(beam: Beam, torsion: bool) -> Problem:
 
 
 class ExactBeam:
-    """The full beam: every effect of ``core.effects``. Bending in both planes, stretching and torsional modes.
+    """The beam with every effect of ``core.effects``: modes of bending in both planes, stretch and torsion.
 
-    Straight, untwisted, uncoupled and shear-rigid blades, uniform or varying along the span. Torsional modes are there if
+    Straight, untwisted, uncoupled and shear-rigid blades, uniform or varying along the span. Torsional modes exist if
     the sections have a polar moment of inertia and finite G J.
     """
 
@@ -161,18 +161,18 @@ class ExactBeam:
     hint = ""
 
     def version(self) -> str | None:
-        """Of this package."""
+        """Version of this package."""
         return version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """Why the blade is not this beam."""
+        """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=False, stretch=True, tip_inertia=True)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes with ``elements`` polynomials a field in each interval (see ``references.interface``).
+        """The lowest modes with ``elements`` polynomials per field in each interval (see ``protocol.interface``).
 
         Raises:
-            CodeError: also if there is no steady state, or no stable one, at this speed.
+            CodeError: unsupported blade, or no stable steady state at this speed.
         """
         refuse(self.unsupported(blade))
         start = perf_counter()

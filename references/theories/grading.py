@@ -1,4 +1,4 @@
-"""Where the elements of a blade end: at its kinks, and closer together where its bending stiffness changes."""
+"""Element boundaries of a blade: at its kinks, and closer together where its bending stiffness changes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,12 @@ Array = NDArray[np.float64]
 
 
 def element_ends(blade: Blade, elements: int, most: int) -> Array:
-    """Arc lengths (n+1,) of the ends of ``measures`` elements at least.
+    """Arc lengths (n+1,) of the ends of at least ``elements`` elements.
 
-    Every interval between kinks is divided into the same number of elements, so that properties are smooth within each and
-    an order of convergence survives. Of a blade with more than ``most`` intervals there are more elements in proportion, so
-    that refinements stay distinct. Within an interval the larger of bending stiffness's two ratios is shared out evenly, so
-    that curvature, moment over stiffness, is resolved.
+    Every interval between kinks is divided into the same number of elements, so that properties are smooth within each
+    element and the order of convergence is preserved. A blade with more than ``most`` intervals has proportionally more
+    elements, so that refinements stay distinct. Within an interval the larger of the two ratios of bending stiffness is
+    divided evenly between the elements, so that the curvature (moment over stiffness) is resolved.
     """
     ends = intervals(blade)
     pieces = -(-elements // min(len(ends) - 1, most))

@@ -1,8 +1,9 @@
-"""A blade's reference line as the finite elements see it: places, tangents and section axes, and the sections' mass as moments.
+"""A blade's reference line for finite elements: positions, tangents, section axes, and moments of the sections' mass.
 
-It evaluates the data in ``core.blade.Blade`` on its own. It shares with core the description (a cubic spline of the arc
-length through the stations of each piece between kinks; sections turned about the tangent by the twist) and the linear
-interpolation of the tables (``stiffness_at``, ``mass_at``, ``twist_at``), but no frames, quadrature or inertia.
+The data of ``core.blade.Blade`` are evaluated independently of core. Shared with core are the description (a cubic
+spline of the arc length through the stations of each piece between kinks; sections rotated about the tangent by the
+twist) and the linear interpolation of the tables (``stiffness_at``, ``mass_at``, ``twist_at``), but not frames,
+quadrature or inertia.
 """
 
 from dataclasses import dataclass
@@ -18,12 +19,12 @@ from .spectral import intervals
 Array = NDArray[np.float64]
 
 JUMP = 1e-4
-"""Of the length: stations closer than this are the two sides of a jump, and a single element lies between."""
+"""Relative to the length: stations closer than this are the two sides of a jump, with a single element between them."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """Points on the reference line, in axes that turn with the hub; leading dimensions (elements, points).
+    """Points on the reference line, in axes that rotate with the hub; leading dimensions (elements, points).
 
     Attributes:
         place: (…, 3) m, from the hub's centre.
@@ -37,7 +38,7 @@ class Line:
 
 
 def root_axes(blade: Blade) -> Array:
-    """(3, 3) the blade's axes at the root, in columns: coned and pitched, not twisted."""
+    """(3, 3) the blade's axes at the root, in columns: with precone and pitch, without twist."""
     cone, pitch = Rotation.from_euler("y", -blade.precone), Rotation.from_euler("x", blade.pitch)
     return (cone * pitch).as_matrix()
 
@@ -45,8 +46,8 @@ def root_axes(blade: Blade) -> Array:
 def line(blade: Blade, s: Array) -> Line:
     """The line at arc lengths ``s`` (e, q), m; each row lies within one piece between kinks.
 
-    The section's x axis is the tangent t. Its axes are the blade's, rotated by the smallest rotation that brings x onto t,
-    whose axis and sine are x × t, and then about t by the twist.
+    The section's x axis is the tangent t. Its axes are the blade's, rotated by the smallest rotation that brings x onto
+    t, whose axis and sine are x × t, and then about t by the twist.
     """
     root = root_axes(blade)
     place, slope = np.empty((*s.shape, 3)), np.empty((*s.shape, 3))
@@ -83,11 +84,11 @@ def moments(mass: Array) -> Array:
 
 
 def element_ends(blade: Blade, elements: int, most: int) -> Array:
-    """Arc lengths (n+1,) of the ends of ``elements`` elements at least; see ``grading`` for uncoupled blades.
+    """Arc lengths (n+1,) of the ends of at least ``elements`` elements; see ``grading`` for uncoupled blades.
 
-    Every interval between two kinks of a property or of the line is divided into the same number of elements, so that each
-    element is smooth and the order of convergence survives. Of a blade with more than ``most`` intervals there are more
-    elements in proportion, so that refinements stay distinct.
+    Every interval between two kinks of a property or of the line is divided into the same number of elements, so that
+    each element is smooth and the order of convergence is preserved. A blade with more than ``most`` intervals has
+    proportionally more elements, so that refinements stay distinct.
     """
     ends = intervals(blade) if straight(blade) else blade.stations
     wide = np.diff(ends) > JUMP * blade.length

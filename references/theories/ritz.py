@@ -1,8 +1,8 @@
-"""Rayleigh and Ritz: from functions to matrices, from matrices to modes.
+"""The Rayleigh–Ritz method: matrices from shape functions, and modes from matrices.
 
-W. Ritz, "Über eine neue Methode zur Lösung gewisser Variationsprobleme der mathematischen Physik", J. reine angew. Math. 135
-(1909) 1–61. A field (a displacement along one axis, or the rotation about x) is a sum of functions; two fields that couple
-have matrices of four blocks.
+W. Ritz, "Über eine neue Methode zur Lösung gewisser Variationsprobleme der mathematischen Physik", J. reine angew.
+Math. 135 (1909) 1–61. A field (a displacement along one axis, or the rotation about x) is a sum of functions; two
+coupled fields have matrices of four blocks.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,10 +22,10 @@ X, Y, Z, ROTATION_X = range(4)
 """Columns of ``Modes.shapes``."""
 
 DENSE = 150
-"""Coupled problems larger than this are solved as sparse: a function meets only those of its own interval and the next."""
+"""Coupled problems larger than this use sparse matrices: a function overlaps only those of its interval and the next."""
 
 Part = tuple[Array, NDArray[np.complex128], Array]
-"""Frequencies (m,), shapes (m, 21, 4), and relative uncertainties (m,) or none (0,), of modes that no others couple with."""
+"""Frequencies (m,), shapes (m, 21, 4), and relative uncertainties (m,) or none (0,), of an uncoupled set of modes."""
 
 
 def integral(weight: Array, left: Array, right: Array | None = None) -> Array:
@@ -34,7 +34,7 @@ def integral(weight: Array, left: Array, right: Array | None = None) -> Array:
 
 
 def apart(first: Array, second: Array) -> Array:
-    """Matrix of two fields, (n + k, n + k), without a coupling block."""
+    """Block-diagonal matrix of two fields, (n + k, n + k)."""
     return np.block([[first, np.zeros((len(first), len(second)))], [np.zeros((len(second), len(first))), second]])
 
 
@@ -56,7 +56,8 @@ def shape_of(fields: Sequence[tuple[int, Array]]) -> Array:
 
 
 def stationary_modes(M: Array, K: Array) -> tuple[Array, Array]:
-    """Frequencies (n,), ascending, and shapes (n, n) of ``M q̈ + K q = 0``; in inverse form, so that the lowest are sharpest.
+    """Frequencies (n,), ascending, and shapes (n, n) of ``M q̈ + K q = 0``; in inverse form, which is most accurate for
+    the lowest.
 
     Raises:
         CodeError: if K is not positive definite.
@@ -71,7 +72,7 @@ def stationary_modes(M: Array, K: Array) -> tuple[Array, Array]:
 
 
 def coupled_modes(M: Array, C: Array, K: Array, count: int) -> tuple[Array, NDArray[np.complex128]]:
-    """As ``quadratic.gyroscopic_modes``, by the way that suits the size."""
+    """As ``quadratic.gyroscopic_modes``, with dense or sparse matrices depending on the size."""
     if len(K) > DENSE:
         return gyroscopic_modes(sp.csc_array(M), sp.csc_array(C), sp.csc_array(K), count)
     return gyroscopic_modes(M, C, K, count)

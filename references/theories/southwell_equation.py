@@ -1,19 +1,19 @@
-"""Southwell's equation, ω² = ω₀² + K Ω², and how far it can be wrong.
+"""Southwell's equation, ω² = ω₀² + K Ω², and bounds on its error.
 
-The stiffness of a rotating beam is the sum of the elastic one, A, and Ω² times the centrifugal one, B. Southwell and
-Gough ("On the free transverse vibrations of airscrew blades", Aeronautical Research Committee, Reports and Memoranda
-766, 1921) put the non-rotating mode φ_k into Rayleigh's quotient: K = φ_kᵀ B φ_k for φ_kᵀ M φ_k = 1. That is the value
-returned. Between what must the frequency of the inextensible beam (``assumed_modes``) lie?
+The stiffness of a rotating beam is the sum of the elastic stiffness A and Ω² times the centrifugal stiffness B.
+Southwell and Gough ("On the free transverse vibrations of airscrew blades", Aeronautical Research Committee, Reports
+and Memoranda 766, 1921) put the non-rotating mode φ_k into Rayleigh's quotient: K = φ_kᵀ B φ_k for φ_kᵀ M φ_k = 1. This
+value is returned. The frequency of the inextensible beam (``assumed_modes``) is bounded:
 
-* From above: in the span of the k lowest non-rotating modes, by Rayleigh and Ritz, the highest frequency is at least the
-  beam's k-th. For k = 1 this is the value itself: Southwell's equation never gives too low a first frequency.
-* From below: the j-th eigenvalue β_j of B alone is that of a rotating cable. Southwell's theorem is
-  ω₁² ≥ α₁ + Ω² β₁, with α_i the squared non-rotating frequencies; for any k Weyl's inequality says
-  ω_k² ≥ α_i + Ω² β_j, i + j = k + 1 (H. Weyl, Math. Ann. 71 (1912) 441–479), of which the largest is taken.
+* From above: the highest Rayleigh–Ritz frequency in the span of the k lowest non-rotating modes is at least the beam's
+  k-th frequency. For k = 1 this is the value itself: Southwell's equation never underestimates the first frequency.
+* From below: the eigenvalues β_j of B alone are those of a rotating cable. Southwell's theorem is
+  ω₁² ≥ α₁ + Ω² β₁, with α_i the squared non-rotating frequencies. For any k, Weyl's inequality is
+  ω_k² ≥ α_i + Ω² β_j, i + j = k + 1 (H. Weyl, Math. Ann. 71 (1912) 441–479), of which the largest is used.
 
-``Modes.uncertainty`` reaches from the value to the farther of the two: a rigorous bracket for every mode (counted in its
-own plane of bending, or in both together where twist couples them), α, β and φ being taken as exact: they are converged
-like ``assumed_modes``, to rounding at the finer levels. For k > 1 the value itself is no bound, only inside the bracket.
+``Modes.uncertainty`` is the distance from the value to the farther bound: a rigorous bracket for every mode (numbered
+within its plane of bending, or within both together if twist couples them). α, β and φ are assumed exact; they converge
+like ``assumed_modes``, to rounding at the finer levels. For k > 1 the value itself is not a bound, but lies inside the bracket.
 """
 
 from time import perf_counter
@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 def cable(blade: Blade, planes: tuple[int, ...], terms: int) -> Array:
     """Eigenvalues β (n,) of B, ascending: squared frequencies over Ω² of the blade without bending stiffness.
 
-    In the plane of rotation they are less by 1 than out of it; δ = 0, uniform: j (2j − 1) out of it.
+    In the plane of rotation they are lower by 1 than out of it. Uniform, δ = 0: j (2j − 1) out of the plane.
     """
     at = line(blade, terms)
     w, slope, _ = pinned(at.ends, terms, at.s)
@@ -57,7 +57,7 @@ def squared(bending: Bending, beta: Array, omega: float, count: int) -> tuple[Ar
 
 
 class SouthwellEquation:
-    """Southwell's equation for each bending mode, with its bracket; the blades that ``assumed-modes`` takes."""
+    """Southwell's equation for each bending mode, with its bracket; for the blades that ``assumed-modes`` supports."""
 
     name = "southwell-equation"
     title = "Southwell's equation"
@@ -75,11 +75,11 @@ class SouthwellEquation:
         return version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """Why the blade is not this beam."""
+        """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=True, stretch=False, tip_inertia=False)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest bending modes from ``elements`` polynomials in each interval, with ``uncertainty`` the bracket."""
+        """The lowest bending modes from ``elements`` polynomials in each interval; ``Modes.uncertainty`` is the bracket."""
         refuse(self.unsupported(blade))
         start = perf_counter()
         parts = []

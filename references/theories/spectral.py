@@ -1,10 +1,10 @@
 """Polynomials for a cantilever: spectral between the stations, where its properties are smooth.
 
-Each interval carries Legendre's polynomials integrated once (for stretch and torsion, continuous) or twice (for bending,
-with continuous slope), whose derivatives are orthogonal, besides the linear or cubic functions of its end values: the
-p-version of the finite element method (B. Szabó and I. Babuška, *Finite Element Analysis*, 1991, §3.1). Properties that
-are linear between stations have kinks at them, but none within an interval, so frequencies converge exponentially with
-the number of terms whatever the blade; a uniform blade is one interval.
+Each interval has the linear or cubic functions of its end values, and Legendre polynomials integrated once (for stretch
+and torsion, continuous) or twice (for bending, with continuous slope), whose derivatives are orthogonal. This is the
+p-version of the finite element method (B. Szabó and I. Babuška, *Finite Element Analysis*, 1991, §3.1). Properties
+that are linear between stations have kinks there, but none within an interval, so frequencies converge exponentially
+with the number of terms for every blade. A uniform blade is one interval.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ CUBIC = ([2, -3, 0, 1], [1, -1, -1, 1], [2, 3, 0, -1], [-1, -1, 1, 1])
 
 
 def intervals(blade: Blade) -> Array:
-    """Arc lengths (k+1,) between which the blade's properties are linear: its stations, but for those without a kink."""
+    """Arc lengths (k+1,) between which the blade's properties are linear: its stations, except those without a kink."""
     s = blade.stations
     rigid = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
     table = np.column_stack([blade.twist, rigid.reshape(len(s), -1), blade.mass.reshape(len(s), -1)])
@@ -41,8 +41,8 @@ def clamped(ends: Array, terms: int, s: Array) -> Array:
 
     Args:
         ends: (k+1,) of the intervals, from the root's.
-        terms: in each interval, at least 2; of degree ``terms + 1``.
-        s: (q,) where they are wanted.
+        terms: number in each interval, at least 2; their degree is ``terms + 1``.
+        s: (q,) arc lengths at which to evaluate them, m.
 
     Returns:
         (3, q, k·terms): the functions, their slopes and their second derivatives with respect to ``s``.
@@ -56,7 +56,7 @@ def clamped(ends: Array, terms: int, s: Array) -> Array:
 
 
 def pinned(ends: Array, terms: int, s: Array) -> Array:
-    """Functions for stretch, torsion and cables: zero at the root and continuous; as ``clamped``, of degree ``terms``."""
+    """Functions for stretch, torsion and cables: zero at the root and continuous; as ``clamped``, but of degree ``terms``."""
     local = np.zeros((terms + 1, terms + 1))
     local[:2, :2] = [[0.5, 0.5], [-0.5, 0.5]]
     bubbles = legendre.legint(np.eye(terms)[1:].T, lbnd=-1, axis=0)
@@ -67,7 +67,7 @@ def pinned(ends: Array, terms: int, s: Array) -> Array:
 def _assembled(ends: Array, s: Array, local: Array, shared: int) -> Array:
     """Global functions from the columns of Legendre coefficients ``local``: ``shared`` at each end, then the bubbles.
 
-    An interval's functions are numbered: its bubbles, then those it shares with the next at its outer end.
+    In each interval the bubbles come first, then the functions shared with the next interval at its outer end.
     """
     width = local.shape[1]
     new = width - shared

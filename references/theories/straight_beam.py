@@ -1,4 +1,4 @@
-"""What the closed forms share: a straight blade at quadrature points, its tension, and which blades are not one."""
+"""Common to the closed forms: a straight blade at quadrature points, its tension, and the check for unsupported blades."""
 
 from dataclasses import dataclass
 from importlib.metadata import version as installed
@@ -14,25 +14,25 @@ from .spectral import gauss, intervals
 Array = NDArray[np.float64]
 
 LEVELS: tuple[int, ...] = (8, 16, 32)
-"""Terms in each interval. A uniform beam, each plane: 8 give mode 3 to 1e-6, 16 mode 5 to 1e-10, 32 mode 10 to rounding."""
+"""Terms in each interval. For a uniform beam, per plane: 8 give mode 3 to 1e-6, 16 mode 5 to 1e-10, 32 mode 10 to rounding."""
 
 MAX_INTERVALS = 8
-"""Intervals beyond which each is so short that fewer terms do: the fewest but five, twice as many at the finest."""
+"""Number of intervals above which fewer terms suffice in each: at least five, and twice as many at the finest level."""
 
 EXTRA = 8
-"""Gauss points beyond those that polynomial integrands need, for the twist's sines and the steady stretch's quotients."""
+"""Gauss points in addition to those for polynomial integrands, for sines of the twist and quotients of the steady stretch."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A straight blade at quadrature points, the last of which is the tip and stands for the tip mass.
+    """A straight blade at quadrature points; the last point is the tip and represents the tip mass.
 
     Attributes:
-        ends: (k+1,) of the intervals within which all is smooth, m.
+        ends: (k+1,) boundaries of the intervals within which all properties are smooth, m.
         s: (q,) arc lengths, m.
-        weight: (q,) length each stands for, m; 0 at the tip.
+        weight: (q,) length that each point represents, m; 0 at the tip.
         sections: properties at ``s``.
-        mass, I_x, I_y, I_z: (q,) of what each stands for, kg and kg m².
+        mass, I_x, I_y, I_z: (q,) lumped at each point, kg and kg m².
     """
 
     ends: Array
@@ -46,14 +46,14 @@ class Line:
 
 
 def terms(blade: Blade, level: int) -> int:
-    """Polynomials in each interval at a level of refinement: as many as the level says, or fewer of a blade of many kinks."""
+    """Polynomials in each interval at a level of refinement: ``level``, or fewer for a blade with many intervals."""
     if len(intervals(blade)) - 1 <= MAX_INTERVALS:
         return level
     return round(5.0 * np.sqrt(level / LEVELS[0]))
 
 
 def line(blade: Blade, terms: int) -> Line:
-    """The blade at the quadrature points that ``terms`` polynomials an interval need."""
+    """The blade at the quadrature points for ``terms`` polynomials per interval."""
     ends = intervals(blade)
     s, weight = gauss(ends, terms + EXTRA)
     s, weight = np.append(s, blade.length), np.append(weight, 0.0)
@@ -75,25 +75,37 @@ def tension(blade: Blade, s: Array) -> Array:
 
 
 def refusal(blade: Blade, *, twist: bool, stretch: bool, tip_inertia: bool) -> str | None:
-    """Why a straight Euler–Bernoulli beam cannot be this blade, or None.
+    """The reason why a blade is not a straight Euler–Bernoulli beam; None if it is.
 
     Args:
         blade: the blade.
-        twist: whether the code takes twist and pitch.
+        twist: whether the code supports twist and pitch.
         stretch: whether it needs a finite axial stiffness.
-        tip_inertia: whether it takes a tip mass with moments of inertia.
+        tip_inertia: whether it supports a tip mass with moments of inertia.
     """
     rigid = {int(strain) for strain in np.argwhere(np.isinf(blade.stiffness))[:, 1]}
     lump = np.diagonal(blade.tip_mass)
     masses = np.diagonal(blade.mass, axis1=1, axis2=2)[:, :3]
     reasons: tuple[tuple[object, str], ...] = (
-        (not clamped(blade), "the root is not clamped: this code holds it"),
-        (coupled(blade), "the sections couple (offset centres, or bend-twist); this beam takes uncoupled ones"),
-        (not straight(blade), "the blade is prebent or swept; this beam is straight"),
-        (blade.precone != 0, f"precone {blade.precone:g} rad bends the steady state; this beam turns in its own plane"),
-        (not twist and blade.twist.any(), "the blade is twisted; this code keeps the two bending planes apart"),
-        (not twist and blade.pitch != 0, f"pitch {blade.pitch:g} rad; this code keeps the two bending planes apart"),
-        (not {SHEAR_Y, SHEAR_Z} <= rigid, "the sections are flexible in shear; this beam is Euler–Bernoulli's"),
+        (not clamped(blade), "the root is not clamped: this code supports a clamped root only"),
+        (
+            coupled(blade),
+            "the sections couple (offset centres, or bend-twist); this code supports uncoupled ones",
+        ),
+        (not straight(blade), "the blade is prebent or swept; this code supports straight blades only"),
+        (
+            blade.precone != 0,
+            f"precone {blade.precone:g} rad bends the steady state; this code supports no precone",
+        ),
+        (not twist and blade.twist.any(), "the blade is twisted; this code treats the two bending planes separately"),
+        (
+            not twist and blade.pitch != 0,
+            f"pitch {blade.pitch:g} rad; this code treats the two bending planes separately",
+        ),
+        (
+            not {SHEAR_Y, SHEAR_Z} <= rigid,
+            "the sections are flexible in shear; this beam is rigid in shear (Euler–Bernoulli)",
+        ),
         (rigid & {BEND_Y, BEND_Z}, "a bending stiffness is infinite; this beam bends in both planes"),
         (stretch and AXIAL in rigid, "the axial stiffness is infinite; this beam stretches"),
         (
@@ -102,19 +114,22 @@ def refusal(blade: Blade, *, twist: bool, stretch: bool, tip_inertia: bool) -> s
         ),
         (
             not np.allclose(blade.tip_mass, np.diag(lump), rtol=0, atol=1e-12 * lump.max()),
-            "the tip mass is off the axis; this beam carries it on the axis",
+            "the tip mass is off the axis; this code supports a tip mass on the axis only",
         ),
-        (not tip_inertia and lump[3:].any(), "the tip mass has moments of inertia; this code takes a point mass"),
+        (
+            not tip_inertia and lump[3:].any(),
+            "the tip mass has moments of inertia; this code supports a point mass only",
+        ),
     )
     return next((reason for applies, reason in reasons if applies), None)
 
 
 def refuse(reason: str | None) -> None:
-    """Raise ``CodeError`` if there is a reason to."""
+    """Raise ``CodeError`` with this reason, if there is one."""
     if reason:
         raise CodeError(reason)
 
 
 def version() -> str:
-    """Of the closed forms: this package's own, for they need nothing foreign."""
+    """Version of the closed forms: that of this package, since they need no foreign code."""
     return f"southwell {installed('southwell')}"

@@ -1,4 +1,4 @@
-"""Exact bending frequencies of a uniform cantilever with shear and rotary inertia (Timoshenko's beam), at rest.
+"""Exact bending frequencies of a uniform cantilever with shear and rotary inertia (Timoshenko beam), not rotating.
 
 T. C. Huang, J. Appl. Mech. 28 (1961) 579–584: the frequency equation of the clamped–free beam.
 """
@@ -17,9 +17,12 @@ def cantilever(count: int, *, EI: float, GA: float, mass: float, rotary: float, 
         count: number of frequencies.
         EI: bending stiffness, N m².
         GA: shear stiffness with its correction factor, N.
-        mass: per length, kg/m.
+        mass: mass per length, kg/m.
         rotary: moment of inertia per length about the bending axis, kg m.
         length: from the clamp to the free end, m.
+
+    Returns:
+        (count,), ascending; fewer if there are fewer below the cut-off.
     """
     r2, s2 = rotary / mass / length**2, EI / GA / length**2
 

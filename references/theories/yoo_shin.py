@@ -1,17 +1,17 @@
 """Yoo and Shin's rotating cantilever: bending coupled with stretch by the Coriolis force, linear in hybrid variables.
 
-The stretch s of the arc replaces the axial displacement, ``u = s − ∫ v′² / 2``: the strain energy is then quadratic, and
-the centrifugal stiffening comes out of the kinetic energy. For small motions, with T the tension of the straight blade,
+The stretch s of the arc replaces the axial displacement, ``u = s − ∫ v′² / 2``: the strain energy is then quadratic,
+and the centrifugal stiffening follows from the kinetic energy. For small motions, with T the tension of the straight blade,
 
-    chordwise:  m v̈ + 2 Ω m ṡ − Ω² m v + (E I_z v″)″ − (T v′)′ = 0
+    edgewise:   m v̈ + 2 Ω m ṡ − Ω² m v + (E I_z v″)″ − (T v′)′ = 0
     stretch:    m s̈ − 2 Ω m v̇ − Ω² m s − (E A s′)′ = 0,              T(s) = Ω² ∫ₛ m (R + s) ds
     flapwise:   m ẅ + (E I_y w″)″ − (T w′)′ = 0
 
-(H. H. Yoo and S. H. Shin, "Vibration analysis of rotating cantilever beams", J. Sound Vib. 212 (1998) 807–828, there for
-uniform beams; here properties may vary along the span.) Rayleigh–Ritz with the polynomials of ``spectral``.
+(H. H. Yoo and S. H. Shin, "Vibration analysis of rotating cantilever beams", J. Sound Vib. 212 (1998) 807–828, there
+for uniform beams; here properties may vary along the span.) Rayleigh–Ritz with the polynomials of ``spectral``.
 
-The theory is linear in s: the steady stretch is not followed. It has none at all from the speed at which Ω² m outgrows the
-axial stiffness (``γ = α π/2`` for a uniform beam), and the code then says so.
+The theory is linear in s and neglects the steady stretch. No steady state exists above the speed at which Ω² m exceeds
+the axial stiffness (``γ = α π/2`` for a uniform beam); the code then raises an error.
 """
 
 from time import perf_counter
@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 
 def chordwise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Array, Array]:
-    """M, C, K (2n, 2n) of stretch and chordwise bending at ``omega`` (rad/s), and their coordinates' shape (21, 4, 2n)."""
+    """M, C, K (2n, 2n) of stretch and edgewise bending at ``omega`` (rad/s), and the coordinates' shapes (21, 4, 2n)."""
     at = line(blade, terms)
     s, strain, _ = pinned(at.ends, terms, at.s)
     v = clamped(at.ends, terms, at.s)[0]
@@ -49,9 +49,9 @@ def chordwise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Arr
 
 
 class YooShin:
-    """Chordwise bending with stretch, and flapwise bending; uniform or varying, untwisted.
+    """Edgewise bending with stretch, and flapwise bending; uniform or varying, untwisted.
 
-    It leaves out rotary inertia and the change of the steady state's radius and tension by its own stretch.
+    It neglects rotary inertia, and the effect of the steady stretch on radius and tension.
     """
 
     name = "yoo-shin"
@@ -65,18 +65,18 @@ class YooShin:
     hint = ""
 
     def version(self) -> str | None:
-        """Of this package."""
+        """Version of this package."""
         return version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """Why the blade is not this beam."""
+        """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=False, stretch=True, tip_inertia=False)
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes with ``elements`` polynomials a field in each interval (see ``references.interface``).
+        """The lowest modes with ``elements`` polynomials per field in each interval (see ``protocol.interface``).
 
         Raises:
-            CodeError: also beyond the speed up to which the blade resists its own stretching.
+            CodeError: unsupported blade, or a speed above which no steady state exists.
         """
         refuse(self.unsupported(blade))
         start = perf_counter()

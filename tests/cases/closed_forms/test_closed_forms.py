@@ -76,7 +76,7 @@ def test_steady_stretch_of_a_uniform_blade() -> None:
 def test_past_the_speed_at_which_the_blade_pulls_itself_apart(code) -> None:
     critical = 70.0 * np.pi / 2
     code.solve(slender(), 0.999 * critical, FINE, 4)
-    with pytest.raises(CodeError, match=r"no stable steady state|steady stretch: none"):
+    with pytest.raises(CodeError, match=r"no stable steady state|no steady stretch"):
         code.solve(slender(), 1.001 * critical, FINE, 4)
 
 

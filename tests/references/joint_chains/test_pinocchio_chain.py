@@ -177,7 +177,7 @@ def test_too_fast_for_a_steady_state(gamma: float, reason: str) -> None:
 
 def test_a_load_that_no_steady_state_carries_says_how_far_it_went() -> None:
     floppy = replace(curved(), stiffness=0.01 * curved().stiffness)
-    with pytest.raises(CodeError, match=r"omega: 4 rad/s: no steady state past \d+% of Ω²"):
+    with pytest.raises(CodeError, match=r"omega: 4 rad/s: no steady state above \d+% of Ω²"):
         CODE.solve(floppy, 4.0, 10, 4)
 
 
