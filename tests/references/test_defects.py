@@ -1,4 +1,4 @@
-"""Each known defect is there, in the version that is installed: one that is mended is to be struck off the list."""
+"""Each known defect exists in the installed version; remove one that has been fixed from the list."""
 
 import ast
 from dataclasses import replace
@@ -23,19 +23,19 @@ INSTALLED = {
 
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
-def test_the_defect_is_there(defect: Defect) -> None:
+def test_the_defect_is_present(defect: Defect) -> None:
     if not INSTALLED[defect.script.partition("_")[0]]:
         hint = f": southwell codes install {defect.environment}" if defect.environment else ""
         pytest.skip(f"not installed{hint}")
     said = defects.shown(defect).splitlines()
-    assert said[-1] == "defect: present", "mended: strike it off the list"
+    assert said[-1] == "defect: present", "fixed: remove it from the list"
     assert "expected" in "".join(said[1:-1])
     assert any(character.isdigit() for character in said[0]), "its first line names the version"
 
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
-def test_its_script_stands_alone(defect: Defect) -> None:
-    """Ready to be sent upstream: nothing of ours is imported."""
+def test_its_script_is_self_contained(defect: Defect) -> None:
+    """It can be sent upstream: nothing of this package is imported."""
     tree = ast.parse(defect.path.read_text(encoding="utf-8"))
     imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
     imported |= {n.module or "." for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
@@ -49,7 +49,7 @@ def test_every_script_is_listed_and_every_code_known() -> None:
     assert {code for d in DEFECTS for code in d.codes} <= set(registry.names())
 
 
-def test_a_reproducer_that_cannot_run_says_why() -> None:
+def test_a_reproducer_that_cannot_run_is_reported() -> None:
     with pytest.raises(RuntimeError, match=r"missing: .*No such file"):
         defects.shown(replace(DEFECTS[0], script="missing"))
     with pytest.raises(RuntimeError, match=r"no answer within 0\.001 s"):

@@ -1,4 +1,4 @@
-"""The printed tables: read as they are written, and held to exact computation digit by digit."""
+"""The printed tables: read as written, and compared with exact computation digit by digit."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ def ids(value: str | Series | Datum) -> str:
 
 
 def blade_of(name: str, series: Series) -> Blade:
-    """The beam of a series; the paper's is the one identified from its digits."""
+    """The beam of a series; that of the paper is identified from its digits."""
     if name == "park2010":
         return park()
     blade = uniform_blade(
@@ -47,7 +47,7 @@ def blade_of(name: str, series: Series) -> Blade:
 
 
 def computed(name: str, series: Series, datum: Datum) -> float:
-    """By the code that has the series' model; the paper's own column by core with the paper's discretisation."""
+    """Computed by the code with the model of the series; the paper's column by core with the paper's discretisation."""
     if series.tapered:
         return float(tapered_beams.exact(series.height_taper, series.breadth_taper, datum.speed)[datum.mode - 1])
     blade = blade_of(name, series)
@@ -60,7 +60,7 @@ def computed(name: str, series: Series, datum: Datum) -> float:
 
 
 @pytest.mark.parametrize(("name", "series", "datum"), HELD, ids=ids)
-def test_a_datum_of_a_coarse_method_is_within_what_it_is_held_to(name: str, series: Series, datum: Datum) -> None:
+def test_a_datum_of_a_coarse_method_is_within_its_target(name: str, series: Series, datum: Datum) -> None:
     case, _, _ = series.blade.partition("/")
     blade = next(v.blade for v in library.load(case).variants if v.name == series.blade)
     unit, speed = UNITS[published.load(name).unit]
@@ -71,7 +71,7 @@ def test_a_datum_of_a_coarse_method_is_within_what_it_is_held_to(name: str, seri
 
 @pytest.mark.parametrize(("name", "series", "datum"), EXACT, ids=ids)
 def test_a_datum_is_right_to_its_last_digit_or_suspect(name: str, series: Series, datum: Datum) -> None:
-    """Within half a unit, or marked; and none is marked that is within."""
+    """Within half a unit, or marked suspect; none within half a unit is marked."""
     off = abs(computed(name, series, datum) - datum.value) > datum.half_unit
     assert off == datum.suspect
 
@@ -83,7 +83,7 @@ def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Dat
 
 
 def test_core_prints_what_hodges_and_rutkowski_print() -> None:
-    """Core is independent of what judges the digits: to one unit of the last, sections linear between 1601 stations."""
+    """Core is independent of the code that checks the digits; to one unit of the last digit, with 1601 stations."""
     (series,) = published.load("hodges_rutkowski1981").series
     found = core_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
     printed = [datum.value for datum in series.data if datum.speed == 12]
@@ -92,14 +92,14 @@ def test_core_prints_what_hodges_and_rutkowski_print() -> None:
 
 @pytest.mark.parametrize(("height", "breadth"), [(0.4, 0.4), (0.8, 0.8), (0.0, 0.8)])
 def test_core_and_the_series_agree_on_double_tapers(height: float, breadth: float) -> None:
-    """Also on the one that is misprinted as 38.4920."""
+    """Including the value misprinted as 38.4920."""
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     found = family(core_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
     np.testing.assert_allclose(found, tapered_beams.exact(height, breadth, 0.0)[:3], rtol=2e-6)
 
 
-def test_the_yoo_shin_digits_are_cut_off() -> None:
-    """What the notes of that table say of its ten values up to speed 10."""
+def test_the_yoo_shin_digits_are_truncated() -> None:
+    """As the notes of that table state for its ten values up to speed 10."""
     series = published.load("yoo_shin1998").series[0]
     slow = [datum for datum in series.data if datum.speed <= 10]
     assert len(slow) == 10
@@ -108,7 +108,7 @@ def test_the_yoo_shin_digits_are_cut_off() -> None:
 
 
 @pytest.mark.parametrize("name", published.names())
-def test_no_datum_is_given_twice(name: str) -> None:
+def test_no_datum_is_duplicated(name: str) -> None:
     for series in published.load(name).series:
         keys = [(d.family, d.mode, d.speed) for d in series.data]
         assert len(keys) == len(set(keys))
@@ -124,7 +124,7 @@ def test_rounding_is_half_a_unit_of_the_last_digit(printed: str, value: float, h
     assert datum.half_unit == pytest.approx(half_unit, rel=1e-15)
 
 
-def test_a_series_says_what_its_model_lacks() -> None:
+def test_a_series_declares_the_effects_it_lacks() -> None:
     park2010 = published.load("park2010")
     assert park2010.series[1].effects == Effects(prestretch=False, rotary_inertia=False)
     assert replace(park2010.series[0].effects, rotary_inertia=True) == ALL_EFFECTS
@@ -146,7 +146,7 @@ data = [{ family = "chordwise", mode = 1, speed = 10, printed = "11.71" }]
 """
 
 
-def test_a_good_file_is_read() -> None:
+def test_a_valid_file_is_read() -> None:
     assert published.parse(GOOD, "good.toml").series[0].data[0].value == 11.71
 
 
@@ -167,7 +167,7 @@ def test_a_good_file_is_read() -> None:
         ("lacks = []", "lacks = [", ["line"]),
     ],
 )
-def test_a_bad_file_is_told(old: str, new: str, words: list[str]) -> None:
+def test_an_invalid_file_is_an_error(old: str, new: str, words: list[str]) -> None:
     assert old in GOOD
     with pytest.raises(TableError) as told:
         published.parse(GOOD.replace(old, new), "bad.toml")
@@ -177,7 +177,7 @@ def test_a_bad_file_is_told(old: str, new: str, words: list[str]) -> None:
     assert all(word in message for word in words)
 
 
-def test_an_unknown_table_is_told_with_the_nearest() -> None:
+def test_an_unknown_table_is_an_error_that_suggests_the_nearest() -> None:
     with pytest.raises(TableError, match="'park2011' is not known: did you mean park2010"):
         published.load("park2011")
     with pytest.raises(TableError, match="known: bir2010, bmodes3"):

@@ -58,29 +58,29 @@ class TestAnswers:
         np.testing.assert_allclose(value, exact, rtol=2e-6 if code is TREE else 1e-7)
         assert (abs(order - code.order) < 0.05 * code.order).all()
 
-    def test_tree_turning_converges_to_the_exact_beam(self):
+    def test_rotating_tree_converges_to_the_exact_beam(self):
         value, order = extrapolated(TREE, lambda n: families(TREE.solve(PARK, 10.0, n, 6), 3))
         np.testing.assert_allclose(value, FULL, rtol=2e-6)
         assert (abs(order - 2) < 0.05).all()
 
     @both
-    def test_turning_without_rotary_inertia(self, code):
+    def test_rotation_without_rotary_inertia(self, code):
         value, order = extrapolated(code, lambda n: families(code.solve(NO_ROTARY, 10.0, n, 6), 3))
         np.testing.assert_allclose(value, STRETCHED, rtol=2e-6)
         assert (abs(order - code.order) < 0.05 * code.order).all()
-        # stretch lowers frequencies, by no more than the strain of 8e-5 and Coriolis (1.2e-4) can
+        # stretch lowers frequencies, by at most the effect of the strain of 8e-5 and of Coriolis (1.2e-4)
         assert ((value < INEXTENSIBLE) & (value > INEXTENSIBLE * (1 - 2e-4))).all()
 
     @both
     @pytest.mark.parametrize("omega", [10.0, 30.0])
-    def test_chordwise_is_not_flapwise(self, code, omega):
-        """The inextensible beam's ω_flap² − ω_chord² is Ω² exactly; a frozen frame would make it nothing."""
+    def test_edgewise_differs_from_flapwise_by_spin_softening(self, code, omega):
+        """For the inextensible beam ω_flap² − ω_edge² = Ω² exactly; in a fixed frame the difference would be zero."""
         chordwise, flapwise = families(code.solve(NO_ROTARY, omega, code.levels[0], 6), 3)
         np.testing.assert_allclose(flapwise**2 - chordwise**2, omega**2, rtol=0.03)
 
     @pytest.mark.parametrize(("hub", "gamma"), [(0.0, 2.0), (0.0, 10.0), (1.0, 10.0), (5.0, 2.0)])
     def test_both_agree_where_coriolis_and_stretch_matter(self, hub, gamma):
-        """Two formulations, fourth order and second, meet; strains up to 0.03."""
+        """Two formulations, of fourth and second order, agree; strains up to 0.03."""
         cable, _ = extrapolated(ANCF, lambda n: ANCF.solve(unit(hub), gamma, n, 6).frequencies)
         tree, _ = extrapolated(TREE, lambda n: TREE.solve(unit(hub), gamma, n, 6).frequencies)
         np.testing.assert_allclose(tree, cable, rtol=3e-5)
@@ -92,20 +92,20 @@ class TestAnswers:
         np.testing.assert_allclose((4 * values[1] - values[0]) / 3, cable, rtol=1e-4)
 
     @both
-    def test_coriolis_coupling_is_felt(self, code):
+    def test_coriolis_coupling_lowers_the_frequency(self, code):
         """α = 70, γ = 10: 5.0490 uncoupled, 4.9700 coupled (Yoo and Shin 1998), lower still for the steady stretch."""
         value, _ = extrapolated(code, lambda n: families(code.solve(unit(), 10.0, n, 6), 1))
         assert 4.97 * (1 - 0.5 * 10**2 / 70**2) < value[0, 0] < 4.97
 
     @both
-    def test_beyond_the_speed_of_endless_stretch_there_is_no_steady_state(self, code):
-        """x'' + (Ω/α)² x = 0 along the blade (x its deformed radius, L = 1): endless at Ω = απ/2 = 109.96."""
+    def test_no_steady_state_above_the_speed_of_unbounded_stretch(self, code):
+        """x'' + (Ω/α)² x = 0 along the blade (x the deformed radius, L = 1): unbounded at Ω = απ/2 = 109.96."""
         assert code.solve(unit(), 105.0, 20, 2).frequencies[0] > 0
         with pytest.raises(CodeError, match=r"no (stable )?steady state"):
             code.solve(unit(), 115.0, 20, 2)
 
-    def test_windpact_at_rest_and_turning(self, windpact):
-        """First flap of the public 3 MW blade: 0.932 Hz at rest, +10.3 % at 20 rpm (printed digits)."""
+    def test_windpact_at_zero_speed_and_rotating(self, windpact):
+        """First flap of the public 3 MW blade: 0.932 Hz at zero speed, +10.3 % at 20 rpm (printed digits)."""
         value = {}
         for rpm in (0.0, 20.0):
             value[rpm], order = extrapolated(
@@ -120,8 +120,8 @@ class TestAnswers:
 @needs_exudyn
 class TestShapes:
     @both
-    def test_at_rest_they_are_the_cantilevers(self, code):
-        """In the plane of a degenerate pair, whatever combination comes out has the one shape along the span."""
+    def test_shapes_at_zero_speed_are_those_of_the_cantilever(self, code):
+        """Any combination of a degenerate pair has the same shape along the span."""
         modes = code.solve(NO_ROTARY, 0.0, code.levels[-1], 4)
         for shape, beta in zip(modes.shapes, np.repeat(roots(2), 2), strict=True):
             across = shape[:, 1:3] / np.linalg.norm(shape[-1, 1:3])
@@ -130,7 +130,7 @@ class TestShapes:
             assert abs(shape[:, [0, 3]]).max() < 1e-6 * abs(shape).max()
 
     @both
-    def test_flapwise_moves_along_z_and_chordwise_along_y(self, code):
+    def test_flapwise_moves_along_z_and_edgewise_along_y(self, code):
         modes = code.solve(NO_ROTARY, 10.0, code.levels[0], 4)
         for shape, direction, nodes in zip(modes.shapes, (1, 2, 1, 2), (0, 0, 1, 1), strict=True):
             moved = (shape[:, direction] / shape[-1, direction]).real
@@ -139,8 +139,9 @@ class TestShapes:
             assert abs(shape[:, 3 - direction]).max() < 1e-6 * abs(shape[:, direction]).max()
 
     @both
-    def test_stretch_lags_chordwise_motion_by_a_quarter(self, code):
-        """Coriolis: moving forwards (+y) is flung outwards; u and v are 90° apart, the same way in both codes."""
+    def test_stretch_lags_edgewise_motion_by_a_quarter_period(self, code):
+        """Coriolis: forward motion (+y) causes an outward force; u and v are 90° apart, with the same sign in both
+        codes."""
         shape = code.solve(unit(), 10.0, code.levels[0], 1).shapes[0, -1]
         ratio = shape[0] / shape[1]
         assert abs(ratio.real) < 1e-6 * abs(ratio)
@@ -150,7 +151,7 @@ class TestShapes:
 @needs_exudyn
 class TestManners:
     @both
-    def test_silent_even_in_failure_and_leaves_no_files(self, code, capfd, monkeypatch, tmp_path):
+    def test_prints_nothing_even_on_failure_and_leaves_no_files(self, code, capfd, monkeypatch, tmp_path):
         monkeypatch.chdir(tmp_path)
         code.solve(unit(), 10.0, 4, 2)
         with pytest.raises(CodeError):
@@ -168,7 +169,7 @@ class TestManners:
 
 
 @both
-def test_found_without_being_imported(code):
+def test_the_version_is_found_without_an_import(code):
     module = type(code).__module__
     text = f"import sys; from {module} import CODE; CODE.version(); sys.exit('exudyn' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", text], check=False).returncode == 0
@@ -188,7 +189,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("code", "blade", "reason"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_cannot_be_solved_is_refused_with_the_reason(code, blade, reason):
+def test_an_unsupported_blade_is_declined_with_a_reason(code, blade, reason):
     found = code.unsupported(blade)
     assert found is not None
     with pytest.raises(CodeError, match=reason):
@@ -196,7 +197,7 @@ def test_what_cannot_be_solved_is_refused_with_the_reason(code, blade, reason):
 
 
 @both
-def test_what_can_be_solved_is_not_refused(code):
+def test_a_supported_blade_is_accepted(code):
     assert code.unsupported(PARK) is None
     assert code.unsupported(unit(5.0)) is None
 

@@ -1,7 +1,7 @@
-"""Loops at rest against Exudyn's rigid bodies in absolute coordinates, every joint a generic joint: no tree anywhere.
+"""Loops at zero speed against Exudyn's rigid bodies in absolute coordinates, with every joint a generic joint: no tree.
 
-Here nothing of core's compiled tree is shared: six coordinates a body, all joints as constraints, all stiffness of gravity
-from the constraints' curvature.
+Nothing of core's compiled tree is used: six coordinates per body, all joints as constraints, and all stiffness of
+gravity from the curvature of the constraints.
 """
 
 import numpy as np
@@ -67,7 +67,8 @@ def box(name: str, mass: float, centre: tuple[float, float, float]) -> mb.Body:
 
 
 def linkage(slant: float) -> tuple[mb.Mechanism, dict[str, float]]:
-    """Crank, rod, rocker between revolutes out of parallel, a ball and a universal joint; two damped springs to the ground."""
+    """Crank, rod and rocker between non-parallel revolutes, a ball and a universal joint; two damped springs to the
+    ground."""
     swept = mb.at(1.5, 0.2, 0.1, axis=np.array([slant, 0.2 * slant, 1.0]))
     m = mb.Mechanism(
         (box("crank", 1.5, (0.3, 0.1, 0)), box("rod", 0.8, (0.6, 0, 0.1)), box("rocker", 1.1, (0.4, 0, -0.1))),
@@ -87,7 +88,7 @@ def linkage(slant: float) -> tuple[mb.Mechanism, dict[str, float]]:
 
 
 @pytest.mark.parametrize("slant", [0.0, 0.3, 0.6])
-def test_a_spatial_linkage_at_rest(slant: float) -> None:
+def test_a_spatial_linkage_at_zero_speed(slant: float) -> None:
     mechanism, guess = linkage(slant)
     linear = lz.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state

@@ -1,7 +1,8 @@
-"""Closed loops against Exudyn, stage by stage: matrices of the tree, loop directions, reactions, reduced matrices, modes.
+"""Closed loops against Exudyn, stage by stage: matrices of the tree, loop directions, reactions, reduced matrices,
+modes.
 
-Exudyn closes a loop with the joint's own locked axes; core welds the body to a copy beyond the joint. Same mechanisms, other
-algebra and other code for everything after the description.
+Exudyn closes a loop with the locked axes of the joint; core welds the body to a copy beyond the joint. The mechanisms
+are the same; algebra and code are different for everything after the description.
 """
 
 from dataclasses import replace
@@ -38,7 +39,7 @@ pytestmark = pytest.mark.skipif(em.CODE.version() is None, reason=f"not installe
 
 
 def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linearization, em.Stages]:
-    """Every stage of both, K̂ to 1e-9, for Exudyn has it by differences; returns both for more."""
+    """Compare every stage, K̂ to 1e-9 because Exudyn computes it by differences; return both results."""
     linear = lz.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state
     n = em.own_coordinates(tree)
@@ -56,7 +57,7 @@ def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linear
     near("M*", M, theirs.M, 1e-13)
     near("C*", C, theirs.C, 1e-11, float(np.abs(M).max()))
     near("K*", K, theirs.K, 1e-9, float(np.abs(linear.K).max()))
-    # what the loops leave free
+    # the null space of the loops
     null, part = theirs.null, linear.partition
     ours = scipy.linalg.orth(part.R[np.isin(part.free, np.arange(n))])
     assert null.shape == ours.shape
@@ -93,7 +94,7 @@ def test_driven_slider_crank_with_a_damped_spring_between_points() -> None:
     assert linear.names
 
 
-def test_spatial_loop_on_a_turning_hub() -> None:
+def test_spatial_loop_on_a_rotating_hub() -> None:
     compare(*spatial_loop())
 
 
@@ -104,8 +105,9 @@ def test_spatial_loop_on_a_turning_hub() -> None:
     turned=st.lists(st.booleans(), min_size=5, max_size=5),
     seed=st.integers(0, 2**31),
 )
-def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) -> None:
-    """A chain with joints of any kind, some given from child to parent, whose end is tied to the hub or to its first body."""
+def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) -> None:
+    """A chain with joints of any kind, some given from child to parent, whose end is joined to the hub or to its first
+    body."""
     freedoms = sum(len(SCREWS[k]) for k in kinds) - (6 - len(SCREWS[loop]))
     assume(1 <= freedoms <= 6)
     m, guess = random_loop(kinds, loop, turned, seed)
@@ -116,8 +118,8 @@ def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: li
     compare(m, guess)
 
 
-def test_a_pendulum_on_a_loop_joint_is_stiff_by_the_constraints_curvature_alone() -> None:
-    """A bar free in a plane and pinned to the ground: ω² = m g l/(I + m l²); its tree has no stiffness at all."""
+def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvature() -> None:
+    """A bar free in a plane and pinned to the ground: ω² = m g l/(I + m l²); the tree has no stiffness."""
     mass, arm, moment = 4.0, 0.8, 0.5
     m = mb.Mechanism(
         (mb.Body("bar", mb.inertia(mass, moment)),),
@@ -142,7 +144,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("change", "match"), REFUSED, ids=[match for _, match in REFUSED])
-def test_what_it_cannot_do_is_refused_with_a_reason(change, match: str) -> None:
+def test_an_unsupported_mechanism_is_declined_with_a_reason(change, match: str) -> None:
     m = change(four_bar("C"))
     reason = em.CODE.unsupported_mechanism(m)
     assert reason
@@ -150,13 +152,13 @@ def test_what_it_cannot_do_is_refused_with_a_reason(change, match: str) -> None:
         em.CODE.solve_mechanism(m, FOUR)
 
 
-def test_loops_that_move_are_refused() -> None:
+def test_moving_loops_are_an_error() -> None:
     m = replace(four_bar("C"), motions=(mb.Motion("A.rz", 0.9, 1.0),))
     with pytest.raises(CodeError, match="loops move"):
         em.CODE.solve_mechanism(m, FOUR)
 
 
-def test_a_periodic_mechanism_is_refused_by_its_own_matrices() -> None:
+def test_a_periodic_mechanism_is_detected_from_its_matrices() -> None:
     m = ground_resonance()
     tree = compile_tree(m)
     at_rest = em.stages(tree, system(tree), np.zeros(3))

@@ -1,4 +1,4 @@
-"""What only Exudyn's kinematic tree takes, each property by a case whose answer is known."""
+"""Properties that only Exudyn's kinematic tree supports, each by a case with a known answer."""
 
 from dataclasses import replace
 
@@ -20,7 +20,8 @@ pytestmark = needs_exudyn
 
 @pytest.mark.parametrize("omega", [1.0, 3.4])
 def test_precone_of_a_right_angle_makes_a_whirling_shaft(omega):
-    """Along the rotor's axis, seen in turning axes, every frequency at rest splits into ω ± Ω, discretised or not."""
+    """Along the rotor axis, in rotating axes, every frequency ω at zero speed splits into ω ± Ω, for any
+    discretisation."""
     rest = TREE.solve(unit(EA=1e6), 0.0, 12, 8).frequencies[::2]
     shaft = TREE.solve(replace(unit(EA=1e6), precone=np.pi / 2), omega, 12, 8).frequencies
     np.testing.assert_allclose(shaft, np.sort([rest - omega, rest + omega], axis=None)[:8], rtol=1e-7)
@@ -37,7 +38,7 @@ def test_tip_mass(omega, flapwise):
 
 @pytest.mark.parametrize("omega", [0.0, 8.0])
 def test_torsion_with_rotary_inertia(omega):
-    """ω² = ((2k−1)π/2)² GJ/I_x + Ω² (I_z − I_y)/I_x: rotor blades turn flat (the propeller moment)."""
+    """ω² = ((2k−1)π/2)² GJ/I_x + Ω² (I_z − I_y)/I_x: rotor blades rotate towards flat (the propeller moment)."""
     I_y, I_z = 1e-4, 9e-4
     blade = unit(EI_y=1e4, EI_z=2e4, EA=1e8, I_y=I_y, I_z=I_z)
     value, order = extrapolated(TREE, lambda n: TREE.solve(blade, omega, n, 2).frequencies)
@@ -48,21 +49,21 @@ def test_torsion_with_rotary_inertia(omega):
     np.testing.assert_allclose(shape / shape[-1], np.sin(np.pi / 2 * STATIONS), atol=2e-3)
 
 
-def test_without_rotary_inertia_torsion_has_no_modes():
+def test_no_torsional_modes_without_rotary_inertia():
     modes = TREE.solve(unit(), 5.0, 6, 40)
     assert len(modes.frequencies) == 3 * 6  # three displacements of each segment's end
     assert abs(modes.shapes[:, :, 3]).max() < 1e-9
 
 
 def test_shear():
-    """A Timoshenko beam so soft in shear that it is a shear beam: ω = (2k−1)π/2 √(GA/ρA)."""
+    """A Timoshenko beam with negligible shear stiffness is a shear beam: ω = (2k−1)π/2 √(GA/ρA)."""
     blade = unit(EI_y=1e5, EI_z=1e5, EA=1e6, GA_y=1.0, GA_z=4.0)
     value, _ = extrapolated(TREE, lambda n: families(TREE.solve(blade, 0.0, n, 6), 2))
     np.testing.assert_allclose(value, np.outer([1, 2], np.array([1, 3]) * np.pi / 2), rtol=1e-4)
 
 
 @pytest.mark.parametrize("turned", ["twist", "pitch"])
-def test_twist_and_pitch_turn_from_y_towards_z(turned):
+def test_twist_and_pitch_rotate_from_y_towards_z(turned):
     blade = unit(EI_y=1.0, EI_z=25.0)
     angle = 0.3
     blade = replace(blade, **{turned: np.full(2, angle) if turned == "twist" else angle})
@@ -82,8 +83,8 @@ def test_steady_stretch_is_exact_in_the_limit():
     assert abs(np.log2(errors[1] / errors[2]) - 2) < 0.05
 
 
-def test_mass_matrix_is_what_the_motion_says():
-    """Exudyn's M against Σ Jᵀ (m, I) J, with our J (the one mode shapes are read with), away from rest too."""
+def test_the_mass_matrix_follows_from_the_jacobian():
+    """Exudyn's M against Σ Jᵀ (m, I) J, with the adapter's J (used for mode shapes), also at non-zero coordinates."""
     blade = replace(unit(0.2, I_y=0.01, I_z=0.03), twist=np.array([0.2, 0.9]), pitch=0.1)
     tree = hinged_segments.plant(blade, 5)
     M, _, _, q = exudyn_tree.linearize(tree, 20.0)
@@ -126,7 +127,7 @@ def limit(blade, omega):
     return fine + (fine - coarse) / 3, solve.modes(blade, omega, 60, 5).frequencies
 
 
-def test_a_blade_with_everything():
+def test_a_blade_with_all_properties():
     """Coupled, curved, sheared, twisted, tapered, offset, coned, pitched."""
     found, core = limit(replace(curved(), precone=0.3), 3.0)
     np.testing.assert_allclose(found, core, rtol=2e-4)
@@ -134,13 +135,13 @@ def test_a_blade_with_everything():
 
 @pytest.mark.parametrize("omega", [2.0, 8.0])
 def test_a_twisted_blade_with_precone_has_a_steady_state(omega):
-    """To be reached in steps: from rest to full speed at once Newton's method wanders."""
+    """It needs speed steps: from zero to full speed in one step Newton's method diverges."""
     blade = replace(unit(0.1, EI_z=9.0, EA=1e5, I_y=1e-4, I_z=9e-4), twist=np.array([0.9, 0.0]), precone=0.3)
     found, core = limit(blade, omega)
     np.testing.assert_allclose(found, core, rtol=2e-4)
 
 
-def test_a_deck_without_axial_and_torsional_stiffness_has_no_such_joints():
+def test_no_axial_and_torsional_joints_without_such_stiffness_in_the_input():
     stiffness = tapered().stiffness.copy()
     stiffness[:, [0, 3], [0, 3]] = np.inf
     found, core = limit(replace(tapered(), stiffness=stiffness, precone=0.05), 3.0)
@@ -149,7 +150,7 @@ def test_a_deck_without_axial_and_torsional_stiffness_has_no_such_joints():
 
 @pytest.mark.parametrize("precone", [0.0, 0.2])
 def test_a_flap_hinge(precone):
-    """The steady state turns it until the blade lies almost flat."""
+    """In the steady state it rotates until the blade is almost flat."""
     blade = replace(unit(0.2, EA=1e6), root=np.array([np.inf] * 4 + [0.0, np.inf]), precone=precone)
     found, core = limit(blade, 6.0)
     np.testing.assert_allclose(found, core, rtol=1e-4)

@@ -1,4 +1,4 @@
-"""Frame3DD's frame against closed forms and core; the way it is told of the rotation; what it is asked."""
+"""Frame3DD's frame against closed forms and core; its model of rotation; the contents of its requests."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -28,8 +28,8 @@ def core(blade: Blade, omega: float, count: int = 5) -> Array:
 
 
 @needs_frame3dd
-def test_a_cantilever_at_rest_is_the_textbooks() -> None:
-    """βL = 1.8751, 4.6941, 7.8548 (Euler–Bernoulli), each in both planes: of fourth order, so to 1e-6 with 45 elements."""
+def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
+    """βL = 1.8751, 4.6941, 7.8548 (Euler–Bernoulli), in both planes: fourth order, so to 1e-6 with 45 elements."""
     beta = np.repeat([1.8751040687, 4.6940911330, 7.8547574382], 2)
     exact = beta**2 * np.sqrt(14e3 / 1.2) / 36.0
     np.testing.assert_allclose(CODE.solve(PARK, 0.0, 45, 6).frequencies, exact, rtol=1e-6)
@@ -48,7 +48,7 @@ def test_a_cantilever_at_rest_is_the_textbooks() -> None:
     ids=["cantilever", "fast", "tip mass", "tapered, twisted", "pitched"],
 )
 def test_it_extrapolates_to_core(blade: Blade, omega: float) -> None:
-    """Of second order, from 40 and 60 elements; without the softening the first would be 31 % higher."""
+    """Second order, from 40 and 60 elements; without spin softening the first would be 31 % higher."""
     coarse, fine = (CODE.solve(blade, omega, n, 4).frequencies for n in (40, 60))
     np.testing.assert_allclose(fine + (fine - coarse) * 0.8, core(blade, omega, 4), rtol=1.5e-4)
 
@@ -60,8 +60,8 @@ def test_order_where_sections_vary() -> None:
 
 
 @needs_frame3dd
-def test_shapes_are_cores() -> None:
-    """Of the pitched, twisted blade, real as there is no Coriolis force; sign aside."""
+def test_shapes_agree_with_core() -> None:
+    """For the pitched, twisted blade, up to sign; real because there is no Coriolis force."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 60, 4).shapes[:, :, 1:3].real.reshape(4, -1)
     theirs = solve.modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
@@ -69,8 +69,8 @@ def test_shapes_are_cores() -> None:
     np.testing.assert_allclose(np.abs(np.sum(ours * theirs.conj(), axis=1)) / norms, 1, atol=1e-4)
 
 
-def test_what_it_is_asked() -> None:
-    """The root carries the whole centrifugal force, ∫ m Ω² x; springs add to m Ω² L; compliances' mean is harmonic."""
+def test_the_request() -> None:
+    """The forces sum to ∫ m Ω² x, the springs to m Ω² L; stiffness is the harmonic mean."""
     asked: Any = request(replace(PARK, tip_mass=POINT), 10.0, np.linspace(0, 6, 21), 5)
     assert sum(asked["force"]) == pytest.approx(100 * (1.2 * 6 * 3.3 + 7.2 * 6.3), rel=1e-12)
     assert sum(asked["spring"]) == pytest.approx(100 * (7.2 + 7.2), rel=1e-12)
@@ -92,13 +92,13 @@ def test_what_it_is_asked() -> None:
         (uniform_blade("rigid", 1, 0, EA=1, GJ=np.inf, EI_y=1, EI_z=1, mass=1), "GJ is infinite"),
     ],
 )
-def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: str) -> None:
     assert (CODE.unsupported(blade) or "").startswith(reason)
     with pytest.raises(CodeError, match=reason.split(":")[0]):
         CODE.solve(blade, 0.0, 20, 4)
 
 
-def test_refuses_what_it_has_no_time_for() -> None:
+def test_too_many_elements_are_an_error() -> None:
     with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
         CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
     s = np.linspace(0, 6, SECTIONS + 3)
@@ -113,7 +113,7 @@ def test_refuses_what_it_has_no_time_for() -> None:
     assert "12 intervals between stations" in (CODE.unsupported(kinked) or "")
 
 
-def test_a_square_below_that_of_the_speed_is_no_steady_state(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_squared_frequency_below_that_of_the_speed_is_unstable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         frame3dd_frame, "ask", lambda *_: {"frequencies": [9.9], "shapes": np.zeros((1, 4, 21)).tolist()}
     )
@@ -122,7 +122,8 @@ def test_a_square_below_that_of_the_speed_is_no_steady_state(monkeypatch: pytest
 
 
 class Frame:
-    """Answers by Stodola's iteration alone, or for some numbers of modes only: two modes along the blade's planes given."""
+    """A frame that solves by Stodola's iteration only, or for some numbers of modes; the planes of its modes are
+    given."""
 
     def __init__(self, planes: list[list[float]], subspace: set[int]) -> None:
         self.planes, self.subspace = np.array(planes), subspace
@@ -137,8 +138,9 @@ class Frame:
         return (SimpleNamespace(freq=[2.0, 1.0, 3.0], xdsp=0 * y, ydsp=y, zdsp=z, xrot=0 * y),)
 
 
-def test_half_an_answer_of_stodolas_iteration_is_none() -> None:
-    """Three modes in one plane, pitched: refused, if they are Stodola's; in two planes, or by subspace iteration, taken."""
+def test_modes_in_one_plane_from_stodolas_iteration_are_rejected() -> None:
+    """Three modes in one plane, pitched: rejected from Stodola's iteration; accepted in two planes or by subspace
+    iteration."""
     one, two = [[1.0, 2.0]] * 3, [[1.0, 2.0], [2.0, 4.0], [2.0, -1.0]]
     with pytest.raises(RuntimeError, match="left out a plane"):
         frame3dd_worker.modes(Frame(one, set()), 3)

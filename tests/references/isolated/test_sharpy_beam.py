@@ -1,4 +1,5 @@
-"""SHARPy's geometrically exact beam against core: an independent answer for coupled, curved, sheared, turned sections too."""
+"""SHARPy's geometrically exact beam against core: an independent answer, also for coupled, curved, sheared and rotated
+sections."""
 
 import base64
 from dataclasses import replace
@@ -61,7 +62,7 @@ def test_uniform_blades(blade: Blade, omega: float, rtol: float) -> None:
     ids=["tapered, twisted", "pitched", "curved at rest", "curved, coupled, sheared, coned", "with offset tip mass"],
 )
 def test_varying_blades_extrapolate_to_core(blade: Blade, omega: float) -> None:
-    """Of second order, from 25 and 50 elements."""
+    """Second order, from 25 and 50 elements."""
     coarse, fine = (CODE.solve(blade, omega, n, 5).frequencies for n in (24, 48))
     np.testing.assert_allclose(fine + (fine - coarse) / 3, core(blade, omega), rtol=1e-4)
 
@@ -77,8 +78,8 @@ def test_order(blade: Blade, omega: float, levels: tuple[int, int, int], order: 
 
 
 @needs_sharpy
-def test_shapes_are_cores() -> None:
-    """Of the curved, pitched blade: displacements and rotation, phase aside."""
+def test_shapes_agree_with_core() -> None:
+    """For the curved, pitched blade: displacements and rotation, up to phase."""
     ours, theirs = (
         m.reshape(5, -1) for m in (CODE.solve(curved(), 1.5, 48, 5).shapes, solve.modes(curved(), 1.5, 60, 5).shapes)
     )
@@ -87,13 +88,13 @@ def test_shapes_are_cores() -> None:
 
 
 @needs_sharpy
-def test_too_fast_for_a_steady_state() -> None:
+def test_no_steady_state_at_high_speed() -> None:
     with pytest.raises(CodeError, match=r"no (stable )?steady state"):
         CODE.solve(yoo_shin(0.1), 200.0, 12, 4)
 
 
-def test_what_it_is_asked() -> None:
-    """Total mass and compliance are the blade's; sections are turned as at rest."""
+def test_the_request() -> None:
+    """Total mass and compliance are those of the blade; sections have their undeformed axes."""
     blade, ends = tapered(), np.linspace(0, 40.0, 5)
     asked = request(blade, 3.0, np.column_stack([ends[:-1], ends[1:]]))
     s = (np.arange(20000) + 0.5) * 40.0 / 20000
@@ -108,8 +109,8 @@ def test_what_it_is_asked() -> None:
     assert not np.array(asked["turn"]).any()
 
 
-def test_a_chord_shorter_than_the_arc_is_made_up_for() -> None:
-    """A quarter of a circle by one element: chord 2 √2 / π of the arc; mass and compliance are the arc's."""
+def test_mass_and_compliance_are_scaled_from_arc_to_chord() -> None:
+    """A quarter of a circle by one element: chord 2 √2 / π of the arc; mass and compliance are those of the arc."""
     s = np.linspace(0, np.pi / 2, 9)
     quarter = replace(
         PARK,
@@ -137,7 +138,7 @@ def test_rotation_about_x_from_a_change_of_the_rotation_vector() -> None:
     assert not shape[0].any()
 
 
-def test_numbers_cross_bit_for_bit() -> None:
+def test_numbers_are_transferred_exactly() -> None:
     values = np.random.default_rng(1).standard_normal(7)
     np.testing.assert_array_equal(_unpacked(base64.b64encode(values.tobytes()).decode()), values)
 
@@ -146,15 +147,15 @@ def test_numbers_cross_bit_for_bit() -> None:
     ("blade", "reason"),
     [
         (replace(PARK, root=np.array([np.inf] * 5 + [0.0])), "the root is not clamped"),
-        (uniform_blade("rigid", 1, 0, EA=1, GJ=np.inf, EI_y=1, EI_z=1, mass=1), "infinite stiffness against strain 3"),
+        (uniform_blade("rigid", 1, 0, EA=1, GJ=np.inf, EI_y=1, EI_z=1, mass=1), "infinite stiffness of strain 3"),
     ],
 )
-def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: str) -> None:
     assert (CODE.unsupported(blade) or "").startswith(reason)
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 0.0, 5, 4)
 
 
-def test_refuses_what_it_cannot_hold() -> None:
+def test_too_many_elements_are_an_error() -> None:
     with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
         CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)

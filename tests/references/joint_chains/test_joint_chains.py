@@ -1,4 +1,5 @@
-"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
+"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against
+Pinocchio's."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -76,8 +77,8 @@ def test_agrees_with_core_to_rounding(code: Any, blade: Blade, omega: float) -> 
 
 
 @both
-def test_shapes_are_pinocchios(code: Any) -> None:
-    """The same spline through the same nodes, so the same to rounding, but for a phase."""
+def test_shapes_agree_with_pinocchio(code: Any) -> None:
+    """The same spline through the same nodes, so the same to rounding except for a phase."""
     pytest.importorskip("pinocchio")
     ours, theirs = (c.solve(curved(), 1.5, 10, 5).shapes.reshape(5, -1) for c in (code, pinocchio_chain.CODE))
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
@@ -91,8 +92,9 @@ def test_shapes_are_pinocchios(code: Any) -> None:
         pytest.param(mujoco_chain.plant, 1e-9, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
     ],
 )
-def test_every_stage_is_pinocchios(make: Callable[[Chain], Plant], rtol: float) -> None:
-    """Mass, inertial force, its derivatives, and motion of the bodies, at strains of a tenth, far from rest."""
+def test_every_stage_agrees_with_pinocchio(make: Callable[[Chain], Plant], rtol: float) -> None:
+    """Mass, inertial force, its derivatives, and motion of the bodies, at strains of 0.1, far from the undeformed
+    state."""
     pytest.importorskip("pinocchio")
     chain = discretize(replace(curved(), tip_mass=TIP_MASS), 5, "half_end", "body_fixed")
     q = 0.1 * np.random.default_rng(3).standard_normal(30)
@@ -116,13 +118,13 @@ def test_the_same_call_gives_the_same_answer_and_prints_nothing(code: Any, capfd
 
 @both
 @pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
-def test_too_fast_for_a_steady_state(code: Any, gamma: float, reason: str) -> None:
+def test_no_steady_state_at_high_speed(code: Any, gamma: float, reason: str) -> None:
     with pytest.raises(CodeError, match=reason):
         code.solve(yoo_shin(0.1), gamma, 6, 4)
 
 
 @both
-def test_refuses_what_it_cannot_hold(code: Any) -> None:
+def test_too_many_elements_are_an_error(code: Any) -> None:
     with pytest.raises(CodeError, match="elements: 81"):
         code.solve(PARK, 10.0, 81, 4)
 
@@ -135,14 +137,14 @@ def test_refuses_what_it_cannot_hold(code: Any) -> None:
         ({"tip_mass": np.diag([1.0, 1.0, 1.00005, 0.1, 0.1, 0.1])}, "tip_mass is not a rigid body's"),
     ],
 )
-def test_says_why_it_cannot(code: Any, changed: dict[str, Array], reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(code: Any, changed: dict[str, Array], reason: str) -> None:
     blade = replace(PARK, **changed)
     assert (code.unsupported(blade) or "").startswith(reason)
     with pytest.raises(CodeError, match=reason):
         code.solve(blade, 0.0, 5, 4)
 
 
-def test_derivatives_without_their_symmetry_are_refused() -> None:
+def test_derivatives_without_their_symmetry_are_an_error() -> None:
     K, C = np.eye(3), np.array([[0.0, 1, 0], [-1, 0, 2], [0, -2, 0]])
     joint_chain.check(K, C, 1e-9, "code")
     with pytest.raises(CodeError, match=r"dtau_dq: 1\.0e-06 from symmetric: code's"):

@@ -60,21 +60,22 @@ def core(blade: Blade, omega: float, elements: int, count: int) -> Array:
     ],
 )
 def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int) -> None:
-    """One discretisation, two codes; the design asks for 1e-8."""
+    """One discretisation, two codes; the target is 1e-8."""
     found = CODE.solve(blade, omega, elements, 10).frequencies
     np.testing.assert_allclose(found, core(blade, omega, elements, 10), rtol=1e-10)
 
 
 def test_shapes_agree_with_core() -> None:
-    """Between nodes too: the chain's spline against core's own shape functions."""
+    """Between nodes too: the chain's spline against core's shape functions."""
     ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
     theirs = solve.modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=2e-3)
 
 
-def test_a_cantilever_of_point_masses_at_rest() -> None:
-    """Exact for any number of masses: flexibility s²(3t − s)/6EI at s of a unit force at t > s, elementary beam theory."""
+def test_a_cantilever_of_point_masses_at_zero_speed() -> None:
+    """Exact for any number of masses: flexibility s²(3t − s)/6EI at s of a unit force at t > s, elementary beam
+    theory."""
     n, mass = 12, 3000.0 * A * 6.0 / 12
     s = 6.0 * np.arange(1, n + 1) / n
     near, far = np.minimum.outer(s, s), np.maximum.outer(s, s)
@@ -101,24 +102,24 @@ def test_second_order(series: tuple[Array, Array]) -> None:
 
 
 def test_the_papers_fifty_elements(series: tuple[Array, Array]) -> None:
-    """Park et al. (2010), Table 1, Present: 11.71, 70.37, 189.7; the trend from 20, 28 and 40 elements leads there."""
+    """Park et al. (2010), Table 1, Present: 11.71, 70.37, 189.7; extrapolated from 20, 28 and 40 elements."""
     coefficients, _ = series
     at_50 = (coefficients.T @ [1, 50.0**-2, 50.0**-4])[::2]
     assert [f"{f:.4g}" for f in at_50] == ["11.71", "70.37", "189.7"]
     np.testing.assert_allclose(at_50, [11.7058, 70.3722, 189.6735], atol=1e-4)
 
 
-def test_many_elements_lead_to_the_nonlinear_beam(series: tuple[Array, Array]) -> None:
+def test_convergence_to_the_nonlinear_beam(series: tuple[Array, Array]) -> None:
     """Without section inertia: a geometrically nonlinear beam's converged values (Exudyn's ANCF cable)."""
     limit = series[0][0]
     np.testing.assert_allclose(limit[::2], [11.71131, 70.43535, 189.92222], rtol=5e-6)
     np.testing.assert_allclose(limit[1::2], [15.40088, 71.14306, 190.18649], rtol=5e-6)
 
 
-def test_windpact_at_rest_and_turning() -> None:
-    """First frequency of the public 3 MW blade: 0.932 Hz at rest, +10.3 % at 20 rpm and +21.7 % at 30 rpm.
+def test_windpact_at_zero_speed_and_rotating() -> None:
+    """First frequency of the public 3 MW blade: 0.932 Hz at zero speed, +10.3 % at 20 rpm, +21.7 % at 30 rpm.
 
-    Extrapolated from 19 and 38 elements, whose ends meet the stations.
+    Extrapolated from 19 and 38 elements, whose ends are at the stations.
     """
     coarse, fine = (
         np.array([CODE.solve(WINDPACT, rpm * np.pi / 30, n, 1).frequencies[0] for rpm in (0, 20, 30)]) for n in (19, 38)
@@ -129,12 +130,12 @@ def test_windpact_at_rest_and_turning() -> None:
 
 
 def test_point_masses_have_three_modes_each() -> None:
-    """Rotations without inertia are solved for, not given a little: no modes of theirs."""
+    """Rotations without inertia are condensed, without artificial inertia: they have no modes."""
     assert len(CODE.solve(POINT_MASSES, 10.0, 4, 99).frequencies) == 12
 
 
-def test_shapes_have_axes() -> None:
-    """Chordwise moves along y, flapwise along z, both most at the tip and not at all at the root."""
+def test_shapes_are_in_blade_axes() -> None:
+    """Edgewise motion is along y, flapwise along z, both largest at the tip and zero at the root."""
     chordwise, flapwise = CODE.solve(POINT_MASSES, 10.0, 20, 2).shapes
     for shape, axis in ((chordwise, 1), (flapwise, 2)):
         assert np.abs(shape[:, axis]).argmax() == len(STATIONS) - 1
@@ -142,7 +143,7 @@ def test_shapes_have_axes() -> None:
         assert not shape[0].any()
 
 
-def test_a_joint_with_a_wrong_derivative_is_found_out() -> None:
+def test_a_joint_with_a_wrong_derivative_is_detected() -> None:
     """Pinocchio's composite joint of a translation and three rotations: dtau_dq is not symmetric."""
     pin = pytest.importorskip("pinocchio")
     chain = discretize(POINT_MASSES, 3, "half_end", "body_fixed")
@@ -170,23 +171,23 @@ def test_the_same_call_gives_the_same_answer_and_prints_nothing(capfd: pytest.Ca
 
 
 @pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
-def test_too_fast_for_a_steady_state(gamma: float, reason: str) -> None:
+def test_no_steady_state_at_high_speed(gamma: float, reason: str) -> None:
     with pytest.raises(CodeError, match=reason):
         CODE.solve(yoo_shin(0.1), gamma, 10, 4)
 
 
-def test_a_load_that_no_steady_state_carries_says_how_far_it_went() -> None:
+def test_a_load_without_a_steady_state_reports_the_fraction_reached() -> None:
     floppy = replace(curved(), stiffness=0.01 * curved().stiffness)
     with pytest.raises(CodeError, match=r"omega: 4 rad/s: no steady state above \d+% of Ω²"):
         CODE.solve(floppy, 4.0, 10, 4)
 
 
-def test_refuses_what_it_cannot_hold() -> None:
+def test_too_many_elements_are_an_error() -> None:
     with pytest.raises(CodeError, match=f"elements: {MAX_ELEMENTS + 1}"):
         CODE.solve(PARK, 10.0, MAX_ELEMENTS + 1, 4)
 
 
-def test_takes_every_blade_of_these_tests() -> None:
+def test_the_blades_of_these_tests_are_accepted() -> None:
     assert [CODE.unsupported(b) for b in (PARK, tapered(), curved(), replace(curved(), tip_mass=TIP_MASS))] == [
         None
     ] * 4

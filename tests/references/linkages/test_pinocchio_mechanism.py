@@ -1,4 +1,4 @@
-"""Closed loops in Pinocchio against core, and its parts against differences: trees that differ, closures that differ."""
+"""Closed loops in Pinocchio against core, with other trees and closures, and its parts against differences."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(lm.CODE.version() is None, reason=f"not installe
 
 
 def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Reduced:
-    """Steady state, eigenvalues with their damping, and shapes; returns the adapter's equations."""
+    """Compare steady state, eigenvalues with damping, and shapes; return the adapter's equations."""
     found, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
     ours = [found.coordinates.index(name) for name in answer.coordinates]
     np.testing.assert_allclose(answer.steady, found.linear.state.q[ours], atol=1e-10)
@@ -60,12 +60,12 @@ def test_slider_crank_with_a_damped_spring_between_points() -> None:
     compare(*slider_crank())
 
 
-def test_spatial_loop_on_a_turning_hub() -> None:
+def test_spatial_loop_on_a_rotating_hub() -> None:
     compare(*spatial_loop())
 
 
-def test_a_pendulum_on_a_loop_joint_is_stiff_by_the_constraints_curvature_alone() -> None:
-    """A bar free in a plane and pinned to the ground: ω² = m g l/(I + m l²); its tree has no stiffness at all."""
+def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvature() -> None:
+    """A bar free in a plane and pinned to the ground: ω² = m g l/(I + m l²); the tree has no stiffness."""
     mass, arm, moment = 4.0, 0.8, 0.5
     m = mb.Mechanism(
         (mb.Body("bar", mb.inertia(mass, moment)),),
@@ -86,8 +86,8 @@ def test_a_pendulum_on_a_loop_joint_is_stiff_by_the_constraints_curvature_alone(
     turned=st.lists(st.booleans(), min_size=5, max_size=5),
     seed=st.integers(0, 2**31),
 )
-def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) -> None:
-    """With a spring between points of hub and last body, and a load on that body that turns with the hub."""
+def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) -> None:
+    """With a spring between points of hub and last body, and a load on that body that rotates with the hub."""
     assume(1 <= sum(len(SCREWS[k]) for k in kinds) - (6 - len(SCREWS[loop])) <= 6)
     m, guess = random_loop(kinds, loop, turned, seed)
     rng = np.random.default_rng(seed + 1)
@@ -104,7 +104,8 @@ def test_random_loops_on_a_turning_hub(kinds: list[Kind], loop: Kind, turned: li
 
 
 def every_element() -> tuple[Plant, np.ndarray]:
-    """A plant with a loop of every kind, a spring between points and a load, at a configuration where nothing vanishes."""
+    """A plant with a loop of every kind, a spring between points and a load, at a configuration where no term
+    vanishes."""
     rng = np.random.default_rng(3)
     m, _ = random_loop(["spherical", "cylindrical", "universal"], "revolute", [False, True, False, False, False], 5)
     loops = []
@@ -119,7 +120,7 @@ def every_element() -> tuple[Plant, np.ndarray]:
     return plant, rng.normal(size=len(plant.v))
 
 
-def test_every_derivative_is_that_of_differences() -> None:
+def test_every_derivative_agrees_with_differences() -> None:
     plant, q = every_element()
     here, h = plant.at(q), 1e-5
     assert len(here.loops) == 6 + 5 + 5 + 4 + 4 + 3 + 3
@@ -141,8 +142,8 @@ def test_every_derivative_is_that_of_differences() -> None:
 
 
 @pytest.mark.parametrize("kind", AXES)
-def test_an_equation_holds_everything_but_the_joints_own_coordinates(kind: Kind) -> None:
-    """A free body is tied to the ground by the joint: what is left are the coordinates that the joint itself has."""
+def test_a_loop_joint_leaves_only_its_coordinates_free(kind: Kind) -> None:
+    """A free body is joined to the ground by the loop joint; only the coordinates of that joint remain free."""
     frames = [
         mb.at(0.3, -0.2, 0.5, axis=np.array([1.0, 2.0, 0.5])),
         mb.at(0.1, 0.4, 0, axis=np.array([0.2, 1.0, -1.0])),
@@ -180,7 +181,7 @@ def test_joints_with_springs_and_motions_are_in_the_tree_and_cut_joints_are_not(
     compare(m, FOUR)
 
 
-def test_a_joint_closed_with_its_axis_opposed_is_no_answer() -> None:
+def test_a_joint_closed_with_opposed_axes_is_an_error() -> None:
     m = mb.Mechanism(
         (bar("one", 1.0, 1.0), bar("two", 1.0, 1.0)),
         (
@@ -207,18 +208,18 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("change", "match"), REFUSED, ids=[match for _, match in REFUSED])
-def test_what_it_cannot_do_is_refused_with_a_reason(change, match: str) -> None:
+def test_an_unsupported_mechanism_is_declined_with_a_reason(change, match: str) -> None:
     with pytest.raises(CodeError, match=match):
         lm.CODE.solve_mechanism(change(four_bar("C")), FOUR)
 
 
-def test_loops_that_move_are_refused() -> None:
+def test_moving_loops_are_an_error() -> None:
     m = replace(four_bar("C"), motions=(mb.Motion("A.rz", 0.9, 1.0),))
     with pytest.raises(CodeError, match="loops move"):
         lm.CODE.solve_mechanism(m, FOUR)
 
 
-def test_a_periodic_mechanism_is_refused_by_its_own_matrices() -> None:
+def test_a_periodic_mechanism_is_detected_from_its_matrices() -> None:
     m = ground_resonance()
     with pytest.raises(CodeError, match="periodic"):
         lm.CODE.solve_mechanism(m, {})

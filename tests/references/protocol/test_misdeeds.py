@@ -1,4 +1,5 @@
-"""Over a hundred ways of a foreign code to go wrong: each costs its own cells, says why, and leaves nothing running."""
+"""Over a hundred failures of a foreign code: each affects its cells only, is reported, and leaves no process
+running."""
 
 import os
 from collections.abc import Iterator
@@ -27,7 +28,7 @@ LEFT = {"none": "MMM", "one": "MFM", "rest": "MFF", "all": "FFF"}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The current folder: the codes lie in it, and so do files with names of the standard library."""
+    """The current folder, which contains the codes, and files with names of the standard library."""
     made = tmp_path_factory.mktemp("misdeeds")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(made)
@@ -36,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Failure]]:
-    """What the code says of itself, and what it answers; a code that cannot be described is asked nothing."""
+    """The description of the code and its answers; a code without a description is not run."""
     path = misdeed.write(folder)
     if misdeed.when in ("unsupported", "solve"):
         return Description(path, path), answers(path, BLADE, RUNS, LIMITS)
@@ -51,7 +52,7 @@ def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]
 
 
 @pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
-def test_a_misdeed_costs_its_own_cells_only_and_is_told(misdeed: Misdeed, done: dict) -> None:
+def test_a_misdeed_affects_its_cells_only_and_is_reported(misdeed: Misdeed, done: dict) -> None:
     said, got = done[misdeed]
     assert "".join("F" if isinstance(answer, Failure) else "M" for answer in got) == LEFT[misdeed.lost], got
     assert not said.failure or said.name.startswith("mis")
@@ -67,14 +68,14 @@ def test_nothing_is_left_running(done: dict) -> None:
         try:
             if TOKEN.encode() in environ.read_bytes() and int(environ.parent.name) != os.getpid():
                 left.append((environ.parent / "cmdline").read_bytes())
-        except OSError:  # it is gone, or another user's
+        except OSError:  # the process has ended, or is another user's
             continue
     assert len(done) == len(TABLE) >= 60
     assert not left
 
 
-def test_declarations_that_cannot_be_are_quoted(folder: Path) -> None:
-    """In one process, as none of them ends it; each is a code of its own."""
+def test_invalid_declarations_are_quoted(folder: Path) -> None:
+    """In one process, as none of them ends it; each is a separate code."""
     paths = declaring(folder)
     said = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
     for (line, told), one in zip(DECLARATIONS.items(), said, strict=True):
@@ -84,7 +85,7 @@ def test_declarations_that_cannot_be_are_quoted(folder: Path) -> None:
         assert one.name in ("misdeed", paths[line])
 
 
-def test_answers_that_cannot_be_are_quoted_and_cost_no_other(folder: Path) -> None:
+def test_invalid_answers_are_quoted_and_affect_no_other(folder: Path) -> None:
     path = answering(folder)
     runs = [run for number in range(len(ANSWERS)) for run in ((10.0 + number, 10, 3), (1.0, 10, 3))]
     got = answers(path, BLADE, runs, Limits(30.0))
@@ -95,7 +96,7 @@ def test_answers_that_cannot_be_are_quoted_and_cost_no_other(folder: Path) -> No
         assert told in bad.reason, (line, bad.reason)
 
 
-def test_what_is_no_code_is_the_askers_mistake(folder: Path) -> None:
+def test_a_path_without_a_code_is_an_error(folder: Path) -> None:
     module(folder, "nothing_here", "CODE = 42\n")
     for path, told in (
         ("nothing_here:CODE", "lacks name, effects"),
@@ -106,8 +107,8 @@ def test_what_is_no_code_is_the_askers_mistake(folder: Path) -> None:
             describe([path], limits=LIMITS)
 
 
-def test_no_file_of_the_current_folder_takes_the_place_of_a_module(folder: Path) -> None:
-    """A code in the current folder is found, and its neighbour in it; ``random.py`` beside it is not executed."""
+def test_no_file_of_the_current_folder_shadows_a_module(folder: Path) -> None:
+    """A code in the current folder and a module it imports are found; ``random.py`` in the folder is not executed."""
     for name in ("random", "json", "numpy", "ctypes", "signal", "select"):
         (folder / f"{name}.py").write_text("import os\nos._exit(9)\n", encoding="utf-8")
     (folder / "southwell").mkdir()

@@ -1,4 +1,4 @@
-"""The foreign codes' eigenproblem against closed forms, by each of its three ways."""
+"""The foreign codes' eigenproblem against closed forms, for each of the three solution methods."""
 
 import numpy as np
 import pytest
@@ -10,15 +10,15 @@ from southwell.references.protocol.quadratic import DENSE, gyroscopic_modes
 
 @pytest.fixture(params=["direct", "full, iterated", "sparse"])
 def way(request):
-    """How many points, and the form in which matrices are handed over, so that each way is gone."""
+    """Number of points and form of the matrices that select each method."""
     points = 30 if request.param == "direct" else DENSE
     return points, sparse.csc_array if request.param == "sparse" else np.asarray
 
 
 def row(points: int, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """A row of unit masses in a turning plane, each tied to its neighbours by unit springs, both ways alike.
+    """A row of unit masses in a rotating plane, joined by unit springs, the same in both directions.
 
-    With z = x + iy: z̈ + 2iΩ ż + κ z = 0 for each of the row's own stiffnesses κ, hence ω = √(Ω² + κ) ± Ω.
+    With z = x + iy: z̈ + 2iΩ ż + κ z = 0 for each eigenvalue κ of the row's stiffness, hence ω = √(Ω² + κ) ± Ω.
     """
     line = 2 * np.eye(points) - np.eye(points, k=1) - np.eye(points, k=-1)
     own = 4 * np.sin(np.arange(1, points + 1) * np.pi / (2 * points + 2)) ** 2
@@ -37,7 +37,7 @@ def test_whirling_row_has_its_closed_form_frequencies(way, omega):
     for w, q in zip(frequencies, shapes.T, strict=True):
         force = K @ q
         assert np.linalg.norm(force - w**2 * (M @ q) + 1j * w * (C @ q)) < 1e-8 * np.linalg.norm(force)
-    if omega:  # exp(iωt) with the slower motion forwards, the faster backwards, in turning axes: y leads x by ∓90°
+    if omega:  # exp(iωt) with the slower motion forward, the faster backward, in rotating axes: y leads x by ∓90°
         slow, fast = shapes[:, 0], shapes[:, -1 if omega > 1e-2 else 1]
         np.testing.assert_allclose(slow[1::2] / slow[::2], -1j, atol=1e-6)
         if omega < 1e-2:
@@ -45,7 +45,7 @@ def test_whirling_row_has_its_closed_form_frequencies(way, omega):
 
 
 def test_two_springs_on_a_turntable():
-    """m ẍ − 2mΩẏ + (k₁ − mΩ²) x = 0 and its like in y: a quadratic in ω²."""
+    """m ẍ − 2mΩẏ + (k₁ − mΩ²) x = 0 and likewise in y: a quadratic in ω²."""
     m, k1, k2, omega = 2.0, 50.0, 90.0, 3.0
     M, K = m * np.eye(2), np.diag([k1 - m * omega**2, k2 - m * omega**2])
     C = np.array([[0.0, -2 * m * omega], [2 * m * omega, 0.0]])
@@ -76,8 +76,9 @@ def test_only_as_many_modes_as_there_are_masses():
     assert shapes.shape == (3, 2)
 
 
-def test_stiff_coordinates_cost_no_accuracy(way):
-    """Half the row tied to the ground by springs 10¹² times stiffer: a shorter row remains (K itself keeps 4 digits of it)."""
+def test_stiff_coordinates_do_not_reduce_the_accuracy(way):
+    """Half the row is joined to the ground by springs 10¹² times stiffer: a shorter row remains (K itself keeps 4
+    digits of it)."""
     points, form = way
     M, C, K, _ = row(points, 0.0)
     held = np.arange(len(K)) >= points
@@ -94,7 +95,7 @@ def test_the_same_call_gives_the_same_bits(way):
     assert (first[1] == again[1]).all()
 
 
-def test_no_stable_steady_state_is_refused_with_the_lowest_eigenvalue(way):
+def test_no_stable_steady_state_is_an_error_with_the_lowest_eigenvalue(way):
     points, form = way
     M, C, K, exact = row(points, 0.0)
     beyond = K - 1.5 * exact[0] ** 2 * np.eye(len(K))
@@ -112,7 +113,7 @@ def test_a_negative_diagonal_is_no_stable_steady_state():
     ("which", "entry", "message"),
     [(0, (0, 5), "M: .* from symmetric"), (1, (2, 2), "C: .* from skew"), (2, (0, 5), "K: .* from symmetric")],
 )
-def test_matrices_of_no_undamped_steady_state_are_refused(way, which, entry, message):
+def test_matrices_without_the_required_symmetry_are_an_error(way, which, entry, message):
     points, form = way
     matrices = list(row(points, 0.01)[:3])
     matrices[which][entry] += 1e-3
@@ -121,7 +122,7 @@ def test_matrices_of_no_undamped_steady_state_are_refused(way, which, entry, mes
         gyroscopic_modes(M, C, K, 4)
 
 
-def test_what_is_not_finite_is_refused(way):
+def test_non_finite_matrices_are_an_error(way):
     points, form = way
     M, C, K, _ = row(points, 0.0)
     C[0, 1] = np.nan
@@ -129,6 +130,6 @@ def test_what_is_not_finite_is_refused(way):
         gyroscopic_modes(form(M), form(C), form(K), 4)
 
 
-def test_negative_mass_is_refused():
+def test_negative_mass_is_an_error():
     with pytest.raises(CodeError, match="negative mass"):
         gyroscopic_modes(np.diag([1.0, -1.0]), np.zeros((2, 2)), np.eye(2), 1)

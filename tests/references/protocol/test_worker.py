@@ -1,4 +1,4 @@
-"""A foreign code's crash, hang, chatter or nonsense is one run's outcome, and what was solved before it is kept."""
+"""A crash, hang, print or invalid answer of a foreign code affects one run; runs finished before it are kept."""
 
 import time
 from pathlib import Path
@@ -45,7 +45,7 @@ def test_answers_come_back_bit_for_bit_and_in_order() -> None:
     ("attribute", "told"),
     [("SEGFAULT", "SIGSEGV"), ("ABORT", "SIGABRT"), ("LEAVE", "exit status 3: library: licence not found")],
 )
-def test_a_crash_loses_only_what_was_not_finished(attribute: str, told: str) -> None:
+def test_finished_runs_survive_a_crash(attribute: str, told: str) -> None:
     first, second, third = ask(attribute)
     assert isinstance(first, Modes)
     assert failure(second).kind == failure(third).kind == "crashed"
@@ -60,7 +60,7 @@ def test_a_hang_ends_with_its_time_limit_children_included() -> None:
     assert second == Failure("timed out", "no answer within 5 s")
 
 
-def test_what_a_code_prints_does_not_reach_the_protocol() -> None:
+def test_prints_of_a_code_do_not_reach_the_protocol() -> None:
     assert all(isinstance(answer, Modes) for answer in ask("CHATTER"))
 
 
@@ -73,7 +73,7 @@ def test_what_a_code_prints_does_not_reach_the_protocol() -> None:
         ("DESCENDING", "nonsense", "not ascending"),
     ],
 )
-def test_one_bad_run_leaves_its_neighbours_alone(attribute: str, kind: str, told: str) -> None:
+def test_one_bad_run_does_not_affect_the_others(attribute: str, kind: str, told: str) -> None:
     first, second, third = ask(attribute)
     assert isinstance(first, Modes)
     assert isinstance(third, Modes)
@@ -81,11 +81,11 @@ def test_one_bad_run_leaves_its_neighbours_alone(attribute: str, kind: str, told
     assert told in failure(second).reason
 
 
-def test_a_code_that_is_not_installed_says_how_to_get_it() -> None:
+def test_a_missing_code_gives_its_installation_hint() -> None:
     assert ask("ABSENT") == [Failure("not installed", "not installed: pip install manners")] * 3
 
 
-def test_a_blade_crosses_the_border_unchanged_rigid_strains_included() -> None:
+def test_a_blade_is_transferred_unchanged_including_rigid_strains() -> None:
     copy = decode_blade(encode(BLADE))
     for name in ("stations", "stiffness", "mass", "twist", "curve", "tip_mass"):
         np.testing.assert_array_equal(getattr(copy, name), getattr(BLADE, name))
@@ -93,12 +93,12 @@ def test_a_blade_crosses_the_border_unchanged_rigid_strains_included() -> None:
     assert (copy.name, copy.hub_radius) == ("beam", 0.3)
 
 
-def test_no_modes_cross_the_border_too() -> None:
+def test_an_empty_set_of_modes_is_transferred() -> None:
     empty = Modes(1.0, np.zeros(0), np.zeros((0, 21, 4), complex), 5)
     assert decode_modes(encode(empty)).shapes.shape == (0, 21, 4)
 
 
-def test_an_unknown_code_is_named_and_the_nearest_suggested() -> None:
+def test_an_unknown_code_is_an_error_that_suggests_the_nearest() -> None:
     with pytest.raises(registry.UnknownCodeError, match="'pinochio' is not known: did you mean pinocchio"):
         answers("pinochio", BLADE, RUNS, Limits(1.0))
 
@@ -111,7 +111,7 @@ def test_an_unknown_code_is_named_and_the_nearest_suggested() -> None:
         ("misbehaving:NOT_A_CODE", "lacks name, effects"),
     ],
 )
-def test_a_path_that_leads_to_no_code_is_refused(path: str, told: str) -> None:
+def test_a_path_without_a_code_is_an_error(path: str, told: str) -> None:
     with pytest.raises(registry.UnknownCodeError, match=told):
         registry.code(path)
 

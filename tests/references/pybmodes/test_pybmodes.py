@@ -1,4 +1,4 @@
-"""pyBModes against core lacking the same effects, closed forms, printed tables, and what it is said to leave out."""
+"""pyBModes against core without the same effects, closed forms and printed tables; and the effects it leaves out."""
 
 import os
 from dataclasses import replace
@@ -31,22 +31,22 @@ def frequencies(blade: Blade, omega: float, elements: int, count: int = 6) -> Ar
 
 
 def orders(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> Array:
-    """Observed order of convergence of each mode over levels that double."""
+    """Observed order of convergence of each mode over doubled levels."""
     f = [frequencies(blade, omega, n, count) for n in levels]
     return np.log2((f[0] - f[1]) / (f[1] - f[2]))
 
 
 def core(blade: Blade, omega: float, count: int) -> Array:
-    """With the same effects left out; sure to 1e-7 at least, by 160 elements of fourth order."""
+    """Core without the same effects, with 160 elements of fourth order; accurate to 1e-7 or better."""
     return solve.modes(blade, omega, 160, count, effects=CODE.effects).frequencies
 
 
 def shaft(I_y: float, I_z: float) -> Blade:
-    """Torsion's frequencies at rest are (k − ½) π √(GJ / I_x), far below bending's."""
+    """A beam with torsional frequencies (k − ½) π √(GJ / I_x) at zero speed, far below those of bending."""
     return uniform_blade("shaft", 1.0, 0.1, EA=1e4, GJ=1e-2, EI_y=1e2, EI_z=1e2, mass=1.0, I_y=I_y, I_z=I_z)
 
 
-def test_the_cantilever_at_rest_is_the_closed_form() -> None:
+def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
     """Euler–Bernoulli, cos βL cosh βL = −1: fourth order, so 40 elements give the third pair to 1e-6."""
     exact = np.square(ROOTS[:3]) * np.sqrt(E * I / (3000.0 * A)) / 36.0
     np.testing.assert_allclose(frequencies(PARK, 0.0, 40), np.repeat(exact, 2), rtol=2e-6)
@@ -62,7 +62,7 @@ def test_the_cantilever_at_rest_is_the_closed_form() -> None:
     ],
     ids=["cantilever", "slender 70, fast", "large hub", "pitched"],
 )
-def test_it_is_core_without_what_it_lacks(blade: Blade, omega: float, count: int, rtol: float) -> None:
+def test_agrees_with_core_without_the_same_effects(blade: Blade, omega: float, count: int, rtol: float) -> None:
     np.testing.assert_allclose(frequencies(blade, omega, 80, count), core(blade, omega, count), rtol=rtol)
 
 
@@ -75,8 +75,8 @@ def test_it_is_core_without_what_it_lacks(blade: Blade, omega: float, count: int
     ],
     ids=["tapered and twisted", "pitched", "windpact"],
 )
-def test_tapered_blades_extrapolate_to_core_without_what_it_lacks(blade: Blade, omega: float) -> None:
-    """From 160 and 320 elements by the second order."""
+def test_tapered_blades_extrapolate_to_core_without_the_same_effects(blade: Blade, omega: float) -> None:
+    """Second order, from 160 and 320 elements."""
     coarse, fine = (frequencies(blade, omega, n, 4) for n in (160, 320))
     np.testing.assert_allclose(fine + (fine - coarse) / 3, core(blade, omega, 4), rtol=2e-5)
 
@@ -92,13 +92,13 @@ def test_tapered_blades_extrapolate_to_core_without_what_it_lacks(blade: Blade, 
     ids=["cantilever", "slender 70", "tapered and twisted", "windpact"],
 )
 def test_order(blade: Blade, omega: float, levels: tuple[int, ...], order: int) -> None:
-    """Second where a blade tapers, since elements have the properties of their middle; fourth where it does not."""
+    """Second for tapered blades, since elements have the properties at their middle; fourth for uniform ones."""
     assert CODE.order == 2
     np.testing.assert_allclose(orders(blade, omega, levels, 4), order, atol=0.12)
 
 
 def test_shapes_are_those_of_core() -> None:
-    """Displacements by pairing; and the axes: modes of a pitched, twisted blade have a sense."""
+    """Displacements by pairing, and the signs of the axes from the modes of a pitched, twisted blade."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
     theirs = solve.modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
@@ -107,8 +107,8 @@ def test_shapes_are_those_of_core() -> None:
 
 
 @pytest.mark.parametrize("elements", [3, 7, 20])
-def test_shapes_between_nodes_are_the_elements_own(elements: int) -> None:
-    """Whatever the elements, the first shape is (Rayleigh 1877) the clamped-free one; slopes come in metres, too."""
+def test_shapes_between_nodes_use_the_shape_functions(elements: int) -> None:
+    """For any number of elements the first shape is the clamped-free one (Rayleigh 1877); slopes are in metres too."""
     root = ROOTS[0]
     x = root * np.linspace(0, 1, 21)
     ratio = (np.cosh(root) + np.cos(root)) / (np.sinh(root) + np.sin(root))
@@ -130,15 +130,16 @@ def test_torsion_has_polar_inertia_and_spin_softens() -> None:
     np.testing.assert_allclose(shape, np.sin(np.pi / 2 * x), atol=1e-6)
 
 
-def test_a_blade_without_polar_inertia_has_bending_modes_alone() -> None:
-    """Of an eigenproblem with a singular mass matrix, which pyBModes solves from below; all that it can is had."""
+def test_a_blade_without_polar_inertia_has_bending_modes_only() -> None:
+    """pyBModes solves this eigenproblem with a singular mass matrix from below; all available modes are returned."""
     found = CODE.solve(without_rotary_inertia(PARK), 10.0, 4, 99)
     assert len(found.frequencies) > 10
     assert not np.abs(found.shapes[:, :, 3]).max() > 1e-9 * np.abs(found.shapes).max()
 
 
 def test_axial_modes_are_left_out() -> None:
-    """Axial motion of this beam at rest is at π/2 · 70 = 110 rad/s, which pyBModes has but shows no shape of."""
+    """The axial mode of this beam at zero speed is at π/2 · 70 = 110 rad/s; pyBModes computes it but returns no
+    shape."""
     rotor_modes = frequencies(yoo_shin(0.0), 0.0, 40, 8)
     assert np.abs(rotor_modes / (35 * np.pi) - 1).min() > 0.05
     rest = np.square(ROOTS[:4])
@@ -162,17 +163,17 @@ def test_axial_modes_are_left_out() -> None:
     ],
     ids=["coupled", "swept", "coned", "hinged", "tip mass", "shear", "rigid", "added mass"],
 )
-def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: str) -> None:
     assert reason in (CODE.unsupported(blade) or "")
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 1.0, 5, 2)
 
 
-def test_why_mass_centres_off_the_axis_are_refused() -> None:
-    """What the reproducer calls expected is core's, too: two methods that share nothing, against pyBModes' 1.5 %.
+def test_why_mass_centres_off_the_axis_are_declined() -> None:
+    """Core agrees with the expected value of the reproducer, an independent method; pyBModes is off by 1.5 %.
 
-    Exact without Coriolis terms, and for a beam whose mass is 0.05 m off its axis, at 60 rpm; pyBModes alone has a second flap
-    that does not depend on the stiffness of the other plane.
+    Both are without Coriolis terms, for a beam with its mass 0.05 m off the axis, at 60 rpm. Only in pyBModes the
+    second flap mode does not depend on the stiffness of the other plane.
     """
     from southwell.references.defects import pybmodes_mass_centre as they
 
@@ -196,19 +197,19 @@ def test_why_mass_centres_off_the_axis_are_refused() -> None:
     np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], ours, rtol=1e-4)
 
 
-def test_takes_every_other_blade_of_these_tests() -> None:
+def test_the_other_blades_of_these_tests_are_accepted() -> None:
     assert [CODE.unsupported(b) for b in (PARK, tapered(), yoo_shin(0.1), WINDPACT, shaft(1e-3, 0.0))] == [None] * 5
 
 
-def test_a_rotor_too_fast_is_said_so() -> None:
-    """A section thicker than wide is turned out of the plane of rotation: Ω² (I_y − I_z) beyond (π/2)² GJ / L²."""
+def test_no_steady_state_at_high_speed_is_reported() -> None:
+    """A section thicker than wide is unstable in torsion: Ω² (I_y − I_z) above (π/2)² GJ / L²."""
     assert frequencies(shaft(9e-4, 1e-4), 5.0, 10, 1)[0] > 0
     with pytest.raises(CodeError, match="no stable steady state"):
         CODE.solve(shaft(9e-4, 1e-4), 6.0, 10, 1)
 
 
-def test_what_the_input_file_has_and_nothing_reads(tmp_path: Path) -> None:
-    """Precone: refused here because pyBModes's answer does not depend on it. Pitch: likewise, hence given as twist."""
+def test_unused_entries_of_the_input_file(tmp_path: Path) -> None:
+    """pyBModes ignores precone, so such blades are declined, and pitch, so it is included in the twist."""
     blade = replace(tapered(), pitch=0.0)
     path = pybmodes_beam._write(tmp_path, blade, 3.0, np.linspace(0, blade.length, 21), 4)
     text, answers = path.read_text(), []
@@ -218,11 +219,11 @@ def test_what_the_input_file_has_and_nothing_reads(tmp_path: Path) -> None:
             answers.append(pybmodes_beam._pybmodes().RotatingBlade(path).run(4, check_model=False).frequencies)
     plain, coned, _, pitched, still, half = answers
     np.testing.assert_array_equal([coned, pitched], [plain, plain])
-    assert (still < half).all()  # what is read, moves
+    assert (still < half).all()  # an entry that is used changes the result
     assert (half < plain).all()
 
 
-def test_it_leaves_no_file_behind_and_repeats_itself(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_it_leaves_no_files_and_is_repeatable(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     first = CODE.solve(tapered(), 2.0, 20, 4)
     CODE.solve(PARK, 10.0, 5, 4)

@@ -37,7 +37,7 @@ def core(blade: Blade, omega: float, count: int = 6) -> Array:
 
 
 def body() -> Array:
-    """(6, 6) of a few particles, from their places alone."""
+    """Inertia (6, 6) of a few particles, from their positions."""
     out = np.zeros((6, 6))
     for m, y in zip([1.0, 2.0, 0.5, 1.5], RNG.normal(size=(4, 3)), strict=True):
         velocity = np.eye(3, 6)
@@ -47,13 +47,13 @@ def body() -> Array:
 
 
 class TestForms:
-    """Against the exact, finite motion: rotate, then difference."""
+    """Against differences of the exact finite motion."""
 
     slope, axes, force = RNG.normal(size=3), Rotation.from_rotvec(RNG.normal(size=3)).as_matrix(), RNG.normal(size=6)
     place = RNG.normal(size=3)
 
     def strain(self, z: Array) -> Array:
-        """Γ, and the curvature from the rotation's own derivative along the arc, by differences."""
+        """Γ, and the curvature from differences of the rotation along the arc."""
         _, phi, w_s, phi_s = z.reshape(4, 3)
         turn, h = Rotation.from_rotvec(phi).as_matrix(), 1e-4
         ahead, behind = (Rotation.from_rotvec(phi + e * phi_s).as_matrix() for e in (h, -h))
@@ -88,12 +88,12 @@ class TestForms:
             second_differences(potential, 6), forms.centrifugal(self.place, spatial), rtol=1e-5, atol=1e-5
         )
 
-    def test_inertia_gives_the_bodys_matrix_back(self) -> None:
+    def test_inertia_reproduces_the_matrix_of_the_body(self) -> None:
         mass = body()
         np.testing.assert_allclose(forms.inertia(moments(mass)), mass, atol=1e-12)
 
     def test_coriolis_force_of_a_point_mass(self) -> None:
-        """2 m Ω × v: moving along x pushes along y."""
+        """2 m Ω × v: motion along x gives a force along y."""
         found = forms.gyroscopic(np.diag([0.0, 0.0, 0.0, 3.0]))
         np.testing.assert_array_equal(found[:3, :3], 2 * 3.0 * np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]]))
         general = forms.gyroscopic(moments(body()))
@@ -116,7 +116,7 @@ def second_differences(f: Callable[[Array], float], n: int) -> Array:
     return np.array(found) / 4e-6
 
 
-def test_the_line_is_cores_line_by_another_evaluation() -> None:
+def test_the_line_agrees_with_core() -> None:
     blade = curved()
     s = np.array([[1.0, 3.0], [12.0, 19.0], [21.0, 39.0]])
     found, theirs = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
@@ -126,7 +126,7 @@ def test_the_line_is_cores_line_by_another_evaluation() -> None:
 
 @needs_scikit_fem
 class TestFrequencies:
-    def test_the_full_beam_reaches_its_exact_values(self) -> None:
+    def test_the_beam_with_all_effects_converges_to_exact_values(self) -> None:
         np.testing.assert_allclose(frequencies(PARK, 10.0, 96), EXACT, rtol=1e-7)
 
     @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ class TestFrequencies:
         ids=["cantilever", "slender 70", "tapered and twisted", "coupled, curved, sheared, precone"],
     )
     def test_fourth_order(self, blade: Blade, omega: float, levels: tuple[int, ...], least: float) -> None:
-        """Mode by mode, or already at rounding."""
+        """For each mode, unless it is at rounding."""
         f = [frequencies(blade, omega, n, 5) for n in levels]
         first, second = np.abs(f[0] / f[2] - f[1] / f[2]), np.abs(f[1] / f[2] - 1)
         assert CODE.order == 4
@@ -148,8 +148,9 @@ class TestFrequencies:
 
     @pytest.mark.parametrize("omega", [0.0, 3.0])
     @pytest.mark.parametrize("pitch", [0.0, 0.6])
-    def test_a_blade_with_everything_agrees_with_core(self, pitch: float, omega: float) -> None:
-        """Coupled, curved, sheared, twisted, tapered, offset, coned; a body off the tip's axis; both torsion and bending."""
+    def test_a_blade_with_all_properties_agrees_with_core(self, pitch: float, omega: float) -> None:
+        """Coupled, curved, sheared, twisted, tapered, offset, coned; a body off the tip's axis; both torsion and
+        bending."""
         lump = 300.0 * body() / 5.0
         blade = replace(curved(), tip_mass=lump, pitch=pitch, precone=0.2)
         np.testing.assert_allclose(frequencies(blade, omega, 40, 8), core(blade, omega, 8), rtol=1e-5)
@@ -167,33 +168,34 @@ class TestFrequencies:
         np.testing.assert_allclose(frequencies(blade, 10.0, 64), core(blade, 10.0), rtol=1e-6)
 
     @pytest.mark.parametrize("precone", [-0.1, 0.3])
-    def test_a_coned_blade_on_a_flap_hinge_turns_until_it_is_in_balance(self, precone: float) -> None:
+    def test_a_coned_blade_on_a_flap_hinge_rotates_to_its_equilibrium(self, precone: float) -> None:
         blade = replace(PARK, root=np.array([np.inf] * 4 + [0.0, np.inf]), precone=precone)
         np.testing.assert_allclose(frequencies(blade, 10.0, 64, 4), core(blade, 10.0, 4), rtol=1e-6)
 
-    def test_a_spring_holds_a_root_that_slides(self) -> None:
+    def test_a_sliding_root_on_a_spring(self) -> None:
         blade = replace(PARK, root=np.array([3e4, 2e4, 1e4, 300.0, np.inf, np.inf]), pitch=0.4)
         np.testing.assert_allclose(frequencies(blade, 10.0, 64), core(blade, 10.0), rtol=1e-6)
 
     @pytest.mark.parametrize("omega", [2.0, 6.0])
     def test_rigid_strains_are_exact_constraints(self, omega: float) -> None:
-        """Inextensible, shear-free, with rigid torsion and like planes: chordwise² = flapwise² − Ω², exactly."""
+        """Inextensible, rigid in shear and torsion, equal planes: edgewise² = flapwise² − Ω², exactly."""
         stiff = {"EA": np.inf, "GJ": np.inf, "EI_y": 48.0, "EI_z": 48.0}
         blade = uniform_blade("rigid but in bending", 2.0, 0.5, mass=3.0, **stiff)
         f = frequencies(blade, omega, 24)
         np.testing.assert_allclose(f[::2] ** 2, f[1::2] ** 2 - omega**2, rtol=1e-9)
         np.testing.assert_allclose(frequencies(blade, 0.0, 48, 1), 3.5160152685, rtol=1e-7)
 
-    def test_a_deck_without_axial_and_torsional_stiffness_is_rigid_in_both(self) -> None:
-        """As ElastoDyn's blades are: with no stand-in for what the deck does not give."""
+    def test_axial_and_torsional_stiffness_missing_in_the_input_are_rigid(self) -> None:
+        """As for ElastoDyn's blades: no artificial value for what the input does not give."""
         stiffness = tapered().stiffness.copy()
         stiffness[:, [0, 3], [0, 3]] = np.inf
         blade = replace(tapered(), stiffness=stiffness, precone=0.05)
         coarse, fine = (frequencies(blade, 3.0, n, 5) for n in (20, 40))
         np.testing.assert_allclose(fine + (fine - coarse) / 15, core(blade, 3.0, 5), rtol=2e-6)
 
-    def test_nothing_locks(self) -> None:
-        """Eight elements, however slender: shear and stretch a million times stiffer than bending change nothing."""
+    def test_no_locking(self) -> None:
+        """Eight elements at any slenderness: shear and stretch a million times stiffer than bending do not affect the
+        result."""
         soft, hard = (
             replace(PARK, stiffness=np.repeat(section_stiffness(k, 1e4, 1.4e4, 1.4e4, k, k), 2, axis=0))
             for k in (1.4e9, 1.4e13)
@@ -203,14 +205,14 @@ class TestFrequencies:
 
 @needs_scikit_fem
 class TestRefusals:
-    def test_a_mass_that_depends_on_the_direction(self) -> None:
+    def test_a_mass_that_depends_on_the_direction_is_declined(self) -> None:
         blade = replace(PARK, mass=PARK.mass * np.diag([1.00005, 1, 1, 1, 1, 1]))
         assert "not the matrix of a rigid body" in (CODE.unsupported(blade) or "")
         with pytest.raises(CodeError, match="mass: not a rigid body"):
             CODE.solve(blade, 0.0, 8, 2)
 
     def test_a_steady_rotation_about_two_hinges(self) -> None:
-        """Precone and an offset mass turn both; which hinge comes first then matters."""
+        """Precone and an offset mass rotate both hinges, and their order matters."""
         blade = replace(PARK, root=np.array([np.inf] * 4 + [50.0, 50.0]), precone=0.2)
         mass = blade.mass.copy()
         mass[:, 0, 5] = mass[:, 5, 0] = -0.1 * mass[:, 0, 0]
@@ -220,10 +222,10 @@ class TestRefusals:
         with pytest.raises(CodeError, match="about two axes"):
             CODE.solve(replace(blade, mass=mass), 5.0, 8, 2)
 
-    def test_too_fast_for_a_steady_state(self) -> None:
+    def test_no_steady_state_at_high_speed(self) -> None:
         with pytest.raises(CodeError, match=r"no (stable )?steady"):
             CODE.solve(yoo_shin(0.0), 300.0, 16, 4)
 
-    def test_too_many_elements(self) -> None:
+    def test_too_many_elements_are_an_error(self) -> None:
         with pytest.raises(CodeError, match="dense"):
             CODE.solve(PARK, 0.0, 1000, 1)

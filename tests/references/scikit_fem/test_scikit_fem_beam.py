@@ -29,25 +29,25 @@ def frequencies(blade: Blade, omega: float, elements: int, count: int = 6) -> Ar
 
 
 def orders(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> Array:
-    """Observed order of convergence of each mode over levels that double."""
+    """Observed order of convergence of each mode over doubled levels."""
     f = [frequencies(blade, omega, n, count) for n in levels]
     return np.log2((f[0] - f[1]) / (f[1] - f[2]))
 
 
 def extrapolated(blade: Blade, omega: float) -> Array:
-    """Core's eight lowest frequencies, from 80 and 160 elements: its torsion and its stretch are of second order."""
+    """Core's eight lowest frequencies, from 80 and 160 elements: torsion and stretch are of second order."""
     coarse, fine = (solve.modes(blade, omega, n, 8).frequencies for n in (80, 160))
     return fine + (fine - coarse) / 3
 
 
 def shaft(I_y: float, I_z: float, **changes: float) -> Blade:
-    """Torsion's frequencies at rest are (k − ½) π √(GJ / I_x), far below bending's."""
+    """A beam with torsional frequencies (k − ½) π √(GJ / I_x) at zero speed, far below those of bending."""
     stiff = {"EA": 1e4, "GJ": 1e-2, "EI_y": 1e2, "EI_z": 1e2, "mass": 1.0}
     return uniform_blade("shaft", 1.0, 0.1, **{**stiff, "I_y": I_y, "I_z": I_z, **changes})
 
 
-def test_the_full_beam_reaches_its_exact_values() -> None:
-    """Seven digits, rotary inertia and steady stretch included: the printed ones are sure to 1e-6 rad/s or so."""
+def test_the_beam_with_all_effects_converges_to_exact_values() -> None:
+    """Seven digits, including rotary inertia and steady stretch; the values are accurate to about 1e-6 rad/s."""
     np.testing.assert_allclose(frequencies(PARK, 10.0, 80), EXACT, rtol=1e-7)
 
 
@@ -63,7 +63,7 @@ def test_the_full_beam_reaches_its_exact_values() -> None:
     ids=["cantilever", "slender 70", "tapered and twisted", "with tip mass", "windpact"],
 )
 def test_fourth_order(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> None:
-    """Kinks at the stations do not spoil it, since they are ends of elements."""
+    """Kinks at the stations do not reduce the order, since they are ends of elements."""
     assert CODE.order == 4
     np.testing.assert_allclose(orders(blade, omega, levels, count), 4, atol=0.4)
 
@@ -71,8 +71,8 @@ def test_fourth_order(blade: Blade, omega: float, levels: tuple[int, ...], count
 @pytest.mark.skipif(ANCF.version() is None, reason=f"not installed: {ANCF.hint}")
 @pytest.mark.parametrize("gamma", [10.0, 50.0])
 @pytest.mark.parametrize("hub_ratio", [0.0, 1.0])
-def test_large_stretch_is_that_of_nonlinear_theory(hub_ratio: float, gamma: float) -> None:
-    """Slenderness 70: steady strains of 1 % to over 50 %, against a code that moves nodes instead of linearising by hand."""
+def test_large_stretch_agrees_with_nonlinear_theory(hub_ratio: float, gamma: float) -> None:
+    """Slenderness 70: steady strains of 1 % to over 50 %, against a nonlinear code without analytical linearisation."""
     ours = frequencies(yoo_shin(hub_ratio), gamma, 80, 8)
     np.testing.assert_allclose(ours, ANCF.solve(yoo_shin(hub_ratio), gamma, 80, 8).frequencies, rtol=2e-7)
 
@@ -82,7 +82,7 @@ def test_large_stretch_is_that_of_nonlinear_theory(hub_ratio: float, gamma: floa
 @pytest.mark.parametrize("tip_mass", [np.zeros((6, 6)), TIP_MASS], ids=["bare", "tip mass"])
 @pytest.mark.parametrize("inertia", [True, False], ids=["rotary inertia", "none"])
 def test_a_tapered_twisted_blade_agrees_with_core(inertia: bool, tip_mass: Array, pitch: float, omega: float) -> None:
-    """Core moves rigid sections on helices: taper, twisted bending, inertias and their places must come out alike."""
+    """Core uses rigid sections on helices: taper, twisted bending, inertias and their positions must agree."""
     blade = replace(tapered(), tip_mass=tip_mass, pitch=pitch)
     blade = blade if inertia else without_rotary_inertia(blade)
     np.testing.assert_allclose(frequencies(blade, omega, 80, 8), extrapolated(blade, omega), rtol=1e-5)
@@ -90,7 +90,7 @@ def test_a_tapered_twisted_blade_agrees_with_core(inertia: bool, tip_mass: Array
 
 @pytest.mark.parametrize("omega", [2.0, 5.0, 8.0])
 def test_a_blade_soft_in_torsion_agrees_with_core(omega: float) -> None:
-    """Its steady untwist is up to 0.24 rad: propeller moment, and the torque's part in bending (1e-4), matter."""
+    """The steady untwist is up to 0.24 rad: the propeller moment and the torque's effect on bending (1e-4) matter."""
     s, scale = np.array([0.0, 0.4, 1.0]), np.array([1.3, 1.0, 0.5])
     stiffness = section_stiffness(EA=4900 * scale, GJ=0.1 * scale, EI_y=scale, EI_z=5 * scale)
     mass = section_mass(scale, I_y=0.001 * scale, I_z=0.02 * scale)
@@ -98,8 +98,8 @@ def test_a_blade_soft_in_torsion_agrees_with_core(omega: float) -> None:
     np.testing.assert_allclose(frequencies(blade, omega, 80, 8), extrapolated(blade, omega), rtol=5e-6)
 
 
-def test_windpact_at_rest_and_turning() -> None:
-    """First frequency of the public 3 MW blade: 0.932 Hz at rest, +10.3 % at 20 rpm and +21.7 % at 30 rpm."""
+def test_windpact_at_zero_speed_and_rotating() -> None:
+    """First frequency of the public 3 MW blade: 0.932 Hz at zero speed, +10.3 % at 20 rpm, +21.7 % at 30 rpm."""
     rest, at_20, at_30 = (frequencies(WINDPACT, rpm * np.pi / 30, 80, 1)[0] for rpm in (0, 20, 30))
     assert f"{rest / (2 * np.pi):.3f}" == "0.932"
     assert [f"{100 * (f / rest - 1):.1f}" for f in (at_20, at_30)] == ["10.3", "21.7"]
@@ -110,20 +110,21 @@ class TestTorsion:
         exact = np.array([0.5, 1.5, 2.5]) * np.pi * np.sqrt(1e-2 / 0.03)
         np.testing.assert_allclose(frequencies(shaft(0.01, 0.02), 0.0, 80, 3), exact, rtol=1e-7)
 
-    def test_a_turning_flat_section_resists_as_a_tennis_racket(self) -> None:
-        """All inertia about z: ω² = ω₀² + Ω² exactly (R. L. Bielawa, *Rotary Wing Structural Dynamics*, 2006, ch. 3)."""
+    def test_the_tennis_racket_effect_of_a_flat_section(self) -> None:
+        """All inertia about z: ω² = ω₀² + Ω² exactly (R. L. Bielawa, *Rotary Wing Structural Dynamics*, 2006, ch.
+        3)."""
         blade, omega = shaft(0.0, 0.03), 2.0
         rest = np.array([0.5, 1.5, 2.5]) * np.pi * np.sqrt(1e-2 / 0.03)
         np.testing.assert_allclose(frequencies(blade, omega, 80, 3), np.hypot(rest, omega), rtol=1e-7)
 
-    def test_without_inertia_it_has_no_modes(self) -> None:
-        """No fudge: torsional stiffness is then of no consequence whatever."""
+    def test_no_torsional_modes_without_inertia(self) -> None:
+        """Torsional stiffness then has no effect, and no artificial inertia is added."""
         soft, stiff = (uniform_blade("b", 1.0, 0.1, EA=4900, GJ=GJ, EI_y=1, EI_z=1, mass=1) for GJ in (0.1, 1e3))
         np.testing.assert_allclose(frequencies(soft, 10.0, 20), frequencies(stiff, 10.0, 20), rtol=1e-10)
 
 
 class TestElements:
-    def test_of_a_uniform_blade_are_as_many_as_asked_for(self) -> None:
+    def test_of_a_uniform_blade_have_the_requested_number(self) -> None:
         assert [CODE.solve(PARK, 0.0, n, 1).elements for n in (5, 33, 80)] == [5, 33, 80]
 
     @pytest.mark.parametrize("stations", [3, 20, 50])
@@ -138,8 +139,8 @@ class TestElements:
 
 
 class TestShapes:
-    def test_are_read_between_nodes_too(self) -> None:
-        """The cantilever's own shape at rest, with ten elements and twenty-one stations."""
+    def test_are_evaluated_between_nodes(self) -> None:
+        """The cantilever's shape at zero speed, with ten elements and twenty-one stations."""
         beta = root_scalar(lambda x: np.cos(x) * np.cosh(x) + 1, bracket=(4.0, 5.0)).root
         x = beta * STATIONS
         ratio = (np.cosh(beta) + np.cos(beta)) / (np.sinh(beta) + np.sin(beta))
@@ -149,8 +150,9 @@ class TestShapes:
         np.testing.assert_allclose(flap[:, 2] / flap[-1, 2], exact / exact[-1], atol=2e-4)
         assert np.abs(flap[:, [0, 1, 3]]).max() < 1e-9 * np.abs(flap[:, 2]).max()
 
-    def test_have_axes_and_phase(self) -> None:
-        """Lowest chordwise moves along y, its stretch a quarter cycle off (Coriolis); lowest flapwise along z."""
+    def test_are_in_blade_axes_with_the_right_phase(self) -> None:
+        """The lowest edgewise mode moves along y, its stretch a quarter cycle off (Coriolis); the lowest flapwise along
+        z."""
         modes = CODE.solve(yoo_shin(0.0), 10.0, 20, 2)
         chordwise, flapwise = modes.shapes[:, -1] / np.abs(modes.shapes[:, -1]).max(axis=1, keepdims=True)
         assert abs(chordwise[1]) == pytest.approx(1)
@@ -159,8 +161,8 @@ class TestShapes:
         assert abs((chordwise[0] / chordwise[1]).real) < 1e-9
 
 
-def test_the_same_call_gives_the_same_answer_whatever_was_solved_between() -> None:
-    """A Hermite element that outlives its mesh would silently answer for the old one."""
+def test_the_same_call_gives_the_same_answer_after_other_calls() -> None:
+    """A Hermite element reused on another mesh would silently give the result of the first."""
     first = CODE.solve(PARK, 10.0, 7, 4)
     CODE.solve(tapered(), 1.0, 31, 4)
     again = CODE.solve(PARK, 10.0, 7, 4)
@@ -185,21 +187,21 @@ def test_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
         (replace(PARK, stiffness=np.repeat(section_stiffness(np.inf, 1, 1, 1), 2, axis=0)), "EA is infinite"),
     ],
 )
-def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: str) -> None:
     assert reason in (CODE.unsupported(blade) or "")
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 0.0, 20, 4)
 
 
 @pytest.mark.parametrize("gamma", [112.0, 300.0])
-def test_too_fast_for_a_steady_state(gamma: float) -> None:
-    """An elastic bar's stretch has no bound at γ = α π/2 = 110."""
+def test_no_steady_state_at_high_speed(gamma: float) -> None:
+    """The stretch of an elastic bar is unbounded at γ = α π/2 = 110."""
     with pytest.raises(CodeError, match=r"no (stable )?steady"):
         CODE.solve(yoo_shin(0.0), gamma, 20, 4)
 
 
-def test_unstable_torsion_is_no_answer() -> None:
-    """The section set across the plane of rotation turns over where Ω² (I_y − I_z) outgrows its stiffness."""
+def test_unstable_torsion_is_an_error() -> None:
+    """A section normal to the plane of rotation is unstable if Ω² (I_y − I_z) exceeds its stiffness."""
     limit = 0.5 * np.pi * np.sqrt(1e-2 / (0.03 - 0.01))
     assert len(frequencies(shaft(0.03, 0.01), 0.99 * limit, 4, 20)) == 20
     with pytest.raises(CodeError, match="steady state"):

@@ -1,4 +1,4 @@
-"""CalculiX, a code of its own: against exact beams, scikit-fem's solid, and the compressed model."""
+"""CalculiX against exact beams, scikit-fem's solid, and the compressed model."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ needs_skfem = pytest.mark.skipif(hexahedra.version() is None, reason=f"not insta
 
 
 def test_square_cantilever() -> None:
-    """Timoshenko's frequencies at rest; core's beam at 10 rad/s, without Coriolis forces."""
+    """Timoshenko's frequencies at zero speed; core's beam at 10 rad/s, without Coriolis forces."""
     bricks = square_bar(LENGTH, 60, start=HUB)
     at_rest = calculix.modes(bricks, SQUARE, 0.0, 6, clamped_free_to_contract(HUB))
     np.testing.assert_allclose(at_rest.frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
@@ -49,9 +49,10 @@ def test_square_cantilever() -> None:
 @needs_skfem
 @pytest.mark.parametrize("omega", [0.0, SPEED])
 def test_twisted_blade_three_ways(omega: float) -> None:
-    """CalculiX against scikit-fem on one mesh (20 nodes an element there, 27 here), and the compressed model against both.
+    """CalculiX against scikit-fem on one mesh (20 and 27 nodes per element), and the compressed model against both.
 
-    The five lowest, the fifth torsion. Without Coriolis forces, which CalculiX leaves out: 9e-5 of a frequency here.
+    The five lowest modes, the fifth is torsion. Without Coriolis forces, which CalculiX leaves out: 9e-5 of a
+    frequency.
     """
     theirs = calculix.modes(twisted(), STEEL, omega, 6, clamped(ROOT))
     ours = twisted_modes(omega, coriolis=False)
@@ -69,9 +70,9 @@ def tie(model: ties.FiniteElements, x: float, weights: np.ndarray) -> ties.Tie:
 
 
 def test_segment_from_calculixs_matrices() -> None:
-    """Its stored stiffness and mass, condensed here: E A, E I to rounding, and the cantilever of 20 of them.
+    """Its stored stiffness and mass, condensed by core: E A, E I to rounding, and the cantilever of 20 segments.
 
-    With even weights on its 8-node faces the segment stretches by more than a tenth more.
+    With uniform weights on its 8-node faces the segment would stretch by more than 10 % more.
     """
     length = LENGTH / 20
     bricks = square_bar(length, 4)
@@ -89,7 +90,7 @@ def test_segment_from_calculixs_matrices() -> None:
 
 @pytest.mark.parametrize("layer", [0, 1])
 def test_section_weights_integrate_a_tapered_twisted_section(layer: int) -> None:
-    """Area and second moments of chord × thickness, turned by the twist."""
+    """Area and second moments of chord × thickness, rotated by the twist."""
     x, chord, thick, twist = np.array([0.0, 1.0]), np.array([0.4, 0.3]), np.array([0.2, 0.1]), np.array([0.5, 0.1])
     bricks = blade(x, chord, thick, twist, across=(2, 3))
     places, nodes = calculix.numbered(bricks)
@@ -103,10 +104,10 @@ def test_section_weights_integrate_a_tapered_twisted_section(layer: int) -> None
     assert y @ W @ y + z @ W @ z == pytest.approx(c * t * (c**2 + t**2) / 12, rel=1e-12)
 
 
-def test_what_it_calls_a_substructure_is_refused() -> None:
-    """CalculiX 2.20 holds the nodes that are not retained, where it should eliminate them: no coupling, no rigid motions.
+def test_its_substructure_is_rejected() -> None:
+    """CalculiX 2.20 fixes the nodes that are not retained instead of eliminating them: no coupling, no rigid motions.
 
-    Should a later version do better, this segment is the one of its stored matrices.
+    If a later version is correct, this segment equals that of its stored matrices.
     """
     length = LENGTH / 20
     bricks = square_bar(length, 4)
@@ -133,7 +134,7 @@ def test_errors_name_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match=r"across: \(1, 1\) elements"):
         calculix.modes(square_bar(1.0, 20, across=1), SQUARE, 0.0, 2, clamped(0.0))
-    with pytest.raises(CodeError, match="clamp: holds 0 displacements"):
+    with pytest.raises(CodeError, match="clamp: fixes 0 displacements"):
         calculix.modes(bricks, STEEL, 0.0, 2, clamped(0.0))
     inside_out = blade(np.linspace(0.0, 1.0, 3), 0.1, -0.1, across=(2, 2))
     with pytest.raises(CodeError, match=r"ccx ended with .*\*ERROR in e_c3d: nonpositive jacobian"):

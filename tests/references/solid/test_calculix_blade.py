@@ -1,4 +1,4 @@
-"""CalculiX as a code: its bar is the blade, axis by axis; against closed forms and core without Coriolis forces."""
+"""The CalculiX adapter: its bar is equivalent to the blade; against closed forms and core without Coriolis forces."""
 
 from dataclasses import replace
 
@@ -37,8 +37,8 @@ def test_the_bar_has_the_blades_stiffness_and_mass() -> None:
 
 
 @needs_ccx
-def test_the_cantilever_at_rest_is_the_closed_form() -> None:
-    """Euler and Bernoulli's, of which the third pair loses 5.4e-4 to rotary inertia; with that, core's to 2e-5."""
+def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
+    """Euler–Bernoulli; rotary inertia lowers the third pair by 5.4e-4; with it, core agrees to 2e-5."""
     beta2 = np.square(ROOTS[:3])
     bending = beta2 * np.sqrt(E * I / (3000.0 * A)) / 36.0
     found = CODE.solve(PARK, 0.0, 40, 6).frequencies
@@ -53,14 +53,14 @@ def test_the_cantilever_at_rest_is_the_closed_form() -> None:
     ids=["cantilever", "fast", "plank", "shearing"],
 )
 def test_it_is_core_without_coriolis_forces(blade: Blade, omega: float, rtol: float) -> None:
-    """St Venant and Kirchhoff's material stiffens with strain: 8e-5 at 10 rad/s, nine times that at 30."""
+    """The St Venant–Kirchhoff material stiffens with strain: 8e-5 at 10 rad/s, nine times that at 30."""
     found = CODE.solve(blade, omega, 40, 6)
     mine = solve.modes(blade, omega, 60, 6, effects=CODE.effects)
     np.testing.assert_allclose(found.frequencies, mine.frequencies, rtol=rtol)
 
 
 @needs_ccx
-def test_shapes_have_axes() -> None:
+def test_shapes_are_in_blade_axes() -> None:
     """The plank's lowest mode is flapwise: along z, as the closed form says, and not about x."""
     shape = CODE.solve(PLANK, 0.0, 20, 1).shapes[0]
     mine = solve.modes(PLANK, 0.0, 40, 1).shapes[0]
@@ -76,8 +76,8 @@ def test_fourth_order() -> None:
 
 
 @needs_ccx
-def test_modes_that_turn_about_the_axis_are_left_out() -> None:
-    """A stubby bar soft in shear twists early: asked for ten, it gives ten, none of them a twist."""
+def test_torsional_modes_are_left_out() -> None:
+    """A stubby bar soft in shear has low torsional modes; ten modes requested give ten, none of them torsional."""
     stubby = uniform_blade(
         "stubby", 1.0, 0.1, EA=1e6, GJ=1.0, EI_y=1e4, EI_z=1e4, mass=1.0, I_y=0.01, I_z=0.01, GA_y=1e4, GA_z=1e4
     )
@@ -110,18 +110,18 @@ def test_the_same_call_gives_the_same_answer() -> None:
     ],
     ids=["tapered", "curved", "tip mass", "thin", "rigid", "added mass"],
 )
-def test_says_why_it_cannot(blade: Blade, reason: str) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: str) -> None:
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 0.0, 10, 2)
 
 
-def test_a_strain_that_stiffens_the_material_is_refused() -> None:
+def test_a_strain_that_stiffens_the_material_is_an_error() -> None:
     """ρ Ω² (R L + L²/2) / E = 2e-3 at 48.5 rad/s."""
-    with pytest.raises(CodeError, match=r"omega: 49 rad/s: strains the root by 2\.0e-03"):
+    with pytest.raises(CodeError, match=r"omega: 49 rad/s: strain at the root 2\.0e-03"):
         CODE.solve(PARK, 49.0, 10, 2)
 
 
-def test_not_installed_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_installation_hint_if_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     assert CODE.version() is None
     assert CODE.hint == "apt-get install calculix-ccx"
@@ -130,8 +130,8 @@ def test_not_installed_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) ->
         CODE.solve(PARK, 0.0, 10, 2)
 
 
-def test_torsional_stiffness_makes_no_difference_to_what_it_gives() -> None:
-    """Its bar has a torsional stiffness of its own; the blade's is decoupled and its modes are not among the answers."""
+def test_torsional_stiffness_does_not_affect_the_results() -> None:
+    """The bar has another torsional stiffness than the blade; torsion is decoupled and its modes are left out."""
     other = replace(PARK, stiffness=PARK.stiffness * np.where(np.eye(6)[TORSION], 9.0, 1.0))
     assert CODE.unsupported(other) is None
     assert bar(other, 10)[1] == bar(PARK, 10)[1]

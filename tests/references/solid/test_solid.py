@@ -1,4 +1,4 @@
-"""Solid blades in scikit-fem: invariants of the mechanics, then exact beams, at rest and rotating."""
+"""Solid blades in scikit-fem: invariants of the mechanics, then exact beams, at zero speed and rotating."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def small() -> hexahedra.Solid:
 
 
 def test_mass_and_centre_of_a_tapered_rectangle() -> None:
-    """∫ρ c t dx and ∫ρ c t x dx of chord and thickness that fall linearly: a trilinear mesh has them exactly."""
+    """∫ρ c t dx and ∫ρ c t x dx for linear chord and thickness: exact for a trilinear mesh."""
     x = np.linspace(1.0, 3.0, 4)
     s = hexahedra.solid(blade(x, 0.5 - 0.1 * (x - 1), 0.2 - 0.05 * (x - 1), across=(2, 2)), STEEL)
     area = np.polynomial.Polynomial([0.6, -0.1]) * np.polynomial.Polynomial([0.25, -0.05])
@@ -48,7 +48,7 @@ def test_stiffness_is_symmetric_and_free_of_rigid_motions() -> None:
     assert np.abs(K @ R).max() < 1e-10 * abs(K).max()
 
 
-def test_a_finite_rigid_rotation_strains_nothing() -> None:
+def test_a_finite_rigid_rotation_causes_no_strain() -> None:
     s = small()
     c, si = np.cos(1.0), np.sin(1.0)
     turned = s.nodes @ np.array([[c, si, 0], [-si, c, 0], [0, 0, 1]])
@@ -57,7 +57,7 @@ def test_a_finite_rigid_rotation_strains_nothing() -> None:
 
 
 def test_tangent_is_the_derivative_of_the_internal_force() -> None:
-    """At a state that is stretched, sheared and turned, along a random direction; central difference."""
+    """At a stretched, sheared and rotated state, along a random direction, by central differences."""
     s = small()
     rng = np.random.default_rng(1)
     u = (s.nodes @ (0.1 * rng.normal(size=(3, 3)))).T.ravel() + 1e-4 * rng.normal(size=3 * len(s.nodes))
@@ -68,7 +68,7 @@ def test_tangent_is_the_derivative_of_the_internal_force() -> None:
 
 
 def test_uniform_tension_on_a_distorted_mesh() -> None:
-    """The patch test: u = ε (x, −ν y, −ν z) needs E A ε at the ends and nothing elsewhere."""
+    """The patch test: u = ε (x, −ν y, −ν z) needs E A ε at the ends and no other forces."""
     corners = blade(np.linspace(0.0, 1.0, 4), 0.2, 0.1, across=(3, 3)).corners.copy()
     corners[1:-1, 1:-1, 1:-1] += 0.01 * np.random.default_rng(2).uniform(-1, 1, size=(2, 2, 2, 3))
     s = hexahedra.solid(Bricks(corners), STEEL)
@@ -80,8 +80,8 @@ def test_uniform_tension_on_a_distorted_mesh() -> None:
     np.testing.assert_allclose(force[:, ~tip & (s.nodes[:, 0] > 0.0)], 0.0, atol=1e-9 * pull)
 
 
-def test_steady_stretch_of_a_turning_bar() -> None:
-    """u(L) = ρ Ω² (R L²/2 + L³/3)/E without Poisson's effect, at strains of 1e-7."""
+def test_steady_stretch_of_a_rotating_bar() -> None:
+    """u(L) = ρ Ω² (R L²/2 + L³/3)/E with zero Poisson's ratio, at strains of 1e-7."""
     bar, omega, length, hub = Material(2e11, 0.0, 7800.0), 1.0, 2.0, 0.5
     s = hexahedra.solid(blade(np.linspace(hub, hub + length, 5), 0.1, 0.1, across=(1, 1)), bar)
     u, _ = hexahedra.steady(s, omega, clamped(hub)(s.nodes))
@@ -90,7 +90,7 @@ def test_steady_stretch_of_a_turning_bar() -> None:
     np.testing.assert_allclose(tip, exact, rtol=1e-5)
 
 
-def test_square_cantilever_at_rest_has_timoshenkos_frequencies() -> None:
+def test_square_cantilever_at_zero_speed_has_timoshenkos_frequencies() -> None:
     """The paper's cantilever, three frequencies in each plane; clamped so that the root may contract."""
     found = hexahedra.modes(
         square_bar(LENGTH, 60, start=HUB), SQUARE, 0.0, 6, clamped_free_to_contract(HUB)
@@ -98,8 +98,8 @@ def test_square_cantilever_at_rest_has_timoshenkos_frequencies() -> None:
     np.testing.assert_allclose(found, np.repeat(timoshenko(3), 2), rtol=3e-4)
 
 
-def test_square_cantilever_turning_at_ten_rad_per_second() -> None:
-    """Against core's Timoshenko beam, chordwise and flapwise: prestress, spin softening and Coriolis forces."""
+def test_square_cantilever_rotating_at_ten_rad_per_second() -> None:
+    """Against core's Timoshenko beam, edgewise and flapwise: prestress, spin softening and Coriolis forces."""
     found = hexahedra.modes(square_bar(LENGTH, 60, start=HUB), SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
     beam = modes(square_beam(), 10.0, 80, 6)
     np.testing.assert_allclose(found.frequencies, beam.frequencies, rtol=3e-4)
@@ -107,9 +107,9 @@ def test_square_cantilever_turning_at_ten_rad_per_second() -> None:
 
 
 def test_coriolis_forces() -> None:
-    """Slenderness 70, γ = 2: they lower the first chordwise frequency by 6e-4, in the solid just as in the beam.
+    """Slenderness 70, γ = 2: they lower the first edgewise frequency by 6e-4, in the solid as in the beam.
 
-    Of the solid's frequencies 5e-4 are the material's: St Venant's and Kirchhoff's stiffens with strain, here 4e-4.
+    The St Venant–Kirchhoff material stiffens with strain, here 4e-4, which raises the solid's frequencies by 5e-4.
     """
     material, side, length = Material(1e9, 0.0, 1000.0), np.sqrt(12.0) / 70.0, 1.0
     omega = 2.0 * np.sqrt(1e9 * side**2 / 12 / 1000.0)
@@ -130,9 +130,9 @@ def test_coriolis_forces() -> None:
 
 def test_errors_name_what_is_wrong() -> None:
     bricks = twisted(2, (2, 2))
-    with pytest.raises(CodeError, match="clamp: holds 0 displacements"):
+    with pytest.raises(CodeError, match="clamp: fixes 0 displacements"):
         hexahedra.modes(bricks, STEEL, 0.0, 2, clamped(ROOT + 0.1))
-    with pytest.raises(CodeError, match=r"mesh: no layer of nodes at x = 0\.35 m"):
+    with pytest.raises(CodeError, match=r"mesh: no layer of nodes at the station x = 0\.35 m"):
         hexahedra.modes(bricks, STEEL, 0.0, 2, clamped(ROOT))
     with pytest.raises(CodeError, match=r"no (stable )?steady state"):
         hexahedra.modes(bricks, STEEL, 1e5, 2, clamped(ROOT))

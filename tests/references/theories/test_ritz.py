@@ -1,4 +1,4 @@
-"""What all closed forms stand on: polynomials, quadrature, convergence, shapes; and what each says it cannot do."""
+"""Basis of the closed forms: polynomials, quadrature, convergence, shapes; and the blades that each declines."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ def ids(code) -> str:
 @pytest.mark.parametrize("code", [ASSUMED, YOO_SHIN, EXACT], ids=ids)
 @pytest.mark.parametrize("blade", [park(1.08e4), kinked()], ids=["uniform", "kinked"])
 def test_spectral_convergence(code, blade: Blade) -> None:
-    """Exponential: every four terms more take two digits off the error at least, until only rounding is left."""
+    """Exponential: four more terms reduce the error by at least two digits, until only rounding is left."""
     f = np.array([code.solve(blade, 5.0, n, 4).frequencies[:3] for n in (3, 7, 11, 15, 40)])
     error = np.abs(f[:-1] / f[-1] - 1).max(1)
     assert error[0] > 1e-5
@@ -46,7 +46,7 @@ def test_spectral_convergence(code, blade: Blade) -> None:
     ("functions", "terms"), [(spectral.clamped, 2), (spectral.clamped, 9), (spectral.pinned, 1), (spectral.pinned, 7)]
 )
 def test_polynomials(ends: list[float], functions, terms: int) -> None:
-    """As many as promised, independent, zero at the root, as smooth as promised, and with their own derivatives."""
+    """The right number, independent, zero at the root, smooth as documented, and with correct derivatives."""
     ends_, smooth = np.array(ends), 2 if functions is spectral.clamped else 1
     s, _ = spectral.gauss(ends_, 20)
     value, slope, second = functions(ends_, terms, s)
@@ -73,7 +73,7 @@ def test_sparse_and_dense_solutions_agree(code, monkeypatch: pytest.MonkeyPatch)
     np.testing.assert_allclose(overlap, size[0] * size[1], rtol=1e-9)
 
 
-def test_stations_without_a_kink_are_no_intervals() -> None:
+def test_stations_without_a_kink_make_no_intervals() -> None:
     blade = kinked()
     many = kinked(stations=6)
     np.testing.assert_allclose(spectral.intervals(many), blade.stations)
@@ -109,7 +109,7 @@ def test_shapes_are_orthogonal_in_mass(blade: Blade) -> None:
 
 
 @pytest.mark.parametrize("code", CODES, ids=ids)
-def test_a_code_keeps_the_laws(code) -> None:
+def test_a_code_follows_the_rules(code) -> None:
     first, again = (code.solve(park(), 10.0, 12, 7) for _ in range(2))
     assert len(first.frequencies) == 7
     assert (np.diff(first.frequencies) >= 0).all()
@@ -152,7 +152,7 @@ EVERY = {"assumed-modes", "yoo-shin", "southwell-equation", "exact-beam"}
     ],
 )
 @pytest.mark.parametrize("code", CODES, ids=ids)
-def test_what_a_code_cannot_do_it_says(code, change: dict, word: str, by: set[str]) -> None:
+def test_an_unsupported_blade_is_declined_with_a_reason(code, change: dict, word: str, by: set[str]) -> None:
     blade = replace(slender(), **change)
     if code.name not in by:
         assert code.unsupported(blade) is None

@@ -1,4 +1,4 @@
-"""Environments of their own: made with pinned versions, spoken to in JSON, and said to be missing when they are."""
+"""Isolated environments: created with pinned versions, called by JSON, and reported if missing."""
 
 import ast
 import re
@@ -26,19 +26,19 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def made(environment: Environment) -> None:
-    """As if it had been installed, with this interpreter."""
+    """Make the environment look installed, with this interpreter."""
     environment.python.parent.mkdir(parents=True)
     environment.python.symlink_to(sys.executable)
     (environment.folder / READY).touch()
 
 
 def script(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str) -> None:
-    """In place of the folder's scripts."""
+    """Replace the script of the folder."""
     (tmp_path / "echo.py").write_text(text)
     monkeypatch.setattr(isolated, "__file__", str(tmp_path / "__init__.py"))
 
 
-def test_the_cache_is_where_the_user_wants_it(cache: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_cache_folder_can_be_set(cache: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert isolated.cache() == cache
     monkeypatch.delenv("SOUTHWELL_CACHE")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -47,7 +47,7 @@ def test_the_cache_is_where_the_user_wants_it(cache: Path, monkeypatch: pytest.M
     assert isolated.cache() == Path.home() / ".cache" / "southwell"
 
 
-def test_other_pins_are_another_environment() -> None:
+def test_other_pins_use_another_environment() -> None:
     assert ECHO.folder != replace(ECHO, requires=("one==1.1",)).folder
     assert ECHO.folder == replace(ECHO, script="other").folder
 
@@ -59,7 +59,7 @@ def test_every_requirement_is_pinned() -> None:
         assert len(lines) == len(environment.requires) + len(environment.bare)
 
 
-def test_it_is_there_only_when_it_is_complete() -> None:
+def test_an_incomplete_environment_does_not_count() -> None:
     assert ECHO.version() is None
     made(ECHO)
     assert ECHO.version() == "2.5"
@@ -76,26 +76,28 @@ def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("import sys; sys.exit('library: not found')", "its process ended with 1: library: not found"),
+        ("import sys; sys.exit('library: not found')", "its process ended with exit status 1: library: not found"),
         ('print(\'{"error": "no steady state"}\')', "echo: no steady state"),
         ("import time; time.sleep(30)", r"no answer within 0\.5 s"),
-        ("", "its process ended with 0: no message"),
+        ("", "its process ended with exit status 0: no message"),
     ],
 )
-def test_what_goes_wrong_there_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, told: str) -> None:
+def test_errors_of_the_script_are_reported(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, told: str
+) -> None:
     made(ECHO)
     script(monkeypatch, tmp_path, text)
     with pytest.raises(CodeError, match=told):
         isolated.ask(ECHO, {}, 0.5)
 
 
-def test_missing_it_says_how_to_get_it() -> None:
+def test_the_installation_hint_if_missing() -> None:
     with pytest.raises(CodeError, match="sharpy is not installed: southwell codes install sharpy"):
         isolated.ask(SHARPY, {}, 1.0)
 
 
 def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
-    """Record what pip is asked, a requirements file by its content; ``fails``: the package it cannot find."""
+    """Record the pip commands, with the contents of requirements files; ``fails``: a package that is not found."""
     asked: list[list[str]] = []
     for pin in (*ECHO.requires, *ECHO.bare):
         monkeypatch.setitem(HASHES, pin, ("ab" * 32,))
@@ -113,7 +115,7 @@ def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
     return asked
 
 
-def test_installing_pins_and_leaves_the_code_without_dependencies(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_installation_pins_versions_and_skips_dependencies(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = pip(monkeypatch)
     (ECHO.folder / "left over").mkdir(parents=True)
     assert isolated.install(ECHO) == ECHO.folder
@@ -125,7 +127,7 @@ def test_installing_pins_and_leaves_the_code_without_dependencies(monkeypatch: p
     assert not (ECHO.folder / "left over").exists()
 
 
-def test_an_installation_that_fails_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_installation_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     pip(monkeypatch, fails="echo")
     with pytest.raises(
         isolated.EnvironmentMissingError, match=r"echo==2\.5: ERROR: No matching .*CPython 3\.11 and 3\.12 on Linux"
@@ -151,7 +153,7 @@ def test_the_command_line_installs(monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert "No matching distribution found for ic-sharpy" in capsys.readouterr().err
 
 
-def test_scripts_import_nothing_of_ours() -> None:
+def test_scripts_import_nothing_of_this_package() -> None:
     for environment in ENVIRONMENTS.values():
         path = Path(isolated.__file__).with_name(f"{environment.script}.py")
         tree = ast.parse(path.read_text(encoding="utf-8"))
