@@ -34,16 +34,16 @@ def main():
     print(f"exudyn {exu.__version__}")
     both = mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)[0]
     print("both free:", np.round(both, 6))
-    print("second held, expected: [-0.2-1.989975j -0.2+1.989975j]")
+    print("second fixed, expected: [-0.2-1.989975j -0.2+1.989975j]")
     try:
         found = mbs.ComputeODE2Eigenvalues(
             computeComplexEigenvalues=True, useAbsoluteValues=False, constrainedCoordinates=[1]
         )[0]
     except ValueError as error:
-        print(f"second held: ValueError: {error}")
+        print(f"second fixed: ValueError: {error}")
         print("defect: present")
     else:
-        print("second held:", np.round(found, 6))
+        print("second fixed:", np.round(found, 6))
         right = len(found) == 2 and np.allclose(np.sort_complex(found), [-0.2 - 1.989975j, -0.2 + 1.989975j], atol=1e-5)
         print("defect:", "gone" if right else "present")
 

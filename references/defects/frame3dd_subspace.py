@@ -25,11 +25,11 @@ SUBSPACE, STODOLA = 1, 2
 def frequencies(method, elements):
     """The four lowest, rad/s."""
     node, none, one = np.arange(1, elements + 2), np.zeros(elements + 1), np.ones(elements)
-    held = [np.array([1]), *[np.array([1e30])] * 6]
+    clamped = [np.array([1]), *[np.array([1e30])] * 6]
     section = (one, one, one, 1e-4 * one, EI / EA * one, RATIO * EI / EA * one, EA * one, EA * one, 0 * one, MASS * one)
     frame = f3.Frame(
         f3.NodeData(node, np.linspace(0, LENGTH, elements + 1), none, none, none),
-        f3.ReactionData(*held, rigid=1e30),
+        f3.ReactionData(*clamped, rigid=1e30),
         f3.ElementData(node[:-1], node[:-1], node[1:], *section),
         f3.Options(False, True, -1.0),
     )

@@ -87,8 +87,8 @@ class System:
 def system(tree: Tree) -> System:
     """Build a mechanism in Exudyn, with its motions at their rates."""
     exu, container, mbs = ex.system()
-    item, turned = _plant(exu, mbs, tree, velocity(tree))
-    _close(exu, mbs, tree, item, turned)
+    item, rotations = _plant(exu, mbs, tree, velocity(tree))
+    _close(exu, mbs, tree, item, rotations)
     mbs.Assemble()
     return System(exu, container, mbs, own_coordinates(tree))
 
@@ -113,21 +113,21 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
     Exudyn's joints are along positive axes; the rotation of a link aligns one of them with its screw.
     """
     items, n = exu.itemInterface, len(velocity)
-    kinds, turned, steps = [], [], []
+    kinds, rotations, steps = [], [], []
     for j in range(n):
         axis = int(np.abs(tree.screw[j]).argmax())
         flip = np.eye(4)
         if tree.screw[j, axis] < 0:  # a rotation by π about another axis reverses this one
             flip = sp.pose(sp.rotation((axis + 1) % 3, np.array(np.pi)), np.zeros(3))
         before = tree.before[j]
-        start = sp.inverse(turned[before]) if before >= 0 else np.eye(4)
+        start = sp.inverse(rotations[before]) if before >= 0 else np.eye(4)
         kinds.append(getattr(exu.JointType, ("Prismatic" if axis < 3 else "Revolute") + "XYZ"[axis % 3]))
         steps.append(start @ tree.fixed[j] @ flip)
-        turned.append(flip)
+        rotations.append(flip)
     inertia = np.zeros((n, 6, 6))
     for link, pose, mass in zip(tree.link, tree.on_link, tree.inertia, strict=True):
         if 0 <= link < n:
-            a = sp.adjoint(sp.inverse(sp.inverse(turned[link]) @ pose))
+            a = sp.adjoint(sp.inverse(sp.inverse(rotations[link]) @ pose))
             inertia[link] += a.T @ mass @ a
     mass, centre, moments = about_centre(inertia)
     spring, damper, neutral = np.zeros(n), np.zeros(n), np.zeros(n)
@@ -161,10 +161,10 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
             jointVelocityOffsetVector=np.zeros(n),
         )
     )
-    return item, turned
+    return item, rotations
 
 
-def _close(exu: Any, mbs: Any, tree: Tree, item: Any, turned: list[Array]) -> None:
+def _close(exu: Any, mbs: Any, tree: Tree, item: Any, rotations: list[Array]) -> None:
     """Add loop joints, and springs between points."""
     items, mechanism = exu.itemInterface, tree.mechanism
     ground = mbs.AddObject(items.ObjectGround())
@@ -175,7 +175,7 @@ def _close(exu: Any, mbs: Any, tree: Tree, item: Any, turned: list[Array]) -> No
         pose = tree.on_link[index] @ at if index >= 0 else at
         if link < 0:
             return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localHT=pose))
-        pose = sp.inverse(turned[link]) @ pose
+        pose = sp.inverse(rotations[link]) @ pose
         return mbs.AddMarker(items.MarkerKinematicTreeRigid(objectNumber=item, linkNumber=link, localHT=pose))
 
     joints = [j for name in tree.weld_names for j in mechanism.joints if j.name == name]

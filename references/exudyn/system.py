@@ -40,8 +40,8 @@ def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:
     items = exu.itemInterface
     ground = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
     for coordinate in coordinates:
-        held = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, held]))
+        marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, marker]))
 
 
 def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:

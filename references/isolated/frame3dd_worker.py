@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-HELD = 1e30
-"""What a reaction's stiffness is called where there is no motion at all."""
+FIXED = 1e30
+"""Stiffness that Frame3DD interprets as a rigid support."""
 
 JACOBI, STODOLA = 1, 2
 """Subspace iteration, which fails for some blades; Stodola's, which may miss the modes of one plane if planes do not couple."""
@@ -54,22 +54,22 @@ def solve(request):
         np.array(request[name]) for name in ("EA", "EI_y", "EI_z", "GJ", "mass", "twist")
     )
     number, zero, one = np.arange(1, len(x) + 1), np.zeros(len(x)), np.ones(len(EA))
-    turning = force.any()
-    held, springs = zero.copy(), spring.copy()
-    held[0] = springs[0] = HELD
-    every = slice(None) if turning else slice(1)
-    reactions = [column[every] for column in (number, held, held, springs, held, held, held)]
+    rotating = force.any()
+    clamped, springs = zero.copy(), spring.copy()
+    clamped[0] = springs[0] = FIXED
+    every = slice(None) if rotating else slice(1)
+    reactions = [column[every] for column in (number, clamped, clamped, springs, clamped, clamped, clamped)]
     # a section of one square metre
     section = (one, one, one, GJ / EA, EI_y / EA, EI_z / EA, EA, EA, np.degrees(twist), mass)
     elements = (number[:-1], number[:-1], number[1:], *section)
     frame = f3.Frame(
         f3.NodeData(number, x, zero, zero, zero),
-        f3.ReactionData(*reactions, rigid=HELD),
+        f3.ReactionData(*reactions, rigid=FIXED),
         f3.ElementData(*elements),
         f3.Options(False, True, -1.0),
     )
     load = f3.StaticLoadCase(0.0, 0.0, 0.0)
-    if turning:
+    if rotating:
         load.changePointLoads(number[1:], force[1:], *[zero[1:]] * 5)
     frame.addLoadCase(load)
     if request["tip"]:

@@ -42,20 +42,20 @@ def solve(request):
     state.dqdt[:] = 0.0
     state.dqddt[:] = 0.0
     xbeam.cbeam3_solv_disp2state(beam, state)
-    settled, done, step = state.q[:d].copy(), 0.0, 1.0
+    steady, done, step = state.q[:d].copy(), 0.0, 1.0
     length = np.ptp(np.array(request["nodes"]), axis=0).max()
     size = np.tile(np.repeat([length, 1.0], 3), d // 6)
     while done < 1.0:
         load = min(1.0, done + step)
-        found = newton(xbeam, beam, state, request["omega"] * load**0.5, settled, size)
+        found = newton(xbeam, beam, state, request["omega"] * load**0.5, steady, size)
         if found is not None:
-            settled, done = found, load
+            steady, done = found, load
         elif step > 2.0**-6:
             step /= 2
         else:
             return {"error": f"no steady state above {done:.0%} of the centrifugal load"}
-    M, C, K, _ = assembled(xbeam, beam, state, request["omega"], settled)
-    return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", settled))}
+    M, C, K, _ = assembled(xbeam, beam, state, request["omega"], steady)
+    return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", steady))}
 
 
 def newton(xbeam, beam, state, omega, start, size):
@@ -106,13 +106,13 @@ def built(request):
 
     nodes, turn = np.array(request["nodes"]), np.array(request["turn"])
     n, e = len(nodes), len(turn)
-    held = np.zeros(n, dtype=int)
-    held[0], held[-1] = 1, -1
+    supports = np.zeros(n, dtype=int)
+    supports[0], supports[-1] = 1, -1
     data = {
         "num_node_elem": 3,
         "num_node": n,
         "num_elem": e,
-        "boundary_conditions": held,
+        "boundary_conditions": supports,
         "coordinates": nodes,
         "connectivities": np.array([[2 * k, 2 * k + 2, 2 * k + 1] for k in range(e)]),
         "elem_stiffness": np.arange(e),

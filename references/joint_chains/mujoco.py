@@ -45,12 +45,12 @@ class Bodies:
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
         """Force and derivatives by differences; see ``joint_chain.Plant``."""
-        n, turning = len(q), np.append(omega, np.zeros(len(q)))
+        n, rates = len(q), np.append(omega, np.zeros(len(q)))
         unit = np.eye(n)
         stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
         for k, h in enumerate(self.step):
             one, two = (
-                (self._force(q + s * h * unit[k], turning) - self._force(q - s * h * unit[k], turning)) / (2 * s * h)
+                (self._force(q + s * h * unit[k], rates) - self._force(q - s * h * unit[k], rates)) / (2 * s * h)
                 for s in (1, 2)
             )
             stiffness[:, k] = (4 * one - two) / 3
@@ -58,9 +58,9 @@ class Bodies:
         rate = max(abs(omega), 1.0)
         for k in range(n):
             change = np.append(0.0, rate * unit[k])
-            gyroscopic[:, k] = (self._of_rates(turning + change) - self._of_rates(turning - change)) / (2 * rate)
+            gyroscopic[:, k] = (self._of_rates(rates + change) - self._of_rates(rates - change)) / (2 * rate)
         check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "MuJoCo")
-        return self._of_rates(turning), stiffness, gyroscopic
+        return self._of_rates(rates), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
         """Mass matrix (n, n), by composite rigid bodies."""

@@ -82,8 +82,8 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
     where = {name: registry.address(name) for name in names}
     packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}
     shown = [encode(blade) for blade in blades]
-    ours = {name: at for name, at in where.items() if at["code"] in packaged}
-    found = {one.asked: one for one in _asked(ours, shown, limits)}
+    bundled = {name: at for name, at in where.items() if at["code"] in packaged}
+    found = {one.asked: one for one in _asked(bundled, shown, limits)}
     alone = [name for name in where if name not in found or found[name].failure]
     with ThreadPoolExecutor(TOGETHER) as threads:
         again = threads.map(lambda name: _asked({name: where[name]}, shown, limits)[0], alone)

@@ -26,7 +26,7 @@ DATA = [
     for datum in series.data
 ]
 EXACT = [found for found in DATA if not found[1].target]
-HELD = [found for found in DATA if found[1].target]
+COARSE = [found for found in DATA if found[1].target]
 SUSPECTS = [found for found in DATA if found[2].suspect]
 
 
@@ -59,7 +59,7 @@ def computed(name: str, series: Series, datum: Datum) -> float:
     return float(family(found, COLUMN[datum.family])[datum.mode - 1])
 
 
-@pytest.mark.parametrize(("name", "series", "datum"), HELD, ids=ids)
+@pytest.mark.parametrize(("name", "series", "datum"), COARSE, ids=ids)
 def test_a_datum_of_a_coarse_method_is_within_its_target(name: str, series: Series, datum: Datum) -> None:
     case, _, _ = series.blade.partition("/")
     blade = next(v.blade for v in library.load(case).variants if v.name == series.blade)
@@ -169,9 +169,9 @@ def test_a_valid_file_is_read() -> None:
 )
 def test_an_invalid_file_is_an_error(old: str, new: str, words: list[str]) -> None:
     assert old in GOOD
-    with pytest.raises(TableError) as told:
+    with pytest.raises(TableError) as reported:
         published.parse(GOOD.replace(old, new), "bad.toml")
-    message = str(told.value)
+    message = str(reported.value)
     assert message.startswith("bad.toml: ")
     assert "\n" not in message
     assert all(word in message for word in words)

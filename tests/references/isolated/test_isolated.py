@@ -74,7 +74,7 @@ def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reported"),
     [
         ("import sys; sys.exit('library: not found')", "its process ended with exit status 1: library: not found"),
         ('print(\'{"error": "no steady state"}\')', "echo: no steady state"),
@@ -83,11 +83,11 @@ def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     ],
 )
 def test_errors_of_the_script_are_reported(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, told: str
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, reported: str
 ) -> None:
     made(ECHO)
     script(monkeypatch, tmp_path, text)
-    with pytest.raises(CodeError, match=told):
+    with pytest.raises(CodeError, match=reported):
         isolated.ask(ECHO, {}, 0.5)
 
 

@@ -78,10 +78,10 @@ def test_invalid_declarations_are_quoted(folder: Path) -> None:
     """In one process, as none of them ends it; each is a separate code."""
     paths = declaring(folder)
     said = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
-    for (line, told), one in zip(DECLARATIONS.items(), said, strict=True):
+    for (line, reported), one in zip(DECLARATIONS.items(), said, strict=True):
         assert one.failure, line
         assert one.failure.kind == "nonsense", line
-        assert told in one.failure.reason, (line, one.failure.reason)
+        assert reported in one.failure.reason, (line, one.failure.reason)
         assert one.name in ("misdeed", paths[line])
 
 
@@ -89,21 +89,21 @@ def test_invalid_answers_are_quoted_and_affect_no_other(folder: Path) -> None:
     path = answering(folder)
     runs = [run for number in range(len(ANSWERS)) for run in ((10.0 + number, 10, 3), (1.0, 10, 3))]
     got = answers(path, BLADE, runs, Limits(30.0))
-    for (line, told), bad, good in zip(ANSWERS.items(), got[::2], got[1::2], strict=True):
+    for (line, reported), bad, good in zip(ANSWERS.items(), got[::2], got[1::2], strict=True):
         assert isinstance(good, Modes), (line, good)
         assert isinstance(bad, Failure), line
         assert bad.kind == ("refused" if "CodeError" in line else "nonsense"), (line, bad)
-        assert told in bad.reason, (line, bad.reason)
+        assert reported in bad.reason, (line, bad.reason)
 
 
 def test_a_path_without_a_code_is_an_error(folder: Path) -> None:
     module(folder, "nothing_here", "CODE = 42\n")
-    for path, told in (
+    for path, reported in (
         ("nothing_here:CODE", "lacks name, effects"),
         ("nothing_here:NO", "no attribute 'NO'"),
         ("nowhere:CODE", "No module"),
     ):
-        with pytest.raises(registry.UnknownCodeError, match=told):
+        with pytest.raises(registry.UnknownCodeError, match=reported):
             describe([path], limits=LIMITS)
 
 

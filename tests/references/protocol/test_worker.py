@@ -42,14 +42,14 @@ def test_answers_come_back_bit_for_bit_and_in_order() -> None:
 
 
 @pytest.mark.parametrize(
-    ("attribute", "told"),
+    ("attribute", "reported"),
     [("SEGFAULT", "SIGSEGV"), ("ABORT", "SIGABRT"), ("LEAVE", "exit status 3: library: licence not found")],
 )
-def test_finished_runs_survive_a_crash(attribute: str, told: str) -> None:
+def test_finished_runs_survive_a_crash(attribute: str, reported: str) -> None:
     first, second, third = ask(attribute)
     assert isinstance(first, Modes)
     assert failure(second).kind == failure(third).kind == "crashed"
-    assert told in failure(second).reason
+    assert reported in failure(second).reason
 
 
 def test_a_hang_ends_with_its_time_limit_children_included() -> None:
@@ -65,7 +65,7 @@ def test_prints_of_a_code_do_not_reach_the_protocol() -> None:
 
 
 @pytest.mark.parametrize(
-    ("attribute", "kind", "told"),
+    ("attribute", "kind", "reported"),
     [
         ("GIVE_UP", "refused", "no steady state at this speed"),
         ("BLUNDER", "nonsense", "ZeroDivisionError: division by zero"),
@@ -73,12 +73,12 @@ def test_prints_of_a_code_do_not_reach_the_protocol() -> None:
         ("DESCENDING", "nonsense", "not ascending"),
     ],
 )
-def test_one_bad_run_does_not_affect_the_others(attribute: str, kind: str, told: str) -> None:
+def test_one_bad_run_does_not_affect_the_others(attribute: str, kind: str, reported: str) -> None:
     first, second, third = ask(attribute)
     assert isinstance(first, Modes)
     assert isinstance(third, Modes)
     assert failure(second).kind == kind
-    assert told in failure(second).reason
+    assert reported in failure(second).reason
 
 
 def test_a_missing_code_gives_its_installation_hint() -> None:
@@ -104,15 +104,15 @@ def test_an_unknown_code_is_an_error_that_suggests_the_nearest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "told"),
+    ("path", "reported"),
     [
         ("no_such_module:CODE", "No module named 'no_such_module'"),
         ("misbehaving:NOTHING_HERE", "no attribute 'NOTHING_HERE'"),
         ("misbehaving:NOT_A_CODE", "lacks name, effects"),
     ],
 )
-def test_a_path_without_a_code_is_an_error(path: str, told: str) -> None:
-    with pytest.raises(registry.UnknownCodeError, match=told):
+def test_a_path_without_a_code_is_an_error(path: str, reported: str) -> None:
+    with pytest.raises(registry.UnknownCodeError, match=reported):
         registry.code(path)
 
 
