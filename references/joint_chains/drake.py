@@ -1,4 +1,4 @@
-"""Drake: core's own lumped discretisation as a chain of joints (see ``joint_chain``), differentiated automatically.
+"""Drake: core's lumped discretisation as a chain of joints (see ``joint_chain``), differentiated automatically.
 
 R. Tedrake and the Drake Development Team, *Drake: Model-based design and verification for robotics*, 2019. Inverse
 dynamics with automatic differentiation gives the derivatives of the inertial forces by coordinates and rates, to

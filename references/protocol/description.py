@@ -77,7 +77,7 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
         limits: for each code.
 
     Raises:
-        UnknownCodeError: if a name is unknown, or nothing that is a code is at an import path.
+        UnknownCodeError: if a name is unknown, or there is no code at an import path.
     """
     where = {name: registry.address(name) for name in names}
     packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}

@@ -99,7 +99,7 @@ class Table(Struct, frozen=True, forbid_unknown_fields=True):
     beam: Annotated[str, Meta(description="what vibrates")]
     unit: Annotated[Unit, Meta(description="of speeds and frequencies")]
     scale: Annotated[
-        str, Meta(description="what a dimensionless speed or frequency is; else how the numbers are given")
+        str, Meta(description="definition of a dimensionless speed or frequency; otherwise, how the numbers are given")
     ]
     series: Annotated[tuple[Series, ...], Meta(min_length=1)]
     doi: str = ""

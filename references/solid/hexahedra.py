@@ -48,7 +48,7 @@ class Solid:
         basis: scikit-fem's, of 27-node hexahedra.
         order: (n,) index in the basis of each node of the block's lattice.
         nodes: (n, 3) the lattice, m.
-        material: what it is made of.
+        material: its material.
     """
 
     basis: Any
