@@ -1,4 +1,4 @@
-"""Uncertainties cover the errors: of default meshes, of given ones, and of blades that are all boundary layer."""
+"""Uncertainties cover the errors of default meshes, of given meshes, and of cable-like blades."""
 
 import json
 import warnings
@@ -51,7 +51,7 @@ def random_blade(seed: int) -> tuple[Blade, float]:
 
 
 def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The default's own mesh, graded and aligned, but of a thousand elements and more; and how it changes, halved."""
+    """Frequencies on a very fine graded mesh, and their relative change when its elements are halved."""
     nodes = mesh.coarse(blade, 300, omega)
     coarse, fine = (
         solve.chain_modes(discretize(blade, s), omega, count).frequencies for s in (nodes, mesh.halved(nodes))
@@ -73,8 +73,8 @@ def test_uncertainties_cover_the_errors_of_random_blades(seed: int) -> None:
 
 
 @pytest.mark.parametrize("EI", [1e4, 1e3, 1e2, 10.0, 1.0])
-def test_a_cable_like_blade_is_right_by_default(EI: float) -> None:
-    """The first lag of a cable without bending stiffness is zero: what is left is all the root's boundary layer."""
+def test_a_cable_like_blade_is_accurate_by_default(EI: float) -> None:
+    """The first lag of a cable without bending stiffness is zero; otherwise it depends on the root's boundary layer only."""
     blade = cable(EI)
     right, unsure = truth(blade, 30.0, 3)
     found = solve.modes(blade, 30.0, count=3)
@@ -85,7 +85,7 @@ def test_a_cable_like_blade_is_right_by_default(EI: float) -> None:
 
 
 def test_flap_of_a_cable_tends_to_its_closed_form() -> None:
-    """ω = Ω √(k(2k − 1)) of a cable's flap; a small EI adds to it as its square root."""
+    """ω = Ω √(k(2k − 1)) of a cable's flap; a small EI adds a term proportional to its square root."""
     excess = [solve.modes(cable(EI), 30.0, count=2).frequencies[1] / 30.0 - 1.0 for EI in (1e2, 1.0)]
     assert 0 < excess[1] < excess[0] < 1e-2
     assert excess[0] / excess[1] == pytest.approx(10.0, rel=0.05)
@@ -98,7 +98,7 @@ def test_more_accuracy_takes_more_elements() -> None:
     assert (np.abs(rough.frequencies / fine.frequencies - 1.0) <= rough.uncertainty + 1e-9).all()
 
 
-def test_accuracy_out_of_reach_is_told() -> None:
+def test_accuracy_out_of_reach_is_reported() -> None:
     with pytest.warns(AccuracyWarning, match=r"relative uncertainty .* exceeds the requested accuracy 1.0e-15"):
         found = solve.modes(cable(1e3), 30.0, count=2, accuracy=1e-15)
     assert found.uncertainty.max() > 1e-15
@@ -108,7 +108,7 @@ def test_accuracy_out_of_reach_is_told() -> None:
 
 @pytest.mark.parametrize("omega", [5.0, 30.0, 100.0])
 def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
-    """Against scikit-fem, where a rigid strain is a constraint. The compliance that core keeps costs 5e-5 at 100 rad/s."""
+    """Against scikit-fem, where a rigid strain is a constraint. The compliance in core has an effect of 5e-5 at 100 rad/s."""
     stiff = uniform_blade("inextensible", 10.0, 1.0, EA=np.inf, GJ=1e4, EI_y=1e4, EI_z=2e4, mass=1.0)
     coarse, fine = (CODE.solve(stiff, omega, n, 2).frequencies for n in (30, 60))
     true = fine + (fine - coarse) / 15.0
@@ -125,13 +125,13 @@ def test_the_reference_of_a_comparison_is_rigid_too() -> None:
     found = core_solver.converged(stiff, 30.0, Compare(modes=2), ALL_EFFECTS)
     assert isinstance(found, core_solver.Converged)
     frequencies = solve.modes(stiff, 30.0, count=2).frequencies
-    for one, true in zip(found.settled, frequencies, strict=True):
+    for one, true in zip(found.modes, frequencies, strict=True):
         assert one.estimate is not None
         assert one.estimate.uncertainty is not None
         assert abs(one.estimate.value / true - 1.0) <= one.estimate.uncertainty + 1e-8 < 1e-4
 
 
-def test_a_sweep_gives_what_each_speed_gives_alone_within_its_uncertainty() -> None:
+def test_a_sweep_agrees_with_single_speeds_within_the_uncertainty() -> None:
     speeds = [0.0, 10.0, 30.0]
     for one in solve.sweep(cable(1e3), speeds, count=3):
         alone = solve.modes(cable(1e3), one.omega, count=3)
@@ -149,7 +149,7 @@ def test_richardsons_extrapolation_of_a_known_sequence() -> None:
 
 
 @pytest.mark.parametrize("f", [(1.0, 1.5, 1.25), (1.0, 1.1, 1.3)], ids=["alternating", "diverging"])
-def test_a_sequence_that_does_not_converge_has_three_times_its_spread(f: tuple[float, ...]) -> None:
+def test_the_uncertainty_without_convergence_is_three_times_the_spread(f: tuple[float, ...]) -> None:
     found = accuracy.estimate(np.array(f)[:, None], 4)
     assert found.values[0] == f[2]
     assert found.of_finest[0] == pytest.approx(3 * max(abs(f[1] - f[0]), abs(f[2] - f[1])) / f[2])

@@ -1,4 +1,4 @@
-"""Block-tridiagonal matrices against dense ones, and what compiled code is kept under."""
+"""Block-tridiagonal matrices against dense ones, and the cache of compiled code."""
 
 import shutil
 import subprocess
@@ -16,7 +16,7 @@ SIZES = [(1, 6), (2, 12), (7, 12), (7, 6)]
 
 
 def random(n: int, d: int) -> tuple[Tridiagonal, np.ndarray]:
-    """One, far from symmetric, and the same dense, written out entry by entry."""
+    """A matrix, far from symmetric, and the same matrix dense."""
     rng = np.random.default_rng(n * d)
     t = Tridiagonal(
         rng.normal(size=(n, d, d)) + 8 * np.eye(d), rng.normal(size=(n - 1, 6, d)), rng.normal(size=(n - 1, d, 6))
@@ -45,7 +45,7 @@ def test_products_and_solutions_are_those_of_the_dense_matrix(n: int, d: int, ve
 
 
 def symmetric(least: float) -> Tridiagonal:
-    """A symmetric one whose least eigenvalue is given."""
+    """A symmetric matrix with the given smallest eigenvalue."""
     rng = np.random.default_rng(3)
     a, upper = rng.normal(size=(4, 12, 12)), rng.normal(size=(3, 6, 12))
     t = Tridiagonal(a + np.swapaxes(a, -1, -2), upper, np.swapaxes(upper, -1, -2))
@@ -54,7 +54,7 @@ def symmetric(least: float) -> Tridiagonal:
 
 
 @pytest.mark.parametrize("least", [1.0, 1e-6, -1e-6, -1.0])
-def test_the_factor_tells_a_positive_definite_matrix(least: float) -> None:
+def test_the_factor_detects_a_positive_definite_matrix(least: float) -> None:
     assert blocks.factor(symmetric(least)).positive == (least > 0)
 
 
@@ -65,8 +65,8 @@ def test_a_singular_matrix_is_refused() -> None:
         blocks.factor(t)
 
 
-def test_compiled_code_is_not_taken_from_before_a_change(tmp_path: Path) -> None:
-    """A function compiled into another, changed in another file: the caller must not keep the old one."""
+def test_compiled_code_is_invalidated_by_a_change(tmp_path: Path) -> None:
+    """A compiled function calls one of another file; when that changes, the caller must be compiled again."""
     package = tmp_path / "loops"
     package.mkdir()
     for module in (compiled, compiled_files, regular_files):
@@ -85,4 +85,4 @@ def test_compiled_code_is_not_taken_from_before_a_change(tmp_path: Path) -> None
         return float(run.stdout)
 
     assert [found("2.0 * x"), found("5.0 * x")] == [7.0, 16.0]
-    assert len(list((package / "__pycache__").glob("compiled-*"))) == 1  # and the old one is gone
+    assert len(list((package / "__pycache__").glob("compiled-*"))) == 1  # the old one is deleted

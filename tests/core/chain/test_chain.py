@@ -1,4 +1,4 @@
-"""The in-house solver on the paper's cantilever: printed digits, exact values, orders, and its two paths held together."""
+"""The solver on the paper's cantilever: printed digits, exact values, orders of convergence, agreement of its two paths."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from southwell.tests.support.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK,
 
 
 def planes(blade, omega, elements, count=6, **options) -> tuple[np.ndarray, np.ndarray]:
-    """Chordwise and flapwise frequencies, told apart by the direction of motion at the tip."""
+    """Chordwise and flapwise frequencies, distinguished by the direction of motion at the tip."""
     m = modes(blade, omega, elements, count, **options)
     tip = np.abs(m.shapes[:, -1])
     flap = tip[:, 2] > tip[:, 1]
@@ -57,12 +57,12 @@ def test_fourth_order_or_better_for_every_kind_of_motion(blade, omega) -> None:
 
 
 def test_fourth_order_where_the_steady_strain_is_large() -> None:
-    """Slenderness 70, γ = 10: a steady stretch of 1 %. Elements that forget that they have grown are of second order."""
+    """Slenderness 70, γ = 10: a steady stretch of 1 %. Elements that neglect their stretch are of second order."""
     f = np.array([modes(yoo_shin(0.0), 10.0, n, 4).frequencies for n in (10, 20, 40)])
     assert (np.log2(np.abs((f[0] - f[1]) / (f[1] - f[2]))) > 3.3).all()
 
 
-def test_exact_values_follow_the_fourth_order_too() -> None:
+def test_errors_against_exact_values_are_of_fourth_order() -> None:
     errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_CHORDWISE[:2] - 1) for n in (10, 20)]
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
 
@@ -75,7 +75,7 @@ def test_exact_values_follow_the_fourth_order_too() -> None:
     ids=["cantilever", "at rest", "tapered", "curved", "slender 70"],
 )
 def test_banded_chain_and_dense_mechanism_agree(blade, omega, elements, mass, measure) -> None:
-    """One discretisation, two formulations: bodies' own twists with Lanczos, relative coordinates with B and LAPACK."""
+    """One discretisation, two formulations: twists of the bodies with Lanczos, relative coordinates with B and LAPACK."""
     body = discretize(blade, elements, mass, measure)
     dense = lz.linearize(mechanism(body, omega))
     scale = np.abs(dense.K).max()
@@ -101,15 +101,16 @@ def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
 
 
 def test_stages_agree_between_the_paths() -> None:
-    """M*, C*, K* are the Cartesian pencil seen through B, once B turns the bodies' own twists into coordinates."""
+    """M*, C*, K* are the Cartesian pencil projected by B, with twists in the bodies' axes."""
     body, n = discretize(curved(), 5), 5
     state = steady.steady(body, 1.5, np.zeros(3))
     shape, cartesian = state.shape, state.pencil
     dense = lz.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
-    own = sp.adjoint(sp.inverse(k.poses[2:])) @ k.B[2 : n + 2, :, 1:]
-    B = np.concatenate([k.B[n + 2 :, :, 1:], own], axis=1).reshape(12 * n, -1)  # β of an element, then its outer node
+    twists = sp.adjoint(sp.inverse(k.poses[2:])) @ k.B[2 : n + 2, :, 1:]
+    B = np.concatenate([k.B[n + 2 :, :, 1:], twists], axis=1)  # β of an element, then its outer node
+    B = B.reshape(12 * n, -1)
     for star, part in ((dense.M, cartesian.M), (dense.C, cartesian.C), (dense.K, cartesian.K)):
         projected = B.T @ blocks.dense(part) @ B
         assert np.abs(projected - star).max() < 1e-9 * np.abs(star).max()
@@ -133,7 +134,7 @@ def test_degenerate_pairs_at_rest_are_both_found() -> None:
 
 
 def test_without_geometric_stiffness_the_first_chordwise_mode_collapses() -> None:
-    """What a program without stress stiffening prints: √(ω₀² − Ω²), the paper's warning."""
+    """The result without stress stiffening: √(ω₀² − Ω²), of which the paper warns."""
     first = planes(PARK, 10.0, 50, effects=Effects(geometric=False))[0][0]
     assert first == pytest.approx(np.sqrt(10.548911**2 - 100.0), rel=1e-3)
 
@@ -158,7 +159,7 @@ def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
 
 
 @pytest.mark.parametrize("speeds", [(0.0, 1.0, 2.0, 3.0, 4.0), (4.0, 0.0, 4.0, -4.0)], ids=["rising", "back and forth"])
-def test_a_sweep_gives_what_each_speed_gives_alone(speeds) -> None:
+def test_a_sweep_agrees_with_single_speeds(speeds) -> None:
     """Extrapolated guesses lead Newton to the same states, in any order of the speeds."""
     found = [m.frequencies for m in sweep(curved(), speeds, 12, 6)]
     alone = [modes(curved(), omega, 12, 6).frequencies for omega in speeds]
@@ -166,7 +167,7 @@ def test_a_sweep_gives_what_each_speed_gives_alone(speeds) -> None:
 
 
 def test_gravity_prestresses_by_azimuth() -> None:
-    """Hanging down (gravity outwards) stiffens like tension, standing up softens: Δω² about ± g-proportional, equal sizes."""
+    """Hanging down (gravity outwards) stiffens like tension, standing up softens, by about the same Δω²."""
     down, none, up = (
         modes(tapered(), 0.0, 20, 1, gravity=np.array([g, 0.0, 0.0])).frequencies[0] ** 2 for g in (9.81, 0.0, -9.81)
     )
@@ -191,8 +192,8 @@ def test_bad_arguments_are_named(arguments, match) -> None:
         modes(*arguments)
 
 
-def test_a_shape_carried_over_to_a_finer_mesh_is_a_near_guess() -> None:
-    """Within a hundredth of the way from the undeformed shape; where the meshes share nodes, it is the same."""
+def test_a_shape_carried_over_to_a_finer_mesh_is_a_close_guess() -> None:
+    """Within 1 % of the displacement; at nodes that the meshes share, it is the same."""
     coarse, fine = (discretize(curved(), n) for n in (8, 16))
     there = steady.steady(coarse, 4.0, np.zeros(3)).shape
     guess = steady.carried_over(coarse, there, fine)

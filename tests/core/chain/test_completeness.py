@@ -27,7 +27,7 @@ def pencil(blade, omega: float, elements: int, **how: Any) -> ChainPencil:
 @pytest.mark.parametrize("elements", [1, 2, 7])
 @pytest.mark.parametrize("omega", [0.0, 8.0])
 def test_the_count_is_that_of_all_eigenvalues(omega: float, elements: int, how: dict[str, Any]) -> None:
-    """Between each two frequencies of the dense solver, and against the signs of the dense matrix' eigenvalues."""
+    """Between each two frequencies of the dense solver, and against the signs of the dense matrix's eigenvalues."""
     p = pencil(FLAT, omega, elements, **how)
     M, C, K = (blocks.dense(t) for t in (p.M, p.C, p.K))
     f = eigen.gyroscopic(M, C, K).frequencies
@@ -39,7 +39,7 @@ def test_the_count_is_that_of_all_eigenvalues(omega: float, elements: int, how: 
 
 
 @pytest.mark.parametrize(("omega", "count"), [(0.0, 6), (8.0, 6), (0.0, 5)])
-def test_a_missing_a_double_and_a_foreign_mode_are_told(omega: float, count: int) -> None:
+def test_missing_and_spurious_modes_are_reported(omega: float, count: int) -> None:
     p = pencil(ROUND, omega, 20)
     all_ = lanczos.lanczos(p, 10).frequencies
     f, beyond = all_[:count], all_[count:]
@@ -57,7 +57,7 @@ def test_a_missing_a_double_and_a_foreign_mode_are_told(omega: float, count: int
 
 @pytest.mark.parametrize("omega", [0.0, 8.0])
 @pytest.mark.parametrize("count", range(1, 8))
-def test_a_cut_through_a_double_mode_is_no_error(omega: float, count: int) -> None:
+def test_a_count_that_splits_a_double_mode_is_accepted(omega: float, count: int) -> None:
     found = solve.mesh_modes(ROUND, omega, 20, count).frequencies
     np.testing.assert_allclose(found, solve.mesh_modes(ROUND, omega, 20, 8).frequencies[:count], rtol=1e-9)
 
@@ -68,7 +68,7 @@ def test_a_cut_through_a_double_mode_is_no_error(omega: float, count: int) -> No
     ids=["modes", "mesh_modes", "sweep"],
 )
 def test_no_answer_without_the_proof(answer: Callable[..., Modes], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A projection that loses its third largest value: every way to an answer raises."""
+    """With a projection that loses its third largest value, every entry point raises."""
     whole = lanczos.eigh
 
     def lossy(matrix, subset_by_index, **options):
@@ -86,8 +86,8 @@ def test_stiffness_lost_to_rounding_is_not_called_unstable() -> None:
         solve.mesh_modes(FLAT, 0.0, 20_000, 2)
 
 
-def test_a_count_spoilt_by_rounding_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A count that is one off: a missed mode where K is exact, rounding where solutions with K are off by a per mille."""
+def test_a_wrong_count_due_to_rounding_is_reported_as_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A count that is off by one: a missed mode if K is exact, rounding if solutions with K have an error of 1e-3."""
     below = completeness.below
     monkeypatch.setattr(completeness, "below", lambda p, omega: below(p, omega) + 1)
     with pytest.raises(MissedModesError):
@@ -99,6 +99,6 @@ def test_a_count_spoilt_by_rounding_is_said_to_be(monkeypatch: pytest.MonkeyPatc
         solve.mesh_modes(FLAT, 8.0, 40, 5)
 
 
-def test_ten_thousand_elements_lose_nothing() -> None:
+def test_ten_thousand_elements_lose_no_digits() -> None:
     few, many = (solve.mesh_modes(FLAT, 0.0, n, 3).frequencies for n in (400, 10_000))
     np.testing.assert_allclose(many, few, rtol=1e-9)

@@ -14,8 +14,8 @@ from southwell.core.solve import modes
 from southwell.references.protocol import registry
 from southwell.tests.support.beams import PARK, tapered
 
-HELD = np.inf
-FLAP, LAG, BOTH = ([*4 * [HELD], y, z] for y, z in ((0.0, HELD), (HELD, 0.0), (0.0, 0.0)))
+CLAMPED = np.inf
+FLAP, LAG, BOTH = ([*4 * [CLAMPED], y, z] for y, z in ((0.0, CLAMPED), (CLAMPED, 0.0), (0.0, 0.0)))
 
 
 def on(blade: Blade, root: list[float]) -> Blade:
@@ -23,7 +23,7 @@ def on(blade: Blade, root: list[float]) -> Blade:
 
 
 def rod(root: list[float]) -> Blade:
-    """As good as rigid, and without moments of inertia."""
+    """Nearly rigid, and without moments of inertia."""
     bare = without_rotary_inertia(PARK)
     stiff = np.where(np.isinf(bare.stiffness), bare.stiffness, 1e6 * bare.stiffness)
     return on(replace(bare, stiffness=stiff), root)
@@ -49,11 +49,11 @@ def test_a_cable_flaps_at_the_roots_of_legendres_equation() -> None:
 
 
 def test_springs_agree_with_the_finite_element_beam() -> None:
-    """Another mechanical model, about the stretched state, where a slope is not quite a rotation."""
+    """Another mechanical model, about the stretched state, where slope and rotation differ slightly."""
     code = registry.code("scikit-fem")
     if code.version() is None:
         pytest.skip(code.hint)
-    for root in (FLAP, BOTH, [*4 * [HELD], 500.0, 300.0]):
+    for root in (FLAP, BOTH, [*4 * [CLAMPED], 500.0, 300.0]):
         blade = on(PARK, root)
         np.testing.assert_allclose(
             modes(blade, 10.0, 60, 4).frequencies, code.solve(blade, 10.0, 96, 4).frequencies, rtol=1e-7
@@ -61,12 +61,12 @@ def test_springs_agree_with_the_finite_element_beam() -> None:
 
 
 def test_stiff_springs_clamp() -> None:
-    stiff, clamped = (modes(on(PARK, 6 * [k]), 10.0, 40, 6).frequencies for k in (1e13, HELD))
+    stiff, clamped = (modes(on(PARK, 6 * [k]), 10.0, 40, 6).frequencies for k in (1e13, CLAMPED))
     np.testing.assert_allclose(stiff, clamped, rtol=1e-8)
 
 
 def test_the_joint_turns_with_the_pitch_and_not_with_the_twist() -> None:
-    """On a beam that is alike in both planes a quarter turn of pitch makes a flap hinge a lead–lag hinge."""
+    """On a beam that is the same in both planes, a quarter turn of pitch makes a flap hinge a lead–lag hinge."""
     lag = modes(on(PARK, LAG), 10.0, 20, 5).frequencies
     pitched = modes(replace(on(PARK, FLAP), pitch=np.pi / 2), 10.0, 20, 5).frequencies
     twisted = modes(replace(on(PARK, LAG), twist=np.array([0.4, 0.4])), 10.0, 20, 5).frequencies
@@ -74,14 +74,14 @@ def test_the_joint_turns_with_the_pitch_and_not_with_the_twist() -> None:
     np.testing.assert_allclose(twisted, lag, rtol=1e-10)
 
 
-def test_a_free_hinge_at_rest_is_said_to_be_loose() -> None:
+def test_a_free_hinge_at_rest_is_reported() -> None:
     with pytest.raises(UnstableError, match=r"omega: 0 rad/s.*free hinge"):
         modes(on(PARK, FLAP), 0.0, 10, 3)
 
 
 @pytest.mark.parametrize("elements", [40, 60, 100])
-def test_a_lag_hinge_on_the_axis_is_said_to_be_loose(elements) -> None:
-    """Nothing holds it, at any speed: what rounding leaves of its stiffness is no frequency."""
+def test_a_free_lag_hinge_on_the_axis_is_reported(elements) -> None:
+    """It has no stiffness at any speed; rounding of the stiffness must not appear as a frequency."""
     with pytest.raises(UnstableError, match="free hinge"):
         modes(replace(on(PARK, LAG), hub_radius=0.0), 10.0, elements, 6)
 
@@ -96,12 +96,12 @@ HINGED = ("scikit-fem", "scikit-fem-reissner", "exudyn-tree")
 
 
 @pytest.mark.parametrize("name", [n for n in registry.OURS if n not in HINGED])
-def test_codes_that_clamp_the_root_say_so(name) -> None:
+def test_codes_that_clamp_the_root_report_hinges_as_unsupported(name) -> None:
     assert registry.code(name).unsupported(on(PARK, FLAP))
 
 
 @pytest.mark.parametrize("mass", ["consistent", "half_end"])
-def test_a_load_of_the_blades_own_weight_is_gravity(mass) -> None:
+def test_a_load_equal_to_the_blades_weight_is_gravity(mass) -> None:
     """In all directions at once: the same steady state and the same modes."""
     blade, g = tapered(), np.array([3.0, 5.0, -9.81])
     weight = blade.mass[:, 0, 0][:, None] * g
@@ -113,15 +113,15 @@ def test_a_load_of_the_blades_own_weight_is_gravity(mass) -> None:
     assert np.abs(pulled / modes(blade, 2.0, 15, 5, mass=mass).frequencies - 1).max() > 1e-4
 
 
-def test_a_uniform_load_bends_the_cantilever_as_it_should() -> None:
-    """q L⁴ / 8 EI at the tip, small."""
+def test_tip_deflection_under_a_uniform_load() -> None:
+    """q L⁴ / 8 EI for a small load."""
     q = 1e-3
     body = discretize(PARK, 8, load=np.array(2 * [[0.0, 0.0, q]]))
     tip = steady.steady(body, 0.0, np.zeros(3)).shape.nodes[-1, 2, 3]
     assert tip == pytest.approx(q * PARK.length**4 / (8 * PARK.stiffness[0, 4, 4]), rel=1e-8)
 
 
-def test_a_load_of_another_form_is_refused() -> None:
+def test_a_load_of_the_wrong_shape_is_refused() -> None:
     with pytest.raises(ValueError, match=r"load: shape \(3, 3\)"):
         modes(PARK, 1.0, load=np.zeros((3, 3)))
 

@@ -47,7 +47,7 @@ def test_coefficients_add_up_to_one_as_printed(values: list[float]) -> None:
 
 
 def test_the_condition_number_is_of_the_problem_solved_and_large() -> None:
-    """An error of the shape, put where it hurts most, is so many times larger in the coefficients, both relative."""
+    """It is the largest ratio of the relative errors of coefficients and shape."""
     found = fit("flap 1", 1.0, STATIONS**2)
     basis = np.stack([STATIONS**k - STATIONS**6 for k in (2, 3, 4, 5)], axis=1)
     sizes = np.linalg.svd(basis, compute_uv=False)
@@ -81,7 +81,7 @@ def test_a_uniform_beams_shapes_are_rayleighs() -> None:
 
 
 def twisted(blade: Blade, angle: float) -> Blade:
-    """The same blade, its sections turned by ``angle`` and said to be twisted by as much the other way."""
+    """The same blade with section axes rotated by ``angle``, which is subtracted from the twist."""
     turn = np.kron(np.eye(2), sp.rotation(0, np.array(angle)))
     return replace(blade, stiffness=turn @ blade.stiffness @ turn.T, twist=blade.twist - angle)
 
@@ -91,7 +91,7 @@ def soft(GJ: float = 2e3) -> Blade:
 
 
 @pytest.mark.parametrize("angle", [0.2, -0.7])
-def test_principal_stiffnesses_are_found_in_sections_whose_axes_are_turned(angle: float) -> None:
+def test_principal_stiffnesses_of_sections_with_rotated_axes(angle: float) -> None:
     plain = principal(twisted(soft(), angle))
     np.testing.assert_allclose(plain.stiffness[:, 4, 4], 1e4, rtol=1e-9)
     np.testing.assert_allclose(plain.stiffness[:, 5, 5], 3e4, rtol=1e-9)
@@ -105,8 +105,8 @@ def test_principal_stiffnesses_do_not_depend_on_the_reference_axis() -> None:
     np.testing.assert_allclose(principal(moved).stiffness[:, range(4, 6), range(4, 6)], [[1e4, 3e4]] * 2, rtol=1e-9)
 
 
-def test_elastodyns_shapes_leave_out_twist_and_those_of_the_blade_as_it_is_do_not() -> None:
-    """ElastoDyn turns the curvatures by the twist itself: to hand it twisted shapes would twist twice."""
+def test_shapes_for_elastodyn_exclude_twist() -> None:
+    """ElastoDyn rotates the curvatures by the twist itself: shapes with twist would include it twice."""
     s = np.linspace(0.0, 6.0, 4)
     straight = Blade(
         "plain",
@@ -123,7 +123,7 @@ def test_elastodyns_shapes_leave_out_twist_and_those_of_the_blade_as_it_is_do_no
     assert np.abs(real["edge 1"].shape - edge.shape).max() > 0.01
 
 
-def test_a_blade_without_the_modes_that_elastodyn_needs_is_told() -> None:
+def test_a_blade_without_the_modes_that_elastodyn_needs_is_reported() -> None:
     stiff = uniform_blade("stiff", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=1e10, mass=1.2)
     with pytest.raises(CaseError, match="stiff, as ElastoDyn knows it: no edge 1 among the lowest modes"):
         polynomials(stiff, 0.0, 12)
@@ -143,7 +143,7 @@ def test_shapes_are_scaled_to_a_largest_displacement_of_one(found: Campbell) -> 
 
 
 def test_shapes_are_in_the_blades_axes() -> None:
-    """Precone and pitch turn a blade's flap out of the hub's z; in its own axes it stays flap."""
+    """Precone and pitch turn a blade's flap out of the hub's z; in the blade's axes it remains flap."""
     for turned in (replace(BEAM, precone=0.3), replace(BEAM, pitch=0.5)):
         drawn = campbell(turned, Wanted((0.0, 1.0), modes=2, elements=12))
         _, shapes = scaled(drawn, 0)
@@ -151,14 +151,14 @@ def test_shapes_are_in_the_blades_axes() -> None:
         assert shapes[0, -1, 2] == pytest.approx(1.0)
 
 
-def test_the_figure_has_a_panel_a_mode_with_its_name_frequency_and_shares(found: Campbell) -> None:
+def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fractions(found: Campbell) -> None:
     figure = draw(found, 0, RPM, "oscillators: mode shapes")
     assert len(figure.axes) == 3
-    said = [t.get_text() for t in figure.findobj(Text)]  # type: ignore[attr-defined]
+    texts = [t.get_text() for t in figure.findobj(Text)]  # type: ignore[attr-defined]
     for k, name in enumerate(("flap 1", "edge 1", "flap 2")):
-        assert f"{name}   {found.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in said
-    assert "100 % flap" in said
-    assert "a quarter period late" in said  # edge lags by 0.3 rad in these oscillators
+        assert f"{name}   {found.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in texts
+    assert "100 % flap" in texts
+    assert "a quarter period late" in texts  # edge lags by 0.3 rad in these oscillators
 
 
 def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:

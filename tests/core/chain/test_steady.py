@@ -1,4 +1,4 @@
-"""The steady state down to rounding: rigid stretch, slow speeds, and what the strain of it is."""
+"""The steady state converged to rounding: rigid stretch, slow speeds, and its strain."""
 
 from dataclasses import replace
 from typing import Any
@@ -19,7 +19,7 @@ from southwell.references.joint_chains import pinocchio as pinocchio_chain
 CONED: Blade = replace(
     uniform_blade("coned", 61.5, 1.5, EA=np.inf, GJ=1e9, EI_y=1e9, EI_z=4e9, mass=300.0), precone=np.deg2rad(-2.5)
 )
-"""As slender as a wind turbine's, without stretch, as ElastoDyn has it."""
+"""As slender as a wind turbine's, and inextensible as in ElastoDyn."""
 
 SLOW = 3 * np.pi / 30
 
@@ -32,7 +32,7 @@ def test_rigid_stretch_does_not_scatter() -> None:
 
 @pytest.mark.parametrize("how", [{}, {"mass": "half_end", "stiffness": "body_fixed"}], ids=["consistent", "half_end"])
 @pytest.mark.parametrize("omega", [1e-3, SLOW, 1.5])
-def test_another_step_of_newtons_changes_nothing(omega: float, how: dict[str, Any]) -> None:
+def test_another_newton_step_changes_nothing(omega: float, how: dict[str, Any]) -> None:
     body = discretize(CONED, 50, **how)
     once = steady.steady(body, omega, np.zeros(3))
     again = steady.steady(body, omega, np.zeros(3), once.shape)
@@ -45,8 +45,8 @@ def test_another_step_of_newtons_changes_nothing(omega: float, how: dict[str, An
     [(pinocchio_chain.CODE, "pinocchio"), (drake_chain.CODE, "pydrake"), (mujoco_chain.CODE, "mujoco")],
 )
 @pytest.mark.parametrize("omega", [0.05, SLOW, 1.5])
-def test_the_joint_chains_newton_goes_as_far(code: Any, module: str, omega: float) -> None:
-    """Core's rounding and theirs, as they state it, cover the difference of two solutions of one model."""
+def test_joint_chains_converge_to_rounding_too(code: Any, module: str, omega: float) -> None:
+    """The stated rounding of both codes covers the difference of their solutions of one model."""
     pytest.importorskip(module)
     theirs = code.solve(CONED, omega, 10, 6)
     mine = solve.modes(CONED, omega, 10, 6, mass="half_end", stiffness="body_fixed")
