@@ -75,10 +75,10 @@ def test_the_body_has_the_segments_mass_centre_and_inertia() -> None:
 
 
 def test_rigid_ties_restrain_warping_and_average_ties_give_way() -> None:
-    """4:1 rectangle. One chord long: rigid + 62 %, average − 16 %; in place it is St Venant's.
+    """Torsional stiffness of a 4:1 rectangle one chord long: rigid + 62 %, average − 16 %; in place it is St Venant's.
 
-    What an end costs hardly depends on the length: ends lose (rigid) or add (average) the same piece of bar at one chord and
-    at two. Rigid ends take less than the 2 √(E C_w/GJ) of Vlasov's theory, C_w = c³t³/144, in which sections do not shear.
+    The effect of the ends hardly depends on the length: they shorten (rigid) or lengthen (average) the bar equally at one and
+    two chords. Rigid ends shorten it by less than the 2 √(E C_w/GJ) of Vlasov's theory, C_w = c³t³/144, without shear.
     """
     found = {how: np.array([torsion(k * CHORD, how) for k in (1, 2)]) for how in ("rigid", "average", None)}
     np.testing.assert_allclose(found[None], 1.0, atol=5e-3)
@@ -105,13 +105,13 @@ def test_condensed_cantilever_against_timoshenko() -> None:
 
 
 def test_rigid_ties_miss_the_target_on_the_cantilever() -> None:
-    """They stop Poisson's contraction at each of the 21 sections: a per cent too stiff, ten times the target."""
+    """They prevent Poisson's contraction at each of the 21 sections: 1 % too high, ten times the target."""
     found = chain_modes(chain_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
     assert (found / np.repeat(timoshenko(3), 2) - 1 > 0.01).all()
 
 
 def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
-    """The 12×12 and the inertia alone, as from another code: the body rides as a uniform beam's, all but the same."""
+    """The 12×12 and the inertia alone, as from another code: the body moves as a uniform beam's, nearly the same."""
     whole = cantilever_segment("average")
     D = np.concatenate([-np.eye(6), sp.adjoint(whole.undeformed)], axis=1)
     alone = segment_from_matrix(D.T @ whole.stiffness @ D, whole.undeformed, whole.inertia)
@@ -132,8 +132,8 @@ def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     assert (mac(found, whole).diagonal()[:5] > 0.999).all()
 
 
-def test_segments_apart_err_to_either_side() -> None:
-    """Segments shorter than their chord: rigid ties miss by per cents, most in torsion; average ties are a little soft."""
+def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
+    """Segments shorter than their chord: too stiff by per cents with rigid ties; slightly too soft with average ties."""
     whole = twisted_modes(0.0).frequencies[:5]
     rigid, average = (
         chain_modes(chain_from_segments(segments_apart(kind), at(ROOT)), 0.0, 8).frequencies
@@ -148,10 +148,10 @@ def test_segments_apart_err_to_either_side() -> None:
 @pytest.mark.parametrize(
     ("omega", "shift", "turn", "within"),
     [(0.0, 0.02, 1.0, 1e-7), (SPEED, 0.02, 0.0, 1e-6), (SPEED, 0.0, 0.1, 1e-5)],
-    ids=["at rest, anyhow", "turning, shifted", "turning, turned"],
+    ids=["at rest, both", "turning, shifted", "turning, rotated"],
 )
-def test_sections_frames_are_free_to_choose(omega: float, shift: float, turn: float, within: float) -> None:
-    """Shifted by 20 mm and turned: the same frequencies. Turned much, the straight way from frame to frame is a screw's."""
+def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float, turn: float, within: float) -> None:
+    """Shifted by 20 mm or rotated: the same frequencies, but for the screw motion between much rotated frames."""
     x = twisted().corners[cuts(), 0, 0, 0]
     rng = np.random.default_rng(5)
     places = [np.concatenate([[0.0], shift * rng.normal(size=2), turn * rng.normal(size=3)]) for _ in x]
@@ -165,13 +165,13 @@ def test_sections_frames_are_free_to_choose(omega: float, shift: float, turn: fl
     np.testing.assert_allclose(found, parallel, rtol=within)
 
 
-def test_the_compressed_model_is_a_mechanism_like_any_other() -> None:
+def test_the_compressed_model_agrees_with_the_general_solver() -> None:
     chain = chain_from_segments(segments_in_place(), at(ROOT))
     dense = lz.modes(lz.linearize(mechanism(chain, SPEED)), 6).frequencies
     np.testing.assert_allclose(dense, chain_modes(chain, SPEED, 6).frequencies, rtol=1e-9)
 
 
-def test_nothing_of_the_blades_mass_is_lost() -> None:
+def test_segments_have_the_mass_of_the_blade() -> None:
     bodies, where = segments_in_place(), at(ROOT)
     total = np.zeros((6, 6))
     for s in bodies:

@@ -1,4 +1,4 @@
-"""Matrices as other codes write them: a file of CalculiX's own, and every other form written out and read back."""
+"""Matrices exported by other codes: a file written by CalculiX, and every other format written and read back."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def ordered(e: Exported) -> Array:
 
 
 def entries(which: str):
-    """Index pairs of the triangle asked for (or all), shuffled, without zeros."""
+    """Index pairs of the given triangle (or all), shuffled, without zeros."""
     i, j = np.indices(MATRIX.shape).reshape(2, -1)
     keep = (MATRIX[i, j] != 0) & {"lower": i >= j, "upper": i <= j, "full": i >= 0}[which]
     return RNG.permutation(np.column_stack([i, j])[keep])
@@ -85,7 +85,7 @@ def test_user_element_with_two_matrices(tmp_path: Path) -> None:
 
 
 def test_calculix_stored_matrices(tmp_path: Path) -> None:
-    """``row column value`` of the upper triangle, freedoms beside it."""
+    """``row column value`` of the upper triangle, with the freedoms in a second file."""
     lines = [f"{i + 1} {j + 1}  {MATRIX[i, j]:.13e}" for i, j in entries("upper")]
     (tmp_path / "part.sti").write_text("\n".join(lines) + "\n")
     (tmp_path / "part.dof").write_text("".join(f"{n}.{d}\n" for n, d in zip(NODES, FREEDOMS, strict=True)))
@@ -146,7 +146,7 @@ def dmig(name: str, wide: bool, form: int, which: str) -> list[str]:
 @pytest.mark.parametrize(("wide", "digits"), [(True, 1e-9), (False, 6e-3)], ids=["large field", "small field"])
 @pytest.mark.parametrize(("form", "which"), [(6, "lower"), (6, "upper"), (1, "full")])
 def test_nastran_dmig(tmp_path: Path, wide: bool, digits: float, form: int, which: str) -> None:
-    """Read beside another matrix and a comment; eight columns hold three digits of a negative number."""
+    """Read from a file with another matrix and a comment; eight columns hold three digits of a negative number."""
     path = tmp_path / "part.pch"
     other = [
         "$ stiffness",
@@ -179,7 +179,7 @@ def test_matrix_market(tmp_path: Path, form: str) -> None:
     np.testing.assert_allclose(read(path).matrix.toarray(), MATRIX, rtol=1e-14)
 
 
-# What is made of them
+# Models
 
 
 def test_mass_is_matched_by_freedom_and_summed_by_direction() -> None:
@@ -215,7 +215,7 @@ HEADER = f"DMIG    {'KAAX':8}{0:8d}"
         ("%%MatrixMarket matrix coordinate real general\n2 3 1\n1 1 1.0\n", "2 × 3: a stiffness is square"),
         ("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1.0\n", "1 entries, expected 2: truncated"),
         (user_element(("STIFFNESS",))[:-40], "values, expected 171 for the triangle of 18 freedoms: truncated"),
-        (user_element(()), "no .MATRIX, TYPE in it"),
+        (user_element(()), "no .MATRIX, TYPE found"),
         (user_element(("MASS", "DAMPING")), "TYPE STIFFNESS not found; there are MASS, DAMPING"),
         (HEADER + f"{2:8d}{2:8d}", "DMIG KAAX has form 2, type 2"),
         (HEADER + f"{6:8d}{4:8d}", "DMIG KAAX has form 6, type 4"),

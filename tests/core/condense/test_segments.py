@@ -1,4 +1,4 @@
-"""Segments, ties and the chain they make, without a solid: textbook beams, closed forms, and what is refused."""
+"""Segments, ties and chains without a solid: textbook beams, closed forms, and invalid input."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,11 +26,11 @@ from southwell.tests.support.solids import at
 Array = np.ndarray
 
 
-# What a matrix says
+# Stiffness
 
 
 def beam_segment(length: float, blade=PARK) -> tuple[Array, Array, Array]:
-    """12×12 of a uniform beam, its 6×6 and the pose of b seen from a."""
+    """12×12 of a uniform beam, its 6×6 and the pose of b in a's frame."""
     part = replace(blade, stations=np.array([0.0, length]), curve=np.zeros((0, 3)))
     undeformed = at(length)
     k = np.linalg.inv(sections.integrate(part, part.stations).flexibility[0])
@@ -38,7 +38,7 @@ def beam_segment(length: float, blade=PARK) -> tuple[Array, Array, Array]:
     return D.T @ k @ D, k, undeformed
 
 
-def test_the_textbook_beam_is_its_complex_stiffness() -> None:
+def test_complex_stiffness_of_the_textbook_beam() -> None:
     """Przemieniecki 1968, table 5.2: 12 E I/l³, −6 E I/l², 4 E I/l, 2 E I/l, E A/l, G J/l."""
     length, EA, EI, GJ = 0.5, 7e10 * 4e-4, 7e10 * 2e-7, 7e10 / 2.6 * 4e-7
     k12, k, undeformed = beam_segment(length)
@@ -50,12 +50,12 @@ def test_the_textbook_beam_is_its_complex_stiffness() -> None:
     np.testing.assert_allclose(between(k12, undeformed, "beam"), k, rtol=1e-9, atol=1e-9 * np.abs(k).max())
 
 
-def test_the_body_of_a_uniform_beam_rides_as_its_cubic_does() -> None:
+def test_the_body_of_a_uniform_beam_follows_its_cubic() -> None:
     """Mean of w = v (3t² − 2t³) + θ l (t³ − t²): displacement v/2 − θ l/12, rotation 6 v/5 l − θ/10 (by least squares)."""
     length = 0.5
     k12, _, undeformed = beam_segment(length)
     ride = segment_from_matrix(k12, undeformed, np.eye(6)).ride
-    b = sp.adjoint(sp.inverse(undeformed))  # ρ is seen at a's origin; the cubic's v and θ are at b
+    b = sp.adjoint(sp.inverse(undeformed))  # ρ is at a's origin; the cubic's v and θ are at b
     ride = ride @ np.linalg.inv(b)
     centre = at(-0.5 * length)
     ride = sp.adjoint(centre) @ ride  # at the middle
@@ -77,7 +77,7 @@ def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
 
 
 def test_two_joined_segments_are_one_of_twice_the_length() -> None:
-    """The ride differs by the section's own inertia, which ``segment_from_matrix`` leaves out of it."""
+    """``ride`` differs by the rotary inertia of the sections, which ``segment_from_matrix`` neglects."""
     for found, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
         for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("ride", 5e-3)):
             wanted = getattr(expected, field)
@@ -86,8 +86,8 @@ def test_two_joined_segments_are_one_of_twice_the_length() -> None:
 
 
 @pytest.mark.parametrize("n", [6, 8, 20, 21])
-def test_the_uncertainty_covers_what_the_number_of_segments_costs(n: int) -> None:
-    """Against core's beam, refined; and it is no empty word."""
+def test_the_uncertainty_covers_the_error_due_to_the_number_of_segments(n: int) -> None:
+    """Against core's refined beam; the uncertainty is less than a hundred times the error."""
     exact = modes(PARK, 10.0, count=4, accuracy=1e-9).frequencies
     found = segment_modes(uniform_segments(n), at(PARK.hub_radius), 10.0, 4)
     error = np.abs(found.frequencies / exact - 1.0)
@@ -96,7 +96,7 @@ def test_the_uncertainty_covers_what_the_number_of_segments_costs(n: int) -> Non
     assert 0 < found.strain < 0.01
 
 
-def test_few_segments_do_not_tell_and_large_strains_are_refused() -> None:
+def test_few_segments_have_infinite_uncertainty_and_large_strains_are_refused() -> None:
     assert np.isinf(segment_modes(uniform_segments(3), at(PARK.hub_radius), 0.0, 4).uncertainty).all()
     rubber = [replace(s, stiffness=s.stiffness * np.diag([3e-4, 1, 1, 1, 1, 1])) for s in uniform_segments(8)]
     with pytest.raises(LargeStrainError, match="allow large strains"):
@@ -105,7 +105,7 @@ def test_few_segments_do_not_tell_and_large_strains_are_refused() -> None:
 
 
 def test_bending_converges_with_fourth_order() -> None:
-    """From one rigid body a segment, to core's own converged beam; turning too, 20 segments leave 5e-6."""
+    """One rigid body per segment, against core's converged beam; also turning, where 20 segments leave 5e-6."""
     exact = modes(PARK, 0.0, 160, 4).frequencies
     errors = [np.abs(uniform_chain(n)[:4] / exact - 1) for n in (10, 20)]
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
@@ -131,7 +131,7 @@ def test_torsion_is_that_of_masses_in_the_middle() -> None:
 
 
 def freedoms_of_a_section(seed: int = 3, count: int = 7) -> FiniteElements:
-    """Nodes scattered on a plane, each with three displacements and three rotations; springs to nowhere."""
+    """Nodes scattered on a plane, each with three displacements and three rotations, on springs to the ground."""
     rng = np.random.default_rng(seed)
     points = np.column_stack([np.full(count, 0.4), rng.normal(size=(count, 2))])
     n = 6 * count
@@ -147,7 +147,7 @@ def somewhere() -> Array:
 
 @pytest.mark.parametrize("kind", ["rigid", "average"])
 def test_a_tie_follows_its_frame_and_balances_its_wrench(kind: ties.Kind) -> None:
-    """Moved as a rigid body the section's mean is the frame's twist; forces of a unit wrench have that wrench."""
+    """For a rigid motion, the section's mean is the frame's twist; the forces of a unit wrench have that wrench."""
     model = freedoms_of_a_section()
     every = np.arange(len(model.directions))
     make = ties.rigid if kind == "rigid" else ties.average
@@ -156,7 +156,7 @@ def test_a_tie_follows_its_frame_and_balances_its_wrench(kind: ties.Kind) -> Non
     assert (model.directions[tie.freedoms] < 3).all() == (kind == "average")
 
 
-def test_rigid_motion_is_the_frames_own_screw() -> None:
+def test_rigid_motion_is_that_of_the_frame() -> None:
     """Turning the frame by a finite small twist moves points as ``motion`` says, to second order."""
     model, frame = freedoms_of_a_section(), somewhere()
     twist = 1e-5 * np.array([1.0, -2.0, 0.5, 0.3, 0.8, -1.1])
@@ -168,11 +168,11 @@ def test_rigid_motion_is_the_frames_own_screw() -> None:
     np.testing.assert_allclose(linear[:, 1], np.tile(frame[:3, :3] @ twist[3:], (len(points), 1)), atol=1e-15)
 
 
-# The picture
+# Figure
 
 
 def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
-    """Faces of the mesh, 5 sections, 4 boxes and 4 springs; a box's outline is the segment's own, and bytes do not vary."""
+    """Faces of the mesh, 5 sections, 4 boxes and 4 springs; a box has its segment's outline, and files are reproducible."""
     mass, side, length = 3.0, 0.2, 0.5
     body = inertia(
         mass, mass / 12 * np.array([2 * side**2, side**2 + length**2, side**2 + length**2]), [length / 2, 0, 0]
@@ -236,12 +236,12 @@ def put(k: Array, entry: tuple[int, int], value: float) -> Array:
     ],
     ids=["size", "nan", "asymmetric", "one triangle", "sign", "indefinite", "grounded", "grounded in rotation"],
 )
-def test_a_matrix_that_is_no_segments_is_refused(change, match: str) -> None:
+def test_a_matrix_that_is_not_a_segments_is_refused(change, match: str) -> None:
     with pytest.raises(CondensationError, match=f"stiffness of 'root to 1 m': .*{match}"):
         between(*bad(change), "root to 1 m")
 
 
-def test_a_matrix_of_another_place_is_refused() -> None:
+def test_a_matrix_of_other_end_frames_is_refused() -> None:
     """In millimetres where metres were meant: rotations no longer fit translations."""
     k, _, undeformed = beam_segment(0.5)
     wrong = undeformed.copy()
@@ -251,7 +251,7 @@ def test_a_matrix_of_another_place_is_refused() -> None:
 
 
 def test_a_mechanism_between_sections_is_refused() -> None:
-    """Turning about x and y by as much each way meets no force; and turning about x alone."""
+    """Equal and opposite rotations about x and y cause no force; then, rotation about x alone."""
     undeformed = at(0.5)
     D = np.concatenate([-np.eye(6), sp.adjoint(undeformed)], axis=1)
     free = np.eye(6)
