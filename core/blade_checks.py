@@ -262,8 +262,8 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     if even.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
         i, j = np.unravel_index(int(even.argmax()), (3, 3))
         return (
-            f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: the block m c× is skew: "
-            "opposite signs, zeros on the diagonal; wrong sign or order of rows? correct them"
+            f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: they must be opposite "
+            "(mass times offset of the centre), 0 on the diagonal; wrong sign or order of rows? correct them"
         )
     _, centre, moments = about_centre(matrix)
     least, middle, most = np.linalg.eigvalsh(moments)

@@ -16,7 +16,7 @@ MEASURES: list[measures.Measure] = ["corotational", "body_fixed"]
 
 @pytest.fixture(scope="module", params=MEASURES)
 def law(request) -> measures.StrainLaw:
-    """Five elements whose strain varies along them, in no way that a beam's would."""
+    """Five elements whose strain varies along them arbitrarily."""
     rng = np.random.default_rng(4)
     undeformed = sp.exp(rng.normal(size=(5, 6)) * [1, 0.2, 0.2, 0.1, 0.1, 0.1])
     g, mean, slope = rng.normal(size=(5, 6, 6)), rng.normal(size=(5, 6, 6)), rng.normal(size=(5, 6, 12))
@@ -25,7 +25,7 @@ def law(request) -> measures.StrainLaw:
 
 @pytest.fixture(scope="module")
 def bent(law) -> tuple[np.ndarray, np.ndarray]:
-    """Poses some way off, and internal coordinates."""
+    """Displaced poses, and internal coordinates."""
     rng = np.random.default_rng(6)
     return sp.exp(0.3 * rng.normal(size=(5, 6))) @ law.undeformed, 0.3 * rng.normal(size=(5, 6))
 
@@ -75,7 +75,7 @@ def test_tension_stiffens_like_the_cubic_beam_element() -> None:
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("mass", ["consistent", "half_end"])
 def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> None:
-    """Elastic, geometric, centrifugal and gravity terms, of curved coupled elements in a bent state, taken along."""
+    """Elastic, geometric, centrifugal and gravity terms, of curved coupled elements in a bent state."""
     beams = discretize(curved(), 4, mass, measure).beams
     rng = np.random.default_rng(6)
     small = rng.normal(size=(4, 6)) * [0.2, 0.2, 0.2, 0.05, 0.05, 0.05]
@@ -90,25 +90,25 @@ def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> No
         return bm.pencil(beams, sp.inverse(a) @ b, inner, to_a @ frame, to_a @ fall)
 
     def residual(step: np.ndarray) -> np.ndarray:
-        """Components in each end's own axes, so that the difference is the variation taken along."""
+        """Components in each end's axes, so that the difference is the variation that follows the body."""
         a_, b_ = a @ sp.exp(step[:6]), b @ sp.exp(step[6:12])
         r = pencil(a_, b_, inner + step[12:]).residual.copy()
         r[:, 6:12] = (np.swapaxes(sp.adjoint(sp.inverse(a_) @ b_), -1, -2) @ r[:, 6:12, None])[..., 0]
         return r
 
     d = 12 + beams.inner
-    own = np.zeros((4, d, d))
-    own[:, range(d), range(d)] = 1.0
-    own[:, 6:12, 6:12] = sp.adjoint(sp.inverse(a) @ b)
-    analytic = np.swapaxes(own, -1, -2) @ pencil(a, b, inner).K @ own
+    to_a = np.zeros((4, d, d))
+    to_a[:, range(d), range(d)] = 1.0
+    to_a[:, 6:12, 6:12] = sp.adjoint(sp.inverse(a) @ b)
+    analytic = np.swapaxes(to_a, -1, -2) @ pencil(a, b, inner).K @ to_a
     quotient = np.stack([(residual(h * e) - residual(-h * e)) / (2 * h) for e in np.eye(d)], axis=-1)
     for rows in (slice(0, 12), slice(12, d)):  # forces on the ends and on β differ in size
         scale = np.abs(quotient[:, rows]).max(axis=(1, 2), keepdims=True, initial=1e-300)
         np.testing.assert_allclose(analytic[:, rows] / scale, quotient[:, rows] / scale, atol=3e-8)
 
 
-def test_mass_points_weigh_what_the_blade_weighs() -> None:
-    """A rigid translation of both ends meets the blade's whole mass, whatever the shape functions."""
+def test_the_points_have_the_mass_of_the_blade() -> None:
+    """A rigid translation of both ends moves the whole mass of the blade, for any shape functions."""
     blade = curved()
     beams = discretize(blade, 3).beams
     n = len(beams.undeformed)

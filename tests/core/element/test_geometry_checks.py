@@ -1,4 +1,4 @@
-"""A reference curve must have the arc length its stations say and begin at the root; rounding in files is tolerated."""
+"""A reference curve must begin at the root and have the arc length of its stations; rounding in files is tolerated."""
 
 from pathlib import Path
 
@@ -65,9 +65,9 @@ def arc(s: np.ndarray, radius: float = 20.0) -> np.ndarray:
         ([[0.0, 0.0, 0.0], [1e29, 0.0, 0.0]], r"blade\.curve: its points.*1e\+29 m apart"),
         ([[0.0, 0.0, 0.0], [1e308, 0.0, 0.0]], r"1e\+308: implausibly large"),
     ],
-    ids=["longer", "shorter", "starts at 5 m", "starts 5 m beside", "backwards", "1e29", "1e308"],
+    ids=["longer", "shorter", "starts at 5 m", "starts 5 m off the axis", "backwards", "1e29", "1e308"],
 )
-def test_a_file_whose_curve_is_not_of_its_stations_is_refused(tmp_path: Path, curve: object, match: str) -> None:
+def test_a_file_whose_curve_does_not_match_its_stations_is_refused(tmp_path: Path, curve: object, match: str) -> None:
     with pytest.raises(CaseError, match=match):
         from_file(tmp_path, curve)
 
@@ -75,10 +75,8 @@ def test_a_file_whose_curve_is_not_of_its_stations_is_refused(tmp_path: Path, cu
 @pytest.mark.parametrize("value", ["1e308", "-1e308", "1e160"])
 @pytest.mark.parametrize("line", [13, 14, 15, 17])
 @pytest.mark.parametrize("column", range(4))
-def test_a_key_point_beyond_all_measure_is_refused_in_one_line(
-    tmp_path: Path, value: str, line: int, column: int
-) -> None:
-    """BeamDyn's reference axis, its twist too: such numbers overflowed in the splines."""
+def test_a_huge_key_point_is_refused_in_one_line(tmp_path: Path, value: str, line: int, column: int) -> None:
+    """BeamDyn's reference axis and its twist: such numbers overflowed in the splines."""
     for name in ("beamdyn_main.dat", "beamdyn_blade.dat"):
         (tmp_path / name).write_text((DATA / name).read_text())
     path = tmp_path / "beamdyn_main.dat"
@@ -92,7 +90,7 @@ def test_a_key_point_beyond_all_measure_is_refused_in_one_line(
 
 
 def test_a_beamdyn_curve_of_few_points_is_followed(tmp_path: Path) -> None:
-    """Key points 10 m apart and a tip that bends by 20°: the file's curve is a spline, and stations in between tell it."""
+    """Key points 10 m apart and a tip that bends by 20°: the file's curve is a spline, and so are the stations between."""
     for name in ("beamdyn_main.dat", "beamdyn_blade.dat"):
         (tmp_path / name).write_text((DATA / name).read_text())
     path = tmp_path / "beamdyn_main.dat"
@@ -127,7 +125,7 @@ def test_stations_that_are_spans_and_not_arc_lengths_are_refused() -> None:
     assert blade(s, right).length == 10.0
 
 
-def test_one_point_out_of_line_is_named() -> None:
+def test_a_misplaced_point_is_located() -> None:
     s = np.linspace(0.0, 10.0, 21)
     r = arc(s)
     r[10, 2] += 0.05
@@ -137,13 +135,13 @@ def test_one_point_out_of_line_is_named() -> None:
 
 @pytest.mark.parametrize("digits", [3, 4, 5])
 def test_rounded_coordinates_are_accepted(digits: int) -> None:
-    """Of a 60 m blade with 3 m of prebend in millimetres, as published tables have them."""
+    """A 60 m blade with 3 m of prebend, rounded to millimetres as in published tables."""
     s = np.linspace(0.0, 60.0, 41)
     blade(np.round(s, digits), np.round(arc(s, 600.0), digits) + 0.0)
 
 
-def test_a_curve_may_begin_beside_the_root() -> None:
-    """A reference axis beside the pitch axis is only another description of the same blade."""
+def test_a_curve_may_begin_off_the_pitch_axis() -> None:
+    """A reference axis parallel to the pitch axis is another description of the same blade."""
     smooth = curved()
     assert Blade(**{**vars(smooth), "curve": smooth.curve + np.array([0.0, 0.17, -0.09])}).length == smooth.length
 
@@ -162,7 +160,7 @@ def test_a_root_beyond_rounding_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("last", [1 - 2e-16, 1 + 2e-16, 1 - 1e-12])
-def test_a_table_that_ends_within_rounding_of_the_tip_is_whole(tmp_path: Path, last: float) -> None:
+def test_a_table_that_ends_within_rounding_of_the_tip_is_complete(tmp_path: Path, last: float) -> None:
     path = tmp_path / "case.csv"
     header = "fraction [-],twist [deg],mass [kg/m],EI_flap [N m^2],EI_edge [N m^2],GJ [N m^2],EA [N]"
     path.write_text(f"{header}\n3.6e-13,0,10,1e4,4e4,1e4,1e7\n{last!r},0,10,1e4,4e4,1e4,1e7\n")

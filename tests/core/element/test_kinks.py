@@ -1,4 +1,4 @@
-"""A kink in the reference curve: exact in core, seen alike by a mechanism with a rigid corner and by Pinocchio's chain."""
+"""A kink in the reference curve: core agrees with a mechanism with a rigid corner, and with other codes' joint chains."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,13 +26,13 @@ DENSE = np.array([0, 4, 7, 7.5, 7.8, 7.9, 7.99, 7.999, 8, 8.001, 8.01, 8.1, 8.2,
 
 
 def line(s: np.ndarray, at: float = 8.0, angle: float = ANGLE) -> np.ndarray:
-    """(n, 3) along x, and from ``at`` on swept backwards."""
+    """(n, 3) along x, and beyond ``at`` swept backwards."""
     beyond = np.maximum(s - at, 0.0)
     return np.stack([np.minimum(s, at) + beyond * np.cos(angle), -beyond * np.sin(angle), 0 * s], axis=1)
 
 
 def beam(s: np.ndarray, curve: np.ndarray, kinks: tuple[float, ...] = (), **more: object) -> Blade:
-    """The uniform beam of the review's kink-coarse and kink-dense, with another curve."""
+    """A uniform beam along a curve."""
     n = len(s)
     stiffness = np.repeat(section_stiffness(1e7, 1e4, 1e4, 4e4, 4e6, 4e6), n, axis=0)
     mass = np.repeat(section_mass(10.0, 0.01, 0.02), n, axis=0)
@@ -47,19 +47,20 @@ def kinked(**more: object) -> Blade:
 
 
 def with_all() -> Blade:
-    """Everything a blade can have, and two kinks: out of one plane into another."""
+    """A blade with all properties and two kinks, in different planes."""
     smooth = curved()
     s, r = smooth.stations, smooth.curve
-    turned = [np.eye(3), sp.rotation(2, np.array(-0.3)), sp.rotation(2, np.array(-0.3)) @ sp.rotation(1, np.array(0.2))]
+    sweep, rise = sp.rotation(2, np.array(-0.3)), sp.rotation(1, np.array(0.2))
+    rotations = [np.eye(3), sweep, sweep @ rise]
     pieces = [0, 0, 1, 2, 2]  # of the intervals; pieces of two points are straight
-    steps = [turned[p] @ (r[k + 1] - r[k]) for k, p in enumerate(pieces)]
+    steps = [rotations[p] @ (r[k + 1] - r[k]) for k, p in enumerate(pieces)]
     steps[2] *= (s[3] - s[2]) / np.linalg.norm(steps[2])
     return replace(smooth, curve=np.concatenate([r[:1], r[0] + np.cumsum(steps, axis=0)]), kinks=(s[2], s[3]))
 
 
 @pytest.mark.parametrize(("mass", "stiffness"), [("consistent", "corotational"), ("half_end", "body_fixed")])
 def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) -> None:
-    """Two straight beams, each divided on its own, fixed to each other at an angle in a general mechanism."""
+    """Two straight beams, divided separately and fixed to each other at an angle in a general mechanism."""
     s = np.array([0.0, 1.0])
     inner, outer = (beam(length * s, line(length * s)) for length in (8.0, 2.0))
     first, second = (
@@ -83,9 +84,9 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
 
 @pytest.mark.parametrize("blade", [kinked(), kinked(precone=0.1, pitch=0.2), with_all()], ids=["beam", "coned", "all"])
 def test_the_general_solver_agrees_on_kinks(blade: Blade) -> None:
-    """The velocity transformation on the same discretisation, elements ending in frames that are not their nodes'."""
-    own = modes(blade, 1.0, 8, 6).frequencies
-    np.testing.assert_allclose(own, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
+    """The same discretisation, with elements that end in frames other than those of their nodes."""
+    found = modes(blade, 1.0, 8, 6).frequencies
+    np.testing.assert_allclose(found, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
 
 
 def test_elements_end_at_kinks_and_refinement_is_of_fourth_order() -> None:
@@ -100,7 +101,7 @@ def test_elements_end_at_kinks_and_refinement_is_of_fourth_order() -> None:
 
 
 def test_a_well_rounded_corner_is_nearly_the_kink() -> None:
-    """The review's dense table: what it differs by is its own corner, and goes with it; the coarse one was 6.7 % off."""
+    """A dense table differs by its rounded corner only; the difference vanishes with the radius."""
     exact = modes(kinked(), OMEGA, 160, 5).frequencies
     tighter = np.unique(np.concatenate([DENSE, 8 + np.outer([1, -1], 0.001 * 2.0 ** np.arange(10)).ravel()]))
     off = [np.abs(modes(beam(s, line(s)), OMEGA, 160, 5).frequencies / exact - 1).max() for s in (DENSE, tighter)]
@@ -115,19 +116,18 @@ def test_sections_turn_with_the_tangent_at_the_kink() -> None:
     np.testing.assert_allclose(before[:3, 3], beyond[:3, 3], atol=1e-15)
 
 
-def test_a_kink_that_turns_by_nothing_changes_nothing() -> None:
+def test_a_kink_of_zero_angle_changes_nothing() -> None:
     s = np.array([0.0, 8.0, 10.0])
     plain, declared = (modes(beam(s, line(s, angle=0.0), k), OMEGA, 20, 6).frequencies for k in ((), (8.0,)))
     np.testing.assert_allclose(declared, plain, rtol=1e-12)
 
 
-def test_the_roots_joint_and_a_kink() -> None:
-    """Stiff springs clamp."""
+def test_stiff_springs_at_the_root_clamp_a_kinked_blade() -> None:
     clamped, stiff = (modes(kinked(root=np.full(6, k)), OMEGA, 10, 6).frequencies for k in (np.inf, 1e13))
     np.testing.assert_allclose(stiff, clamped, rtol=1e-7)
 
 
-def test_shares_of_a_kinked_blade_are_those_of_the_rounded_one() -> None:
+def test_energy_fractions_of_a_kinked_blade_are_those_of_the_rounded_one() -> None:
     sharp, round_ = (modes(b, OMEGA, 100, 4) for b in (kinked(), beam(DENSE, line(DENSE))))
     expected = participation(round_, beam(DENSE, line(DENSE)))
     np.testing.assert_allclose(participation(sharp, kinked()), expected, atol=0.01)
@@ -151,7 +151,7 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
     assert theirs.elements == ours.elements
 
 
-def test_bodies_of_the_joint_chain_keep_their_place() -> None:
+def test_bodies_of_the_joint_chain_are_at_the_ends_of_the_elements() -> None:
     chain = discretize(with_all(), 9, "half_end", "body_fixed")
     here = np.eye(4)
     for k, place in enumerate(joint_chain.places(chain), 1):
@@ -163,7 +163,7 @@ TAKE_KINKS = ("pinocchio", "mujoco", "drake", "scikit-fem-reissner")
 
 
 @pytest.mark.parametrize("name", [n for n in registry.OURS if n not in TAKE_KINKS])
-def test_other_codes_say_that_they_have_no_kinks(name: str) -> None:
+def test_other_codes_report_that_kinks_are_unsupported(name: str) -> None:
     assert registry.code(name).unsupported(kinked())
 
 
@@ -193,7 +193,7 @@ def test_a_file_declares_its_kinks(tmp_path: Path) -> None:
 
 
 def test_too_few_points_around_a_corner_are_refused(tmp_path: Path) -> None:
-    """The review's kink-coarse: splined through its kink, flap 2 was 6.7 % low."""
+    """With one spline through the kink, flap 2 was 6.7 % low."""
     path = tmp_path / "blade.toml"
     path.write_text(FILE.format(kinks="[]", k=K, m=M))
     with pytest.raises(CaseError, match=r"between 0 m and 8 m the spline.*30° at 8 m.*add points.*kinks = \[8\]"):
@@ -230,6 +230,6 @@ def test_impossible_kinks_are_refused(kinks: tuple[float, ...], match: str) -> N
         beam(s, line(s), kinks)
 
 
-def test_a_kink_within_rounding_of_its_station_is_on_it() -> None:
+def test_a_kink_within_rounding_of_its_station_is_moved_to_it() -> None:
     s = np.array([0.0, 8.0, 10.0])
     assert beam(s, line(s), (8.0 + 1e-12,)).kinks == (8.0,)

@@ -1,4 +1,4 @@
-"""Masses that no body has, and stiffnesses that no section has, are refused: from a file and from Python."""
+"""Impossible masses and stiffnesses are refused, from a file and from Python."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +34,7 @@ GOOD = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.
     [
         (
             "[10, 0, 0, 0, 0, 0, 20, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]",
-            r"10, 20, 10 kg/m along x, y, z: a body has one mass in all directions.*give one",
+            r"10, 20, 10 kg/m along x, y, z: a body has the same mass in all directions.*give one",
         ),
         (
             "[10, 2, 0, 0, 3, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]",
@@ -42,7 +42,7 @@ GOOD = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.
         ),
         (
             "[10, 0, 0, 0, 3, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]",
-            r"entries \(0, 4\) and \(1, 3\) are 3 and 0: mass times the centre's offset has opposite signs",
+            r"entries \(0, 4\) and \(1, 3\) are 3 and 0: they must be opposite",
         ),
         (
             "[10, 0, 0, 0, 0, -1, 10, 0, 0, 0, 0, 10, 1, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]",
@@ -60,14 +60,14 @@ GOOD = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.
     ],
     ids=["m_y", "cross", "offset", "about the centre", "polar", "product", "negative"],
 )
-def test_a_file_with_a_mass_that_cannot_be_is_refused(tmp_path: Path, mass: str, match: str) -> None:
+def test_a_file_with_an_impossible_mass_is_refused(tmp_path: Path, mass: str, match: str) -> None:
     path = tmp_path / "blade.toml"
     path.write_text(FILE.format(k=K, good=GOOD, m=mass))
     with pytest.raises(CaseError, match=r"blade\.mass: at station 1 \(10 m\): " + match):
         reading(path)
 
 
-def test_a_file_with_a_tip_mass_that_cannot_be_is_refused(tmp_path: Path) -> None:
+def test_a_file_with_an_impossible_tip_mass_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "blade.toml"
     body = "[blade.tip_mass]\nmass = 3.0\ninertia = [9.0, 1.0, 1.0, 0.0, 0.0, 0.0]\n"
     path.write_text(FILE.format(k=K, good=GOOD, m=GOOD) + body)
@@ -100,10 +100,10 @@ def test_an_unsymmetric_mass_is_refused() -> None:
     [
         ((2, 3, 5), 1e7, r"entries \(3, 5\) and \(5, 3\) at station 2 \(10 m\) are 1e\+07 and 0: it must be symmetric"),
         ((2, 4, 4), -1.0, r"diagonal 4 \(bending about y\) at station 2 \(10 m\) is -1: it must be positive"),
-        ((2, 0, 0), np.inf, r"axial at station 0 \(0 m\) is finite where other stations are rigid"),
+        ((2, 0, 0), np.inf, r"axial at station 0 \(0 m\) is finite but rigid at other stations"),
     ],
 )
-def test_a_stiffness_that_no_section_has_is_refused(at: tuple[int, ...], value: float, match: str) -> None:
+def test_an_impossible_stiffness_is_refused(at: tuple[int, ...], value: float, match: str) -> None:
     with pytest.raises(BladeError, match="stiffness: " + match):
         changed("stiffness", at, value)
 
@@ -122,8 +122,8 @@ def test_a_coupling_with_a_rigid_strain_is_refused() -> None:
         replace(PARK, stiffness=stiffness)
 
 
-def test_bodies_that_can_be_are_accepted() -> None:
-    """Any cloud of point masses is a body; so are a rod, a point, and a section as a table rounds it."""
+def test_possible_bodies_are_accepted() -> None:
+    """Any cloud of point masses is a body; so are a rod, a point, and a section rounded in a table."""
     rng = np.random.default_rng(1)
     for _ in range(200):
         points = rng.normal(size=(rng.integers(1, 9), 3)) * rng.uniform(0.01, 10)
@@ -133,8 +133,8 @@ def test_bodies_that_can_be_are_accepted() -> None:
     assert body_fault(np.diag([0, 0, 0, 1.0, 1.0, 1.0]), "kg") is None
 
 
-def test_point_masses_stay_where_they_are_without_rotary_inertia() -> None:
-    """Offset masses keep their moments about the reference curve: without, they would be less than none."""
+def test_offset_masses_keep_their_moments_without_rotary_inertia() -> None:
+    """Without moments about the reference curve, those about the mass centre would be negative."""
     bare = without_rotary_inertia(curved())
     centred = bare.mass[:, 3:, 3:] - curved().mass[:, 3:, 3:]
     assert (np.linalg.eigvalsh(centred) <= 1e-9).all()
@@ -143,9 +143,9 @@ def test_point_masses_stay_where_they_are_without_rotary_inertia() -> None:
     assert np.isfinite(modes(bare, 1.0, 8, 4).frequencies).all()
 
 
-def test_a_mechanisms_bodies_are_bodies_too() -> None:
+def test_impossible_bodies_of_a_mechanism_are_refused() -> None:
     for matrix, match in (
-        (np.diag([1.0, 2, 1, 1, 1, 1]), "one mass in all directions"),
+        (np.diag([1.0, 2, 1, 1, 1, 1]), "the same mass in all directions"),
         (np.diag([1.0, 1, 1, 1, 1, 3]), "none can be larger"),
         (np.diag([-1.0, -1, -1, 1, 1, 1]), "must be positive"),
         (inertia(1.0, 0.0, (1.0, 0, 0)) * np.where(np.arange(6) < 3, 1, 0.5), "symmetric"),

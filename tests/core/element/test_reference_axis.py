@@ -1,4 +1,4 @@
-"""What a blade or a mechanism is does not depend on the axes it is written down in: shifted axis, shifted body frames."""
+"""Results do not depend on the reference axis of a blade or on the body frames of a mechanism."""
 
 from dataclasses import replace
 
@@ -36,9 +36,9 @@ def blade(rng: np.random.Generator) -> Blade:
 
 
 def about(blade: Blade, offset: np.ndarray) -> Blade:
-    """The same blade about an axis that lies ``offset`` beside its own.
+    """The same blade about an axis shifted by ``offset``.
 
-    Velocities and strains of the section seen there are v + ω × d and γ + κ × d, d from the old point to the new.
+    Velocities and strains at the new point are v + ω × d and γ + κ × d, with d from the old point to the new.
     """
     to_new = sp.adjoint(sp.pose(np.eye(3), -offset))
     back = np.linalg.inv(to_new)
@@ -62,32 +62,34 @@ def test_the_shift_is_that_of_a_rigid_body() -> None:
 @pytest.mark.parametrize("mass", ["consistent", "half_end"])
 @pytest.mark.parametrize("stiffness", ["corotational", "body_fixed"])
 def test_frequencies_at_rest_do_not_depend_on_the_reference_axis(mass, stiffness) -> None:
-    """Discretised alike, the same elements and bodies: to rounding, not to the discretisation's error."""
-    own = blade(np.random.default_rng(3))
-    found = [modes(b, 0.0, 12, 8, mass=mass, stiffness=stiffness).frequencies for b in (own, about(own, OFFSET))]
+    """The discretisations are the same, so the agreement is to rounding."""
+    original = blade(np.random.default_rng(3))
+    found = [
+        modes(b, 0.0, 12, 8, mass=mass, stiffness=stiffness).frequencies for b in (original, about(original, OFFSET))
+    ]
     np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
 
 
 @pytest.mark.parametrize(("elements", "tolerance"), [(12, 1e-8), (24, 1e-9), (48, 1e-10)])
-def test_frequencies_turning_do_not_depend_on_the_reference_axis(elements, tolerance) -> None:
-    """Reissner's strains transform as Γ + κ × d exactly; what elements of fourth order leave vanishes as they do."""
-    own = blade(np.random.default_rng(3))
-    found = [modes(b, 12.0, elements, 5).frequencies for b in (own, about(own, OFFSET))]
+def test_frequencies_of_a_rotating_blade_do_not_depend_on_the_reference_axis(elements, tolerance) -> None:
+    """Reissner's strains transform exactly as Γ + κ × d; the difference is the discretisation error, of fourth order."""
+    original = blade(np.random.default_rng(3))
+    found = [modes(b, 12.0, elements, 5).frequencies for b in (original, about(original, OFFSET))]
     np.testing.assert_allclose(found[1], found[0], rtol=tolerance)
 
 
-def test_an_axis_shifted_on_one_side_only_is_seen() -> None:
-    """The negative control: stiffness taken about the other axis, mass not."""
-    own = blade(np.random.default_rng(3))
-    wrong = replace(own, stiffness=about(own, OFFSET).stiffness)
-    found = [modes(b, 12.0, 12, 8).frequencies for b in (own, wrong)]
+def test_an_axis_shifted_for_the_stiffness_only_is_detected() -> None:
+    """Negative control: stiffness about the other axis, mass not."""
+    original = blade(np.random.default_rng(3))
+    wrong = replace(original, stiffness=about(original, OFFSET).stiffness)
+    found = [modes(b, 12.0, 12, 8).frequencies for b in (original, wrong)]
     assert np.abs(found[1] / found[0] - 1).max() > 1e-2
 
 
 def reframed(m: mb.Mechanism, rng: np.random.Generator) -> mb.Mechanism:
-    """Every body described in another frame of its own: x = new⁻¹ old."""
+    """The mechanism with every body described in another frame: x = new⁻¹ old."""
     new = {b.name: sp.exp(rng.normal(size=6) * 0.5) for b in m.bodies} | {"ground": np.eye(4)}
-    old = {name: sp.inverse(x) for name, x in new.items()}  # the old frame seen from the new
+    old = {name: sp.inverse(x) for name, x in new.items()}  # the old frame in the new
 
     def body(b: mb.Body) -> mb.Body:
         to_old = sp.adjoint(new[b.name])
@@ -111,7 +113,7 @@ def reframed(m: mb.Mechanism, rng: np.random.Generator) -> mb.Mechanism:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_modes_do_not_depend_on_the_bodies_frames(seed: int) -> None:
-    """A blade on its pitch link, with a spring and a bushing besides: frequencies, damping, and shapes, coordinate by one."""
+    """A blade on its pitch link, with a spring and a bushing: frequencies, damping, shapes and steady coordinates."""
     rng = np.random.default_rng(seed)
     m = library.mechanism("pitch-link").mechanism
     m = replace(
@@ -120,7 +122,7 @@ def test_modes_do_not_depend_on_the_bodies_frames(seed: int) -> None:
         beams=(mb.Beam("knuckle", "blade", bm.bushing(np.eye(4), np.diag([1e4] * 3 + [50.0] * 3))),),
         gravity=(0.0, 0.0, -9.81),
     )
-    own, other = mb.solve(m), mb.solve(reframed(m, rng))
-    np.testing.assert_allclose(other.values, own.values, rtol=1e-10)
-    np.testing.assert_allclose(other.shapes, own.shapes, atol=1e-9)
-    np.testing.assert_allclose(list(other.steady.values()), list(own.steady.values()), atol=1e-10)
+    original, other = mb.solve(m), mb.solve(reframed(m, rng))
+    np.testing.assert_allclose(other.values, original.values, rtol=1e-10)
+    np.testing.assert_allclose(other.shapes, original.shapes, atol=1e-9)
+    np.testing.assert_allclose(list(other.steady.values()), list(original.steady.values()), atol=1e-10)
