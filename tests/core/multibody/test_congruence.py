@@ -1,4 +1,4 @@
-"""M*, C*, K* summed over the tree against products with B written out, and the lowest modes against the dense solver."""
+"""M*, C*, K* summed over the tree against products with a dense B, and the lowest modes against the dense solver."""
 
 import numpy as np
 import pytest
@@ -83,9 +83,9 @@ def test_a_mode_that_lanczos_loses_is_found_by_the_count(monkeypatch: pytest.Mon
         return np.delete(values, -3), np.delete(vectors, -3, axis=1)
 
     theirs = eigen.gyroscopic(*matrices, 5).frequencies
-    kept = eigen.gyroscopic
+    dense = eigen.gyroscopic
     monkeypatch.setattr(lowest.scipy.linalg, "eigh", lossy)
-    monkeypatch.setattr(lowest.eigen, "gyroscopic", lambda *a: (monkeypatch.undo(), kept(*a))[1])
+    monkeypatch.setattr(lowest.eigen, "gyroscopic", lambda *a: (monkeypatch.undo(), dense(*a))[1])
     np.testing.assert_allclose(lowest.lowest(lowest.definite(*matrices), 5).frequencies, theirs, rtol=1e-11)
     assert lost
 
@@ -99,7 +99,7 @@ def test_the_count_is_that_of_negative_eigenvalues() -> None:
 
 
 @pytest.mark.parametrize(("least", "regular"), [(1.0, True), (1e-4, True), (1e-8, False), (1e-10, False), (0.0, False)])
-def test_elimination_only_where_the_rank_is_beyond_doubt(least: float, regular: bool) -> None:
+def test_lu_only_if_full_rank_is_certain(least: float, regular: bool) -> None:
     rng = np.random.default_rng(3)
     u, v = (np.linalg.qr(rng.normal(size=(12, 12)))[0] for _ in range(2))
     A = (u * np.array([*[1.0] * 11, least])) @ v

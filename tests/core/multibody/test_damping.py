@@ -1,4 +1,4 @@
-"""Dampers decide whether there is damping, however large other entries are; rigid motions neither grow nor fade."""
+"""Damping is found however large other entries are; rigid motions neither grow nor decay."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ pytestmark = pytest.mark.numerical
 
 
 @pytest.mark.parametrize("big", [1.0, 1e3, 1e4, 1e5])
-def test_a_small_damper_beside_large_gyroscopic_forces(big: float) -> None:
-    """A small mass on its own spring and damper: ζ = c/(2 √(k m)), whatever turns beside it."""
+def test_a_small_damper_with_large_gyroscopic_forces(big: float) -> None:
+    """A small mass on a separate spring and damper: ζ = c/(2 √(k m)), whatever else turns."""
     c, k, m = 3e-3, 1.0, 1e-3
     found = mb.solve(
         mb.Mechanism(
@@ -60,7 +60,7 @@ def test_a_damped_rigid_motion_keeps_its_decay() -> None:
     np.testing.assert_allclose(mb.solve(m).values, [0.0, -0.2], atol=1e-14)
 
 
-def test_a_loose_body_has_six_rigid_modes_that_neither_grow_nor_fade() -> None:
+def test_free_bodies_have_six_undamped_rigid_modes() -> None:
     m = mb.Mechanism(
         (
             mb.Body("a", mb.inertia(1.0, (1, 2, 3), (0.3, 0.1, 0))),
@@ -75,7 +75,7 @@ def test_a_loose_body_has_six_rigid_modes_that_neither_grow_nor_fade() -> None:
     np.testing.assert_allclose(found.damping, 0.0, atol=1e-12)
 
 
-def test_a_solver_that_fails_says_so_and_not_that_the_state_is_unstable() -> None:
+def test_a_solver_failure_is_not_reported_as_instability() -> None:
     bad = np.array([[np.nan]])
     for call in (
         lambda: eigen.gyroscopic(np.eye(1), 0 * bad, bad),

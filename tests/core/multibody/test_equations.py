@@ -1,4 +1,4 @@
-"""The paper's equations: where the theory's table says they are, and what those of the reduction give against closed forms."""
+"""The paper's equations: in the functions named in docs/theory.md; the terms of the reduction against closed forms."""
 
 import ast
 import re
@@ -53,7 +53,7 @@ def test_every_equation_is_where_the_table_says() -> None:
 
 
 @pytest.mark.parametrize("n", NUMBERS)
-def test_a_number_that_is_removed_is_missed(n: int) -> None:
+def test_a_number_that_is_removed_is_detected(n: int) -> None:
     without_row = {k: v for k, v in ROWS.items() if k != n}
     assert missing(without_row) == [n]
     assert missing(ROWS, lambda *where: source(*where).replace(f"(eq. {n})", "")) == [n]
@@ -125,7 +125,7 @@ def closed(tree, theta: float) -> np.ndarray:
 
 
 def test_a_slider_crank_follows_its_crank() -> None:
-    """A prescribed crank leaves nothing free: γ̄ is the whole acceleration, and λ of Φᴹ the torque it takes (reversed)."""
+    """A prescribed crank leaves nothing free: γ̄ is the whole acceleration, and λ of Φᴹ the driving torque (reversed)."""
     rate, acceleration = 5.0, -2.0
     tree = compile_tree(slider_crank(rate, acceleration, prescribed=True))
     r = reduced(tree, closed(tree, 0.7), np.zeros(0))
@@ -140,7 +140,7 @@ def test_a_slider_crank_follows_its_crank() -> None:
 
 
 def test_a_free_slider_crank_keeps_its_energy() -> None:
-    """½ m ẋ² stays: m ẍ ẋ = 0, so the acceleration of the crank makes ẍ = 0."""
+    """½ m ẋ² is constant: m ẍ ẋ = 0, so the acceleration of the crank makes ẍ = 0."""
     tree = compile_tree(slider_crank(0.0, 0.0, prescribed=False))
     r = reduced(tree, closed(tree, 0.7), np.array([5.0]), ("crank.rz",))
     dv, _ = accelerations(r)
@@ -152,8 +152,8 @@ def test_a_free_slider_crank_keeps_its_energy() -> None:
     assert r.Q_hat[0] == pytest.approx(-2.0 * slope * bend * 25.0, rel=1e-9)
 
 
-def test_nothing_is_left_of_Q_hat_where_a_mechanism_is_steady() -> None:
-    """A swung mass on a spring: 4 (x − 1) = Ω² x; there Q̂ = 0 and M̂ is that of the linearisation, off it Q̂ is the force."""
+def test_Q_hat_vanishes_in_the_steady_state() -> None:
+    """A swung mass on a spring: 4 (x − 1) = Ω² x; there Q̂ = 0 and M̂ is that of the linearisation; elsewhere Q̂ is the force."""
     swung = Mechanism(
         (Body("hub"), Body("mass", inertia(1.0))),
         (Joint("shaft", "revolute", "ground", "hub"), Joint("slot", "prismatic", "hub", "mass", at(axis="x"))),

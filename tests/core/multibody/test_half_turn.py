@@ -1,4 +1,4 @@
-"""Half-turns: the logarithm's angle is π there, and a loop that lacks one is open."""
+"""Half-turns: the logarithm has the angle π, and a loop that is open by one does not close."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.numerical
 
 @pytest.mark.parametrize("short", [1e-3, 1e-7, 1e-9, 1e-12, 0.0])
 def test_logarithm_near_half_a_turn(short: float) -> None:
-    """Rodrigues' formula by hand about random axes; the exponential undoes it, batched and compiled alike."""
+    """Rodrigues' formula by hand about random axes; the exponential is its inverse, both batched and compiled."""
     rng = np.random.default_rng(3)
     for _ in range(50):
         axis = rng.normal(size=3)

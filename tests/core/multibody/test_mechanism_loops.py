@@ -1,5 +1,5 @@
-"""Loops that move, and what theory says of any loop: tangents against difference quotients of the reduced equations,
-symmetry where nothing dissipates, driving torques against the power they must have, and what is refused.
+"""Moving loops: tangents against difference quotients of the reduced equations, symmetry without dissipation, driving torques
+against their power, and invalid input.
 """
 
 from dataclasses import replace
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.numerical
 
 
 def reduced_residual(linear: lz.Linearization, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
-    """Rᵀτ of the exact equations with the independent coordinates moved: loops closed anew, rates and accelerations too."""
+    """Rᵀτ of the exact equations with the independent coordinates moved: loops closed again, with rates and accelerations."""
     tree, state, part = linear.tree, linear.state, linear.partition
     q, v, a = state.q.copy(), state.v.copy(), state.a.copy()
     mine, others = part.independent, part.dependent
@@ -70,13 +70,13 @@ def test_tangents_of_moving_loops_match_difference_quotients() -> None:
 @pytest.mark.parametrize("cut", ["B", "D", "E"])
 def test_moving_loops_do_not_depend_on_the_cut(cut: str) -> None:
     """Rates that the motions determine are the same wherever the loop is cut; so are all modes."""
-    own = mb.solve(five_bar("C"), GUESS)
-    guess = {name: value for name, value in own.steady.items() if not name.startswith("beam")}
+    first = mb.solve(five_bar("C"), GUESS)
+    guess = {name: value for name, value in first.steady.items() if not name.startswith("beam")}
     other = mb.solve(five_bar(cut), guess)
-    np.testing.assert_allclose(other.values, own.values, rtol=1e-9)
+    np.testing.assert_allclose(other.values, first.values, rtol=1e-9)
 
 
-def test_nothing_dissipates_nothing_is_lopsided() -> None:
+def test_matrices_without_dissipation_are_symmetric_or_skew() -> None:
     """A spatial loop that turns steadily, without dampers: M̂ and K̂ symmetric, Ĉ skew and not zero."""
     m = undamped()
     linear = lz.linearize(m, GUESS)
@@ -113,7 +113,7 @@ def test_torque_that_drives_a_slider_crank(theta: float) -> None:
     assert (state.v[guide], state.a[guide]) == (pytest.approx(v, rel=1e-10), pytest.approx(a, rel=1e-10))
     torque = dynamics.unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[tree.coordinate("O.rz")]
     assert torque * omega == pytest.approx(mass * a * v, rel=1e-9)
-    assert linear.M.shape == (0, 0)  # no freedom is left
+    assert linear.M.shape == (0, 0)  # no free coordinate
     assert not len(mb.solve(m, dict(zip(tree.coordinates, state.q.tolist(), strict=True))).values)
 
 
@@ -133,7 +133,7 @@ def test_damping_of_bushings_matches_difference_quotients() -> None:
     q, v = 0.3 * rng.normal(size=(2, n))
 
     def force(q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """The damper's alone: its power is that of the strain's rate, −ε̇ᵀ D ε̇, with the rate by a quotient."""
+        """Force of the damper: its power is −ε̇ᵀ D ε̇, with the strain rate by a difference quotient."""
 
         def strain(q: np.ndarray) -> np.ndarray:
             x, _ = poses(tree, q)
@@ -177,7 +177,7 @@ def test_motions_that_contradict_a_loop_are_refused() -> None:
 
 @pytest.mark.parametrize("elements", [12, 20])
 def test_a_slender_ring_that_does_not_quite_close_finds_its_shape(elements: int) -> None:
-    """Stiff in tension, soft in bending: full Newton steps fail here. It ends round, but for the gap it started with."""
+    """Stiff in tension, soft in bending: full Newton steps fail here. The result is round, apart from the initial gap."""
     linear = lz.linearize(ring(1.5, elements))
     tree, state = linear.tree, linear.state
     hub = np.mean([x[:3, 3] for x in state.kinematics.poses[1:]], axis=0)

@@ -28,7 +28,7 @@ RAMP = Polynomial([0.2, -1.0, 0.8, 0.5])
 
 
 def acceleration(law, time: float) -> float:
-    """By hand: of the harmonic −A ω² sin(ω t + φ); of the cubic 2 c₂ + 6 c₃ t."""
+    """Closed forms: −A ω² sin(ω t + φ) for the harmonic, 2 c₂ + 6 c₃ t for the cubic."""
     harmonic = -0.3 * 16.0 * np.sin(4.0 * time + 0.4)
     cubic = 2 * 0.8 + 6 * 0.5 * time
     return {id(SHAKE): harmonic, id(RAMP): cubic}.get(id(law), harmonic + cubic)

@@ -38,7 +38,7 @@ def frequencies(mechanism: Mechanism, guess=None, **options) -> np.ndarray:
 
 
 def damped(mechanism: Mechanism, guess=None) -> eigen.Damped:
-    """The modes of one that has no plain gyroscopic ones."""
+    """The modes of a mechanism that needs the damped eigenvalue solver."""
     found = lz.modes(lz.linearize(mechanism, guess))
     assert isinstance(found, eigen.Damped)
     return found
@@ -70,7 +70,7 @@ def test_double_pendulum() -> None:
     np.testing.assert_allclose(frequencies(m) ** 2, G * (2 + np.sqrt(2) * np.array([-1, 1])), rtol=1e-12)
 
 
-@pytest.mark.parametrize("prescribed", [True, False], ids=["azimuth held", "azimuth free"])
+@pytest.mark.parametrize("prescribed", [True, False], ids=["azimuth prescribed", "azimuth free"])
 def test_conical_pendulum_about_its_steady_cone(prescribed: bool) -> None:
     """cos θ = g/(l Ω²); ω = Ω sin θ at a prescribed rate, Ω √(1 + 3 cos²θ) when the azimuth is free."""
     omega, length = 4.0, 1.0
@@ -263,7 +263,7 @@ def test_slider_crank_with_a_spring() -> None:
 
 
 def test_a_flat_four_bar_is_reported_singular() -> None:
-    """A parallelogram folded flat has one freedom more than beside it: the report says so."""
+    """A parallelogram folded flat has one more degree of freedom than nearby configurations."""
     joints = (
         Joint("A", "revolute", "ground", "crank"),
         Joint("B", "revolute", "crank", "coupler", at(1.0)),
@@ -282,7 +282,7 @@ R, EI, MU = 1.0, 2.0, 0.5  # the ring's
 
 @pytest.mark.parametrize("omega", [0.0, 1.5], ids=["at rest", "spinning"])
 def test_closed_ring_of_beams(omega: float) -> None:
-    """p = n [±(n²−1) √(Ω² + (n²+1) EI/(μR⁴)) − 2Ω]/(n²+1), in-plane, inextensional, seen turning (Carrier 1945)."""
+    """p = n [±(n²−1) √(Ω² + (n²+1) EI/(μR⁴)) − 2Ω]/(n²+1), in-plane, inextensional, in the rotating frame (Carrier 1945)."""
     linear = lz.linearize(ring(omega, 40))
     found = lz.modes(linear)
     values = found.values.imag if isinstance(found, eigen.Damped) else found.frequencies
@@ -378,12 +378,12 @@ def test_the_hubs_zero_mode_when_its_speed_is_free() -> None:
     )
     found = np.sort(lz.modes(lz.linearize(free)).frequencies)
     assert found[0] < 1e-4
-    # flapwise modes do not know; the first chordwise mode of a blade free to turn is that of a pinned beam, far above
+    # flapwise modes are unaffected; the first chordwise mode of a blade free to turn is that of a pinned beam, far above
     flapwise = frequencies(clamped)
     assert np.abs(found / flapwise[1] - 1).min() < 1e-6
 
 
-def test_missing_balance_is_named() -> None:
+def test_a_coordinate_without_equilibrium_is_named() -> None:
     m = Mechanism(
         (Body("bar", inertia(1.0, 0.1, (1.0, 0, 0))),),
         (Joint("slide", "prismatic", "ground", "bar"),),

@@ -1,4 +1,4 @@
-"""Periodic equations are refused by name; what is steady in fact is not."""
+"""Periodic equations are refused with the name of the coordinate; steady mechanisms are accepted."""
 
 from dataclasses import replace
 
@@ -81,12 +81,12 @@ def test_periodic_equations_are_refused_by_their_coordinate(name: str) -> None:
     mechanism, coordinate = REFUSED[name]
     with pytest.raises(
         mb.MechanismError, match=rf"{coordinate}': .* changes as it moves \(by .*periodic.*turns with"
-    ) as told:
+    ) as caught:
         mb.solve(mechanism)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
 
 
-def test_a_law_of_time_asks_for_the_instant() -> None:
+def test_a_law_of_time_is_linearised_at_an_instant() -> None:
     m = pendulum_on_a_shaft(0.0)
     frozen = replace(m, motions=(M("shaft.rz", law=Polynomial([0.0, 5.0])),))
     assert len(mb.solve(frozen).values) == 1
@@ -100,7 +100,7 @@ def test_round_bodies_on_round_supports_are_steady() -> None:
 
 
 def test_two_motions_that_cancel_are_steady() -> None:
-    """A yoke turns one way, the body on it the other: it stands still but for its place, and nothing changes."""
+    """A yoke turns one way and the body on it the other way: the body does not rotate, and nothing changes."""
     m = mb.Mechanism(
         (B("yoke"), B("cage"), B("mass", mb.inertia(2.0, (1.0, 2.0, 2.5), (0.3, 0, 0)))),
         (
@@ -116,7 +116,7 @@ def test_two_motions_that_cancel_are_steady() -> None:
     assert mb.solve(m).frequencies == pytest.approx([expected], rel=1e-12)
 
 
-def test_the_command_says_so_in_one_line(capsys, tmp_path) -> None:
+def test_the_command_reports_periodic_equations_in_one_line(capsys, tmp_path) -> None:
     path = tmp_path / "spin.toml"
     path.write_text(
         'name = "spin"\n[bodies.b]\nmass = 3.0\nmoments = [5.0, 11.0, 8.0]\n[joints.p]\nkind = "free"\nparent = "ground"\n'
@@ -131,7 +131,7 @@ def test_the_command_says_so_in_one_line(capsys, tmp_path) -> None:
 
 
 @pytest.mark.parametrize("stiff", [1.0, 1e6, 1e10, 1e12])
-def test_a_falling_mass_is_not_steady_beside_any_spring(stiff: float) -> None:
+def test_a_falling_mass_is_not_steady_whatever_the_other_springs(stiff: float) -> None:
     m = mb.Mechanism(
         (B("a", mb.inertia(1.0, 1.0)), B("b", mb.inertia(1.0, 1.0))),
         (J("free", "prismatic", "ground", "a"), J("s", "revolute", "ground", "b")),

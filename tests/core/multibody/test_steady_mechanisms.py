@@ -1,4 +1,4 @@
-"""Steady states that do not depend on luck: the same one from guesses near each other, of every mechanism there is."""
+"""Every mechanism reaches the same steady state from many nearby guesses."""
 
 import math
 
@@ -15,14 +15,14 @@ pytestmark = pytest.mark.numerical
 
 @pytest.mark.parametrize("name", CASES)
 def test_many_guesses_reach_one_state(name: str) -> None:
-    """Twenty of 200, all of them every night (SOUTHWELL_GUESSES); of the other mechanisms in the tests, see ``guesses``."""
+    """20 of 200 guesses, all of them every night (SOUTHWELL_GUESSES); for the other mechanisms, see ``guesses``."""
     mechanism, guess = CASES[name]()
     tree = compile_tree(at_time(mechanism, 0.0))
     chosen = guesses.CHOSEN if len(guesses.CHOSEN) > 20 else list(range(0, guesses.GUESSES, 10))
     guesses.same(tree, guess, equilibrium.steady(tree, guess), chosen)
 
 
-def test_another_state_is_noticed() -> None:
+def test_another_state_is_detected() -> None:
     """A pendulum that hangs to one side, and one that stands on its head."""
     mechanism, guess = CASES["pendulum, conical"]()
     tree = compile_tree(at_time(mechanism, 0.0))

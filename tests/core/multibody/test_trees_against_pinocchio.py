@@ -1,7 +1,7 @@
 """Random trees, stage by stage, against Pinocchio: mass matrix, inverse dynamics, and its analytic derivatives.
 
-Independent codes on one mechanical model: this checks the algebra, not the model. Pinocchio wants the joints added
-depth first, and each coordinate as a joint of its own (its composite joint's derivative is wrong).
+Independent codes on one mechanical model: this checks the algebra, not the model. Pinocchio requires the joints
+depth first; each coordinate is a separate joint, since the derivative of its composite joint is wrong.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ KINDS: list[Kind] = ["revolute", "prismatic", "cylindrical", "universal", "spher
 
 @st.composite
 def trees(draw) -> tuple[list[Kind], list[int], int]:
-    """Joint kinds, parents (depth first: each hangs on the last branch), and a seed for the numbers."""
+    """Joint kinds, parents (depth first: each on the last branch), and a seed for the numbers."""
     n = draw(st.integers(3, 8))
     kinds = [draw(st.sampled_from(KINDS)) for _ in range(n)]
     parents, branch = [-1], [0]
