@@ -67,7 +67,7 @@ def test_transpose_derivatives_match_difference_quotients(angle: float, function
     np.testing.assert_allclose(found, quotient, atol=2e-8)
 
 
-def test_adjoint_carries_twists_and_cross_is_the_partner_of_ad() -> None:
+def test_adjoint_transforms_twists_and_cross_is_dual_to_ad() -> None:
     rng = np.random.default_rng(2)
     x, a, f = sp.exp(rng.normal(size=6)), rng.normal(size=6), rng.normal(size=6)
     np.testing.assert_allclose(x @ hat(a) @ sp.inverse(x), hat(sp.adjoint(x) @ a), atol=1e-13)
