@@ -1,4 +1,4 @@
-"""Compiled code: only from a folder that nobody else can write to, and only files that are whole."""
+"""Compiled code is loaded only from folders that nobody else can write to, and only from undamaged files."""
 
 import os
 import pickle
@@ -14,7 +14,7 @@ posix = pytest.mark.skipif(os.name == "nt", reason="modes and owners of POSIX")
 
 
 @posix
-def test_a_new_folder_is_the_users_alone(tmp_path: Path) -> None:
+def test_a_new_folder_is_private(tmp_path: Path) -> None:
     made = compiled_files.folder(tmp_path / "cache", "compiled")
     assert made is not None
     assert made.stat().st_mode & 0o777 == 0o700
@@ -29,7 +29,7 @@ def test_a_folder_that_others_can_write_to_is_not_used(tmp_path: Path, mode: int
 
 
 @posix
-def test_nor_one_that_others_can_replace(tmp_path: Path) -> None:
+def test_a_folder_that_others_can_replace_is_not_used(tmp_path: Path) -> None:
     place = tmp_path / "place"
     place.mkdir()
     place.chmod(0o777)
@@ -39,7 +39,7 @@ def test_nor_one_that_others_can_replace(tmp_path: Path) -> None:
 
 
 @posix
-def test_nor_a_link_nor_one_of_another_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_link_or_a_folder_of_another_user_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "real").mkdir(mode=0o700)
     (tmp_path / "link").symlink_to(tmp_path / "real")
     assert compiled_files.folder(tmp_path, "link") is None
@@ -60,10 +60,10 @@ print(sum(f.stats.cache_hits.values()))
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda c: c[: len(c) // 2], lambda c: b"", lambda c: c[:-1] + b"\0"])
-def test_a_damaged_file_is_made_anew(tmp_path: Path, ending: str, damage) -> None:
-    (tmp_path / "kept").mkdir(mode=0o700)
+def test_a_damaged_file_is_compiled_again(tmp_path: Path, ending: str, damage) -> None:
+    (tmp_path / "cache").mkdir(mode=0o700)
     (tmp_path / "source.py").write_text("def double(x):\n    return 2.0 * x\n")
-    script = SCRIPT.format(folder=str(tmp_path / "kept"), source=str(tmp_path / "source.py"))
+    script = SCRIPT.format(folder=str(tmp_path / "cache"), source=str(tmp_path / "source.py"))
 
     def hits() -> int:
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
@@ -71,17 +71,17 @@ def test_a_damaged_file_is_made_anew(tmp_path: Path, ending: str, damage) -> Non
         return int(done.stdout)
 
     assert [hits(), hits()] == [0, 1]
-    (found,) = (tmp_path / "kept").rglob(f"*.{ending}")
+    (found,) = (tmp_path / "cache").rglob(f"*.{ending}")
     found.write_bytes(damage(found.read_bytes()))
     assert [hits(), hits()] == [0, 1]
 
 
-def test_what_is_not_verified_is_not_unpickled(tmp_path: Path) -> None:
+def test_an_unverified_file_is_not_unpickled(tmp_path: Path) -> None:
     class Trap:
         def __reduce__(self):
             return os.mkdir, (str(tmp_path / "sprung"),)
 
-    kept = compiled_files.CheckedFiles(str(tmp_path), "f", "stamp")
+    files = compiled_files.CheckedFiles(str(tmp_path), "f", "stamp")
     (tmp_path / "f.nbi").write_bytes(pickle.dumps(Trap()))
-    assert kept.load("key") is None
+    assert files.load("key") is None
     assert not (tmp_path / "sprung").exists()

@@ -1,4 +1,4 @@
-"""Modes are named by their kinetic energy: closed forms, and what must not matter (axis, units of length, precone)."""
+"""Modes are named by their kinetic energy: closed forms and invariances (reference axis, units of length, precone)."""
 
 from dataclasses import replace
 
@@ -31,37 +31,37 @@ def shape(**columns: np.ndarray) -> np.ndarray:
     return out
 
 
-def test_displacements_share_by_their_squares() -> None:
+def test_energies_are_proportional_to_squared_displacements() -> None:
     sine = np.sin(0.5 * np.pi * STATIONS)
-    (share,) = participation(modes(shape(y=3.0 * sine, z=4.0 * sine)), POINTLIKE)
-    np.testing.assert_allclose(share, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
+    (fractions,) = participation(modes(shape(y=3.0 * sine, z=4.0 * sine)), POINTLIKE)
+    np.testing.assert_allclose(fractions, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
 
 
-def test_torsion_counts_through_the_polar_inertia_not_in_radians() -> None:
-    """θ and w of equal shape: energies m w² and I_p θ²; in a code that adds squared metres and radians both would be half."""
+def test_energy_of_torsion_is_that_of_the_polar_inertia() -> None:
+    """θ and w of equal shape: energies m w² and I_p θ²; a sum of squared metres and radians would give half each."""
     sine = np.sin(0.5 * np.pi * STATIONS)
     rigid = replace(BEAM, mass=np.repeat(section_mass(MASS, POLAR, 0.0), 2, axis=0))
-    (share,) = participation(modes(shape(z=sine, t=sine)), rigid)
+    (fractions,) = participation(modes(shape(z=sine, t=sine)), rigid)
     bending = POLAR * (0.5 * np.pi / LENGTH) ** 2  # I_y w'² turns with flap; ∫cos² = ∫sin² over the quarter wave
     whole = MASS + POLAR + bending
-    np.testing.assert_allclose(share, [(MASS + bending) / whole, 0, POLAR / whole, 0], atol=2e-6)
+    np.testing.assert_allclose(fractions, [(MASS + bending) / whole, 0, POLAR / whole, 0], atol=2e-6)
 
 
 def test_a_flap_mode_that_turns_more_radians_than_it_moves_metres_is_flap() -> None:
-    """Summing m² and rad² calls this torsion: 0.25 against 1; its energies are 0.3 against 0.003."""
+    """A sum of m² and rad² would call this torsion, 0.25 against 1; the energies are 0.3 against 0.003."""
     sine = np.sin(0.5 * np.pi * STATIONS)
-    shares = participation(modes(shape(z=0.5 * sine, t=sine)), BEAM)
-    assert families(shares) == ("flap",)
-    assert shares[0, TORSION] == pytest.approx(POLAR / (POLAR + 0.25 * MASS), rel=2e-3)
+    fractions = participation(modes(shape(z=0.5 * sine, t=sine)), BEAM)
+    assert families(fractions) == ("flap",)
+    assert fractions[0, TORSION] == pytest.approx(POLAR / (POLAR + 0.25 * MASS), rel=2e-3)
 
 
 def test_a_phase_lag_does_not_matter() -> None:
     sine = np.sin(0.5 * np.pi * STATIONS)
-    (share,) = participation(modes(np.exp(0.7j) * shape(y=3j * sine, z=4.0 * sine)), POINTLIKE)
-    np.testing.assert_allclose(share, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
+    (fractions,) = participation(modes(np.exp(0.7j) * shape(y=3j * sine, z=4.0 * sine)), POINTLIKE)
+    np.testing.assert_allclose(fractions, [16 / 25, 9 / 25, 0, 0], atol=1e-12)
 
 
-def test_a_tapered_blades_mass_and_its_tip_mass_count_where_they_are() -> None:
+def test_distributed_and_tip_mass_are_included() -> None:
     """y = s, z = s²: ∫(3 − s/2) s² ds = 32 and ∫(3 − s/2) s⁴ ds = 273.07 over 4 m; the tip adds 2·16 and 2·256."""
     blade = Blade(
         "tapered",
@@ -72,9 +72,9 @@ def test_a_tapered_blades_mass_and_its_tip_mass_count_where_they_are() -> None:
         tip_mass=np.diag([2.0, 2.0, 2.0, 0.0, 0.0, 0.0]),
     )
     s = 4.0 * STATIONS
-    (share,) = participation(modes(shape(y=s, z=s**2)), blade)
+    (fractions,) = participation(modes(shape(y=s, z=s**2)), blade)
     edge, flap = 3 * 4**3 / 3 - 4**4 / 8 + 2 * 4**2, 3 * 4**5 / 5 - 4**6 / 12 + 2 * 4**4
-    np.testing.assert_allclose(share[[EDGE, FLAP]], [edge / (edge + flap), flap / (edge + flap)], rtol=1e-12)
+    np.testing.assert_allclose(fractions[[EDGE, FLAP]], [edge / (edge + flap), flap / (edge + flap)], rtol=1e-12)
 
 
 def test_torsion_about_an_axis_off_the_mass_centre_is_flap_too() -> None:
@@ -84,8 +84,8 @@ def test_torsion_about_an_axis_off_the_mass_centre_is_flap_too() -> None:
     mass[:, 3, 3] += 0.25
     mass[:, 0, 5] = mass[:, 5, 0] = -0.5
     mass[:, 5, 5] += 0.25
-    (share,) = participation(modes(shape(t=np.ones(21))), replace(BEAM, mass=mass))
-    np.testing.assert_allclose(share, [0.25 / 0.35, 0, 0.1 / 0.35, 0], atol=1e-12)
+    (fractions,) = participation(modes(shape(t=np.ones(21))), replace(BEAM, mass=mass))
+    np.testing.assert_allclose(fractions, [0.25 / 0.35, 0, 0.1 / 0.35, 0], atol=1e-12)
 
 
 def shifted(blade: Blade, y: float, z: float) -> Blade:
@@ -99,7 +99,7 @@ def shifted(blade: Blade, y: float, z: float) -> Blade:
 
 @settings(max_examples=6, deadline=None)
 @given(y=st.floats(-0.4, 0.4), z=st.floats(-0.4, 0.4))
-def test_shares_do_not_depend_on_the_reference_axis(y: float, z: float) -> None:
+def test_energy_fractions_do_not_depend_on_the_reference_axis(y: float, z: float) -> None:
     solid = uniform_blade(
         "solid", LENGTH, 0.3, EA=1e7, GJ=8e2, EI_y=1e4, EI_z=6e4, GA_y=1e7, GA_z=1e7, mass=MASS, I_y=1e-2, I_z=6e-2
     )
@@ -111,10 +111,10 @@ def test_shares_do_not_depend_on_the_reference_axis(y: float, z: float) -> None:
 
 @pytest.mark.parametrize("angle", [0.1, -0.3])
 def test_precone_and_pitch_turn_the_axes_with_the_blade(angle: float) -> None:
-    for turned in (replace(BEAM, precone=angle), replace(BEAM, pitch=angle)):
-        shares = participation(solve(turned, 0.0, 20, 6), turned)
-        np.testing.assert_allclose(shares.max(1), 1.0, atol=1e-6)
-        assert numbered(families(shares))[:4] == ("flap 1", "edge 1", "flap 2", "edge 2")
+    for blade in (replace(BEAM, precone=angle), replace(BEAM, pitch=angle)):
+        fractions = participation(solve(blade, 0.0, 20, 6), blade)
+        np.testing.assert_allclose(fractions.max(1), 1.0, atol=1e-6)
+        assert numbered(families(fractions))[:4] == ("flap 1", "edge 1", "flap 2", "edge 2")
 
 
 def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
@@ -132,27 +132,29 @@ def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
         assert found.frequencies[names.index(name)] == pytest.approx(frequency, rel=2e-3), name
 
 
-def test_without_moments_of_inertia_nothing_is_torsion_however_far_it_turns() -> None:
-    (share,) = participation(modes(shape(z=STATIONS, t=100.0 * STATIONS)), POINTLIKE)
-    np.testing.assert_allclose(share, [1, 0, 0, 0], atol=1e-12)
+def test_without_moments_of_inertia_torsion_has_no_energy() -> None:
+    (fractions,) = participation(modes(shape(z=STATIONS, t=100.0 * STATIONS)), POINTLIKE)
+    np.testing.assert_allclose(fractions, [1, 0, 0, 0], atol=1e-12)
 
 
-def test_axial_motion_is_told() -> None:
+def test_axial_motion_is_named() -> None:
     assert families(participation(modes(shape(x=STATIONS, z=0.1 * STATIONS)), POINTLIKE)) == ("axial",)
 
 
-def test_a_mode_without_a_dominant_motion_is_mixed_and_its_shares_are_given() -> None:
-    shares = np.array([[0.55, 0.42, 0.03, 0.0], [DOMINANT_FRACTION, 1 - DOMINANT_FRACTION, 0, 0], [0.02, 0.9, 0.08, 0]])
-    assert numbered(families(shares)) == ("mixed 1", "flap 1", "edge 1")
-    assert spoken(shares[0]) == "55 % flap, 42 % edge"
-    assert spoken(shares[2]) == "90 % edge, 8 % torsion"
+def test_a_mode_without_a_dominant_motion_is_mixed_and_its_energy_fractions_are_listed() -> None:
+    fractions = np.array(
+        [[0.55, 0.42, 0.03, 0.0], [DOMINANT_FRACTION, 1 - DOMINANT_FRACTION, 0, 0], [0.02, 0.9, 0.08, 0]]
+    )
+    assert numbered(families(fractions)) == ("mixed 1", "flap 1", "edge 1")
+    assert spoken(fractions[0]) == "55 % flap, 42 % edge"
+    assert spoken(fractions[2]) == "90 % edge, 8 % torsion"
 
 
 def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
     """At 60 rpm BModes prints 4.1912 Hz; a sum of squared metres and radians would call it the first torsion."""
     for variant in library.load("windpact-1.5").variants:
         found = solve(variant.blade, 2 * np.pi, 40, 6)
-        shares = participation(found, variant.blade)
+        fractions = participation(found, variant.blade)
         assert 4.1 < found.frequencies[2] / (2 * np.pi) < 4.4
-        assert numbered(families(shares)) == ("flap 1", "edge 1", "flap 2", "edge 2", "flap 3", "torsion 1")
-        assert shares[2, FLAP] > 0.99
+        assert numbered(families(fractions)) == ("flap 1", "edge 1", "flap 2", "edge 2", "flap 3", "torsion 1")
+        assert fractions[2, FLAP] > 0.99

@@ -1,4 +1,4 @@
-"""A blade's modes by the paper's method against those of the chain solver, which never forms B: one discretisation, 1e-9."""
+"""A blade's modes by the paper's method against those of the chain solver, which never forms B: same discretisation, 1e-9."""
 
 import json
 from collections.abc import Callable
@@ -39,13 +39,13 @@ BLADES: dict[str, tuple[Case, Variant]] = {
     for variant in case.variants
 }
 AGREE = 1e-9
-HELD = np.inf
+CLAMPED = np.inf
 ROOTS = {
-    "flap": [HELD, HELD, HELD, HELD, 0.0, HELD],
-    "lag": [HELD, HELD, HELD, HELD, HELD, 0.0],
-    "both hinges": [HELD, HELD, HELD, HELD, 0.0, 0.0],
-    "both springs": [HELD, HELD, HELD, HELD, 1e8, 1e8],
-    "pitch spring": [HELD, HELD, HELD, 1e6, HELD, HELD],
+    "flap": [CLAMPED, CLAMPED, CLAMPED, CLAMPED, 0.0, CLAMPED],
+    "lag": [CLAMPED, CLAMPED, CLAMPED, CLAMPED, CLAMPED, 0.0],
+    "both hinges": [CLAMPED, CLAMPED, CLAMPED, CLAMPED, 0.0, 0.0],
+    "both springs": [CLAMPED, CLAMPED, CLAMPED, CLAMPED, 1e8, 1e8],
+    "pitch spring": [CLAMPED, CLAMPED, CLAMPED, 1e6, CLAMPED, CLAMPED],
     "all springs": [1e7, 1e8, 1e8, 1e7, 1e7, 1e7],
 }
 
@@ -57,25 +57,25 @@ def both(blade: Blade, omega: float, elements: int, count: int = 6, **options: A
     return ours, theirs
 
 
-def alike(ours: Modes, theirs: Modes) -> np.ndarray:
+def mac(ours: Modes, theirs: Modes) -> np.ndarray:
     """MAC of complex shapes one by one: 1 if they differ by a complex factor only, so phases too must agree."""
     a, b = (m.shapes.reshape(len(m.frequencies), -1) for m in (ours, theirs))
     return np.abs((a.conj() * b).sum(1)) ** 2 / ((np.abs(a) ** 2).sum(1) * (np.abs(b) ** 2).sum(1))
 
 
 @pytest.mark.parametrize("name", BLADES)
-def test_every_blade_as_core_has_it(name: str) -> None:
+def test_every_blade_with_consistent_mass(name: str) -> None:
     blade, omega = BLADES[name][1].blade, float(BLADES[name][1].speeds[-1])
     elements = 50 if name == "rotating-cable" else 16  # whose fewer elements have no stable state
     both(blade, omega, elements)
 
 
 @pytest.mark.parametrize("name", BLADES)
-def test_every_blade_as_the_paper_has_it(name: str) -> None:
+def test_every_blade_with_the_papers_elements(name: str) -> None:
     """51 bodies with half of each element's mass, stiffness in the parent's frame."""
     blade, omega = BLADES[name][1].blade, float(BLADES[name][1].speeds[-1])
     options: dict[str, Any] = {"mass": "half_end", "stiffness": "body_fixed"}
-    if name == "rotating-cable":  # as good as no bending stiffness, and no geometric stiffness inside the elements
+    if name == "rotating-cable":  # almost no bending stiffness, and no geometric stiffness inside the elements
         for method in (vt, solve):
             with pytest.raises(UnstableError, match="not positive definite"):
                 method.modes(blade, omega, 50, 3, **options)
@@ -84,7 +84,7 @@ def test_every_blade_as_the_paper_has_it(name: str) -> None:
 
 
 def test_the_papers_table() -> None:
-    """Park et al. (2010), Table 1, column Present, in its last digit: by its own method."""
+    """Park et al. (2010), Table 1, column Present, to its last digit, by the paper's method."""
     found = vt.modes(PARK, 10.0, 50, 6, mass="half_end", stiffness="body_fixed", effects=Effects(rotary_inertia=False))
     tip = np.abs(found.shapes[:, -1])
     assert [f"{f:.4g}" for f in found.frequencies[tip[:, 1] > tip[:, 2]][:3]] == ["11.71", "70.37", "189.7"]
@@ -99,7 +99,7 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
     weight = blade.mass[:, 0, 0][:, None]
     options: dict[str, Any] = {"mass": mass, "load": weight * [1.0, -2.0, 3.0], "gravity": np.array([3.0, 5.0, -9.81])}
     loaded, theirs = both(blade, 2.5, 10, **options)
-    assert alike(loaded, theirs).min() > 1 - 1e-9
+    assert mac(loaded, theirs).min() > 1 - 1e-9
     bare = vt.modes(blade, 2.5, 10, 6, mass=mass)
     for name in ("load", "gravity"):
         one = vt.modes(blade, 2.5, 10, 6, **{**options, name: None})
@@ -108,15 +108,15 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
 
 
 @pytest.mark.parametrize("root", [None, "both hinges"])
-def test_a_sweep_is_one_speed_after_another(root: str | None) -> None:
-    """Up, down and through a speed twice, from extrapolated states, against the chain's own at each speed alone."""
+def test_a_sweep_agrees_with_single_speeds(root: str | None) -> None:
+    """Up, down and through a speed twice, from extrapolated states, against the chain solver at each speed alone."""
     blade = curved() if root is None else replace(curved(), root=np.array(ROOTS[root]))
     speeds = [0.5, 1.0, 2.0, 2.0, 2.5, 1.5]
     gravity = np.array([3.0, 5.0, -9.81])
     for omega, found in zip(speeds, vt.sweep(blade, speeds, 8, 5, gravity=gravity), strict=True):
         alone = solve.mesh_modes(blade, omega, 8, 5, gravity=gravity)
         np.testing.assert_allclose(found.frequencies, alone.frequencies, rtol=AGREE)
-        assert alike(found, alone).min() > 1 - 1e-9
+        assert mac(found, alone).min() > 1 - 1e-9
 
 
 @pytest.mark.parametrize("effects", [Effects(coriolis=False), Effects(rotary_inertia=False)])
@@ -126,7 +126,7 @@ def test_effects_left_out(effects: Effects) -> None:
     assert np.abs(ours.frequencies / full.frequencies - 1).max() > 1e-4
 
 
-def test_a_prestress_that_is_not_followed_is_refused() -> None:
+def test_effects_without_prestress_are_refused() -> None:
     for effects in (Effects(prestretch=False), Effects(geometric=False)):
         with pytest.raises(ValueError, match="use the chain solver"):
             vt.modes(PARK, 10.0, 5, 3, effects=effects)
@@ -141,25 +141,25 @@ def test_bad_arguments_are_named(arguments, match: str) -> None:
         vt.modes(*arguments)
 
 
-def test_past_the_critical_speed_there_is_no_state() -> None:
+def test_no_steady_state_past_the_critical_speed() -> None:
     with pytest.raises((SteadyStateError, UnstableError), match=r"rad/s"):
         vt.modes(yoo_shin(0.0), 112.0, 12, 2)
 
 
-def test_a_free_hinge_at_rest_is_said_to_be_loose() -> None:
+def test_a_free_hinge_at_rest_is_reported() -> None:
     with pytest.raises(UnstableError, match="free hinge"):
         vt.modes(replace(PARK, root=np.array(ROOTS["flap"])), 0.0, 8, 3)
 
 
-def test_two_hinges_are_held_where_the_joint_says() -> None:
-    blade = replace(PARK, root=np.array([HELD] * 4 + [0.0, 0.0]), twist=np.array([1.2, 0.0]))
+def test_clamped_coordinates_of_a_root_joint_are_prescribed() -> None:
+    blade = replace(PARK, root=np.array([CLAMPED] * 4 + [0.0, 0.0]), twist=np.array([1.2, 0.0]))
     built = as_mechanism.mechanism(discretize(blade, 3), 10.0)
     prescribed = {m.coordinate for m in built.motions}
     assert prescribed == {"element 1.rx", "element 1.x", "element 1.y", "element 1.z", "hub.rz"}
 
 
 def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
-    """Flap and lag do not commute: without the reaction's own stiffness K of the chain is not that of a potential."""
+    """Flap and lag do not commute: without the geometric stiffness of the reaction, K of the chain is not symmetric."""
     body = discretize(replace(curved(), root=np.array(ROOTS["both hinges"])), 4)
     state = steady.steady(body, 2.5, np.array([3.0, 5.0, -9.81]))
     K = blocks.dense(state.pencil.K)
@@ -216,7 +216,7 @@ def test_the_column_is_there_for_every_blade_and_is_no_witness(name: str) -> Non
     if name not in (
         "tip-mass",
         "articulated/both",
-    ):  # the column alone is what the matrix's own tests run for the others
+    ):  # the matrix's tests run the column for the others
         return
     speeds = variant.speeds.tolist()[-2:]
     cells, _ = column(speeds, references(variant.blade, speeds, case.text.compare, [column.model])[column.model])
