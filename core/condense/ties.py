@@ -1,7 +1,7 @@
 """Finite element models as lists of freedoms, and sections tied to frames rigidly or on average.
 
 A freedom is a displacement along, or a rotation about, a coordinate axis at a point. When a frame moves by a small twist
-(in its own axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:
+(in its axes), freedoms that follow it rigidly move by ``motion``. A section is tied to its frame in one of two ways:
 
 * ``rigid`` (RBE2, MPC beam): every freedom of the section follows its frame. Warping and the contraction of the section
   are prevented: correct where the section really is stiff (a flange, a bulkhead, the clamp of a test rig), and an upper

@@ -80,7 +80,7 @@ def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
         base[j] = base[before] @ series[j, -1]
     series = base[groups.before][:, None] @ series
     links = np.append(series.reshape(-1, 4, 4)[groups.place], np.eye(4)[None], axis=0)
-    # a screw is invariant under its own motion
+    # a screw is invariant under motion along it
     J = (sp.adjoint(links[:-1]) @ tree.screw[..., None])[..., 0].T
     return links[tree.link] @ tree.on_link, J
 

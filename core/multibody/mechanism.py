@@ -28,7 +28,7 @@ class MechanismError(ValueError):
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body with its 6×6 inertia about its own frame's origin (see ``inertia``)."""
+    """A rigid body with its 6×6 inertia about the origin of its frame (see ``inertia``), kg, kg m, kg m²."""
 
     name: str
     inertia: Array = field(default_factory=lambda: np.zeros((6, 6)))
