@@ -140,8 +140,7 @@ class TestShapes:
 
     @both
     def test_stretch_lags_edgewise_motion_by_a_quarter_period(self, code):
-        """Coriolis: forward motion (+y) causes an outward force; u and v are 90° apart, with the same sign in both
-        codes."""
+        """Coriolis: forward motion (+y) causes an outward force; u and v are 90° apart, with the same sign in both codes."""
         shape = code.solve(unit(), 10.0, code.levels[0], 1).shapes[0, -1]
         ratio = shape[0] / shape[1]
         assert abs(ratio.real) < 1e-6 * abs(ratio)

@@ -67,8 +67,7 @@ def box(name: str, mass: float, centre: tuple[float, float, float]) -> mb.Body:
 
 
 def linkage(slant: float) -> tuple[mb.Mechanism, dict[str, float]]:
-    """Crank, rod and rocker between non-parallel revolutes, a ball and a universal joint; two damped springs to the
-    ground."""
+    """Crank, rod and rocker between non-parallel revolutes, a ball and a universal joint; two damped springs to the ground."""
     swept = mb.at(1.5, 0.2, 0.1, axis=np.array([slant, 0.2 * slant, 1.0]))
     m = mb.Mechanism(
         (box("crank", 1.5, (0.3, 0.1, 0)), box("rod", 0.8, (0.6, 0, 0.1)), box("rocker", 1.1, (0.4, 0, -0.1))),

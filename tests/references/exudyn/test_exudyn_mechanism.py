@@ -106,8 +106,7 @@ def test_spatial_loop_on_a_rotating_hub() -> None:
     seed=st.integers(0, 2**31),
 )
 def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: list[bool], seed: int) -> None:
-    """A chain with joints of any kind, some given from child to parent, whose end is joined to the hub or to its first
-    body."""
+    """A chain with joints of any kind, some given from child to parent, whose end is joined to the hub or to its first body."""
     freedoms = sum(len(SCREWS[k]) for k in kinds) - (6 - len(SCREWS[loop]))
     assume(1 <= freedoms <= 6)
     m, guess = random_loop(kinds, loop, turned, seed)

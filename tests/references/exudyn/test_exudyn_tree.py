@@ -20,8 +20,7 @@ pytestmark = needs_exudyn
 
 @pytest.mark.parametrize("omega", [1.0, 3.4])
 def test_precone_of_a_right_angle_makes_a_whirling_shaft(omega):
-    """Along the rotor axis, in rotating axes, every frequency ω at zero speed splits into ω ± Ω, for any
-    discretisation."""
+    """Along the rotor axis, in rotating axes, every frequency ω at zero speed splits into ω ± Ω, for any discretisation."""
     rest = TREE.solve(unit(EA=1e6), 0.0, 12, 8).frequencies[::2]
     shaft = TREE.solve(replace(unit(EA=1e6), precone=np.pi / 2), omega, 12, 8).frequencies
     np.testing.assert_allclose(shaft, np.sort([rest - omega, rest + omega], axis=None)[:8], rtol=1e-7)

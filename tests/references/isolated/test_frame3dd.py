@@ -122,8 +122,7 @@ def test_a_squared_frequency_below_that_of_the_speed_is_unstable(monkeypatch: py
 
 
 class Frame:
-    """A frame that solves by Stodola's iteration only, or for some numbers of modes; the planes of its modes are
-    given."""
+    """A frame that solves by Stodola's iteration only, or for some numbers of modes; the planes of its modes are given."""
 
     def __init__(self, planes: list[list[float]], subspace: set[int]) -> None:
         self.planes, self.subspace = np.array(planes), subspace
@@ -139,10 +138,9 @@ class Frame:
 
 
 def test_modes_in_one_plane_from_stodolas_iteration_are_rejected() -> None:
-    """Three modes in one plane, pitched: rejected from Stodola's iteration; accepted in two planes or by subspace
-    iteration."""
+    """Three modes in one plane, pitched: rejected from Stodola's iteration; accepted in two planes or by subspace iteration."""
     one, two = [[1.0, 2.0]] * 3, [[1.0, 2.0], [2.0, 4.0], [2.0, -1.0]]
-    with pytest.raises(RuntimeError, match="left out a plane"):
+    with pytest.raises(RuntimeError, match="missed the modes of one plane"):
         frame3dd_worker.modes(Frame(one, set()), 3)
     for frame in (Frame(two, set()), Frame(one, {5})):
         assert frame3dd_worker.modes(frame, 3)["frequencies"] == pytest.approx([2 * np.pi, 4 * np.pi, 6 * np.pi])

@@ -1,5 +1,4 @@
-"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against
-Pinocchio's."""
+"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -93,8 +92,7 @@ def test_shapes_agree_with_pinocchio(code: Any) -> None:
     ],
 )
 def test_every_stage_agrees_with_pinocchio(make: Callable[[Chain], Plant], rtol: float) -> None:
-    """Mass, inertial force, its derivatives, and motion of the bodies, at strains of 0.1, far from the undeformed
-    state."""
+    """Mass, inertial force, its derivatives, and motion of the bodies, at strains of 0.1, far from the undeformed state."""
     pytest.importorskip("pinocchio")
     chain = discretize(replace(curved(), tip_mass=TIP_MASS), 5, "half_end", "body_fixed")
     q = 0.1 * np.random.default_rng(3).standard_normal(30)

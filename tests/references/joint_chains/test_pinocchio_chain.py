@@ -74,8 +74,7 @@ def test_shapes_agree_with_core() -> None:
 
 
 def test_a_cantilever_of_point_masses_at_zero_speed() -> None:
-    """Exact for any number of masses: flexibility s²(3t − s)/6EI at s of a unit force at t > s, elementary beam
-    theory."""
+    """Exact for any number of masses: flexibility s²(3t − s)/6EI at s of a unit force at t > s, elementary beam theory."""
     n, mass = 12, 3000.0 * A * 6.0 / 12
     s = 6.0 * np.arange(1, n + 1) / n
     near, far = np.minimum.outer(s, s), np.maximum.outer(s, s)

@@ -104,8 +104,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
 
 
 def every_element() -> tuple[Plant, np.ndarray]:
-    """A plant with a loop of every kind, a spring between points and a load, at a configuration where no term
-    vanishes."""
+    """A plant with a loop of every kind, a spring between points and a load, at a configuration where no term vanishes."""
     rng = np.random.default_rng(3)
     m, _ = random_loop(["spherical", "cylindrical", "universal"], "revolute", [False, True, False, False, False], 5)
     loops = []
@@ -203,7 +202,7 @@ REFUSED = [
         "every joint",
     ),
     (lambda m: replace(m, motions=(mb.Motion("A.rz", 0.9, 0.0, 1.0),)), "accelerating"),
-    (lambda m: replace(m, joints=m.joints[1:3]), "no joint leads to it"),
+    (lambda m: replace(m, joints=m.joints[1:3]), "no joint connects it"),
 ]
 
 

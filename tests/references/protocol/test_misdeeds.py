@@ -1,5 +1,4 @@
-"""Over a hundred failures of a foreign code: each affects its cells only, is reported, and leaves no process
-running."""
+"""Over a hundred failures of a foreign code: each affects its cells only, is reported, and leaves no process running."""
 
 import os
 from collections.abc import Iterator

@@ -138,8 +138,7 @@ def test_a_blade_without_polar_inertia_has_bending_modes_only() -> None:
 
 
 def test_axial_modes_are_left_out() -> None:
-    """The axial mode of this beam at zero speed is at π/2 · 70 = 110 rad/s; pyBModes computes it but returns no
-    shape."""
+    """The axial mode of this beam at zero speed is at π/2 · 70 = 110 rad/s; pyBModes computes it but returns no shape."""
     rotor_modes = frequencies(yoo_shin(0.0), 0.0, 40, 8)
     assert np.abs(rotor_modes / (35 * np.pi) - 1).min() > 0.05
     rest = np.square(ROOTS[:4])

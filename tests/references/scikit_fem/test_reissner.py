@@ -149,8 +149,7 @@ class TestFrequencies:
     @pytest.mark.parametrize("omega", [0.0, 3.0])
     @pytest.mark.parametrize("pitch", [0.0, 0.6])
     def test_a_blade_with_all_properties_agrees_with_core(self, pitch: float, omega: float) -> None:
-        """Coupled, curved, sheared, twisted, tapered, offset, coned; a body off the tip's axis; both torsion and
-        bending."""
+        """Coupled, curved, sheared, twisted, tapered, offset, coned; a body off the tip's axis; both torsion and bending."""
         lump = 300.0 * body() / 5.0
         blade = replace(curved(), tip_mass=lump, pitch=pitch, precone=0.2)
         np.testing.assert_allclose(frequencies(blade, omega, 40, 8), core(blade, omega, 8), rtol=1e-5)

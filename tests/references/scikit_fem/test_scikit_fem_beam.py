@@ -111,8 +111,7 @@ class TestTorsion:
         np.testing.assert_allclose(frequencies(shaft(0.01, 0.02), 0.0, 80, 3), exact, rtol=1e-7)
 
     def test_the_tennis_racket_effect_of_a_flat_section(self) -> None:
-        """All inertia about z: ω² = ω₀² + Ω² exactly (R. L. Bielawa, *Rotary Wing Structural Dynamics*, 2006, ch.
-        3)."""
+        """All inertia about z: ω² = ω₀² + Ω² exactly (R. L. Bielawa, *Rotary Wing Structural Dynamics*, 2006, ch. 3)."""
         blade, omega = shaft(0.0, 0.03), 2.0
         rest = np.array([0.5, 1.5, 2.5]) * np.pi * np.sqrt(1e-2 / 0.03)
         np.testing.assert_allclose(frequencies(blade, omega, 80, 3), np.hypot(rest, omega), rtol=1e-7)
@@ -151,8 +150,7 @@ class TestShapes:
         assert np.abs(flap[:, [0, 1, 3]]).max() < 1e-9 * np.abs(flap[:, 2]).max()
 
     def test_are_in_blade_axes_with_the_right_phase(self) -> None:
-        """The lowest edgewise mode moves along y, its stretch a quarter cycle off (Coriolis); the lowest flapwise along
-        z."""
+        """The lowest edgewise mode moves along y, its stretch a quarter cycle off (Coriolis); the lowest flapwise along z."""
         modes = CODE.solve(yoo_shin(0.0), 10.0, 20, 2)
         chordwise, flapwise = modes.shapes[:, -1] / np.abs(modes.shapes[:, -1]).max(axis=1, keepdims=True)
         assert abs(chordwise[1]) == pytest.approx(1)
