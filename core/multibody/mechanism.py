@@ -150,7 +150,7 @@ def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
     """
     mine = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
     if not mine:
-        raise MechanismError(f"coordinate {coordinate!r}: it has no motion given by numbers: add one")
+        raise MechanismError(f"coordinate {coordinate!r}: no motion at a rate is given: add one")
     motions = tuple(replace(m, rate=rate) if m in mine else m for m in mechanism.motions)
     return replace(mechanism, motions=motions)
 
