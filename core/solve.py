@@ -174,13 +174,13 @@ def chain_modes(
 
 
 def rigid_strain_bias(
-    blade: Blade, omega: float, elements: int, count: int, effects: Effects = ALL_EFFECTS
+    blade: Blade, omega: float, elements: tuple[int, int], count: int, effects: Effects = ALL_EFFECTS
 ) -> tuple[Array, Array]:
     """Factor (m,) that removes the bias of rigid strains from the frequencies, and its relative uncertainty (m,).
 
     Rigid axial and torsional strains have a small compliance (``element.sections``), also in ``mesh_modes``. The bias is
-    computed on meshes of ``elements`` and twice as many elements.
+    computed on two meshes, the finer one last.
     """
     meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
-    coarse, fine = (meshes.bias(n, meshes.of(n).at(omega)) for n in (elements, 2 * elements))
+    coarse, fine = (meshes.bias(n, meshes.of(n).at(omega)) for n in elements)
     return without_bias(coarse, fine)

@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
-ELSEWHERE = {"tests", "examples", "docs"}
+NOT_PACKAGED = {"tests", "examples", "docs"}
 """Folders with modules that are not installed."""
 
 
@@ -45,7 +45,7 @@ def test_every_folder_that_is_a_package_is_listed_and_no_other() -> None:
     found = {
         ".".join(("southwell", *path.relative_to(ROOT).parent.parts))
         for path in tracked()
-        if path.name == "__init__.py" and path.relative_to(ROOT).parts[0] not in ELSEWHERE
+        if path.name == "__init__.py" and path.relative_to(ROOT).parts[0] not in NOT_PACKAGED
     }
     assert set(SETUPTOOLS["packages"]) == found
 
@@ -85,7 +85,7 @@ def test_the_wheel_has_every_module_and_every_data_file(wheel: set[str]) -> None
     modules = {
         f"southwell/{path.relative_to(ROOT)}"
         for path in tracked()
-        if path.suffix == ".py" and path.relative_to(ROOT).parts[0] not in ELSEWHERE
+        if path.suffix == ".py" and path.relative_to(ROOT).parts[0] not in NOT_PACKAGED
     }
     assert modules <= wheel
     assert {f"southwell/{name}" for name in data_files()} <= wheel

@@ -98,10 +98,10 @@ class Campbell:
 def solver(
     blade: Blade,
     wanted: Wanted,
-    told: Callable[[float], None] = lambda omega: None,
+    on_speed: Callable[[float], None] = lambda omega: None,
     at: Callable[[float], str] = rad_s,
 ) -> Solver:
-    """Core at one speed after another; ``told`` is called with each speed when it is done, ``at`` names one in an error.
+    """Core at one speed after another; ``on_speed`` is called with each speed when it is done, ``at`` names one in an error.
 
     Raises (the solver):
         CaseError: if a speed has no stable steady state, or one of large strain.
@@ -129,7 +129,7 @@ def solver(
                 found = next(stream)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error, at) from error
-        told(omega)
+        on_speed(omega)
         return found
 
     return solve

@@ -78,8 +78,8 @@ def body(s: Segment) -> tuple[float, Array, Array]:
 def write(path: Path, blade: Condensed) -> None:
     """Keep a compressed model as JSON, matrices row by row, SI."""
     pieces = [{key: value.tolist() for key, value in vars(s).items()} for s in blade.segments]
-    told = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
-    atomic.write(path, msgspec.json.format(msgspec.json.encode(told)) + b"\n")
+    record = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
+    atomic.write(path, msgspec.json.format(msgspec.json.encode(record)) + b"\n")
 
 
 class _Piece(msgspec.Struct, forbid_unknown_fields=True):

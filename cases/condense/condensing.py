@@ -37,7 +37,7 @@ class Condensation:
         resisted: the largest part of the forces in a model that one of its rigid motions leaves unbalanced.
     """
 
-    told: CondenseFile
+    spec: CondenseFile
     blade: Condensed
     freedoms: int
     resisted: float
@@ -56,50 +56,50 @@ def condense(path: Path) -> Condensation:
 def _condense(path: Path) -> Condensation:
     data = document(path)
     finite(data, str(path))
-    told = convert(data, CondenseFile, str(path))
-    if told.segments and len(told.segments) != len(told.sections) - 1:
+    spec = convert(data, CondenseFile, str(path))
+    if spec.segments and len(spec.segments) != len(spec.sections) - 1:
         raise CaseError(
-            f"{path}: segments: {len(told.segments)} for {len(told.sections)} sections: one between each two: "
-            f"give {len(told.sections) - 1}"
+            f"{path}: segments: {len(spec.segments)} for {len(spec.sections)} sections: one between each two: "
+            f"give {len(spec.sections) - 1}"
         )
-    if told.segments and (told.stiffness is not None or told.mass is not None):
+    if spec.segments and (spec.stiffness is not None or spec.mass is not None):
         raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one a segment")
-    frames = _frames(path, told)
+    frames = _frames(path, spec)
     try:
-        models, pieces = _apart(path, told, frames) if told.segments else _in_place(path, told, frames)
+        models, pieces = _apart(path, spec, frames) if spec.segments else _in_place(path, spec, frames)
     except CondensationError as error:
         raise CaseError(f"{path}: {error}") from error
-    blade = Condensed(told.name, _root(path, told, frames[0]), pieces)
-    return Condensation(told, blade, sum(len(m.model.directions) for m in models), max(m.resisted for m in models))
+    blade = Condensed(spec.name, _root(path, spec, frames[0]), pieces)
+    return Condensation(spec, blade, sum(len(m.model.directions) for m in models), max(m.resisted for m in models))
 
 
-def _in_place(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
-    whole = read(path, "", told, told, told.units)
+def _in_place(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
+    whole = read(path, "", spec, spec, spec.units)
     if whole.mass is None:
         raise CaseError(f"{path}: mass: missing: name the file of a mass matrix: without it nothing vibrates")
-    tied = [_tie(told, whole, frames, k) for k in range(len(frames))]
+    tied = [_tie(spec, whole, frames, k) for k in range(len(frames))]
     return [whole], condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
 
 
-def _apart(path: Path, told: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
+def _apart(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
     models, out = [], []
-    for k, piece in enumerate(told.segments):
+    for k, piece in enumerate(spec.segments):
         field = f"segments[{k}]."
-        whole = read(path, field, piece, told, told.units)
-        a, b = (_tie(told, whole, frames, i) for i in (k, k + 1))
+        whole = read(path, field, piece, spec, spec.units)
+        a, b = (_tie(spec, whole, frames, i) for i in (k, k + 1))
         models.append(whole)
-        out.append(_one(path, field, told, piece, whole, a, b))
+        out.append(_one(path, field, spec, piece, whole, a, b))
     return models, out
 
 
-def _one(path: Path, field: str, told: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:
+def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:
     """A segment from its own model; of one without nodes between its ends, or of given mass, as ``segment_from_matrix``."""
     name = f"{a.name} to {b.name}"
     tied = np.union1d(a.freedoms, b.freedoms)
     if piece.body is not None:
         if whole.mass is not None:
             raise CaseError(f"{path}: {field}body: the mass is given twice, as a matrix too: give one of them")
-        J = _body(path, field, piece.body, METRES[told.units], a.frame)
+        J = _body(path, field, piece.body, METRES[spec.units], a.frame)
     elif whole.mass is None:
         raise CaseError(f"{path}: {field}mass: missing: name the file of a mass matrix, or give body")
     elif len(tied) < len(whole.model.directions):
@@ -128,12 +128,12 @@ def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Ar
     return lever.T @ free @ lever
 
 
-def _frames(path: Path, told: CondenseFile) -> list[Array]:
+def _frames(path: Path, spec: CondenseFile) -> list[Array]:
     """(4, 4) poses of the sections in the model's axes, m: x along the span or the section's axis, z by the rotor's."""
-    span, rotor = _axis(path, "span", told.span), _axis(path, "rotor", told.rotor)
-    metres = METRES[told.units]
+    span, rotor = _axis(path, "span", spec.span), _axis(path, "rotor", spec.rotor)
+    metres = METRES[spec.units]
     out = []
-    for k, at in enumerate(told.sections):
+    for k, at in enumerate(spec.sections):
         point, along = (at.point, at.axis) if isinstance(at, At) else (at * span, None)
         x = span if along is None else _axis(path, f"sections[{k}].axis", along)
         z = rotor - x * (x @ rotor)
@@ -147,50 +147,50 @@ def _frames(path: Path, told: CondenseFile) -> list[Array]:
     for k, (a, b) in enumerate(pairwise(out)):
         if (b[:3, 3] - a[:3, 3]) @ a[:3, 0] <= 0:
             raise CaseError(
-                f"{path}: sections[{k + 1}]: {_name(told, k + 1)} is not beyond {_name(told, k)}: "
+                f"{path}: sections[{k + 1}]: {_name(spec, k + 1)} is not beyond {_name(spec, k)}: "
                 "sections go from the root to the tip along the span"
             )
     return out
 
 
-def _axis(path: Path, field: str, told: Axis) -> Array:
-    if isinstance(told, str):
-        return (-1.0 if told[0] == "-" else 1.0) * np.eye(3)["xyz".index(told[-1])]
-    vector = np.array(told)
+def _axis(path: Path, field: str, spec: Axis) -> Array:
+    if isinstance(spec, str):
+        return (-1.0 if spec[0] == "-" else 1.0) * np.eye(3)["xyz".index(spec[-1])]
+    vector = np.array(spec)
     length = np.linalg.norm(vector)
     if not length:
-        raise CaseError(f"{path}: {field}: {list(told)}: no direction: give a vector, or x, y or z")
+        raise CaseError(f"{path}: {field}: {list(spec)}: no direction: give a vector, or x, y or z")
     return vector / length
 
 
-def _root(path: Path, told: CondenseFile, first: Array) -> Array:
+def _root(path: Path, spec: CondenseFile, first: Array) -> Array:
     """The first section's pose in the hub's axes, its span and the rotor's axis being x and z."""
-    x = _axis(path, "span", told.span)
-    z = _axis(path, "rotor", told.rotor)
+    x = _axis(path, "span", spec.span)
+    z = _axis(path, "rotor", spec.rotor)
     if abs(x @ z) > NEAR:
         raise CaseError(
             f"{path}: rotor: not square to the span: give the rotor's axis; cone is in the sections' places"
         )
     hub = sp.inverse(sp.pose(np.column_stack([x, np.cross(z, x), z]), np.zeros(3)))
     out = hub @ first
-    if told.hub_radius is not None:
-        out[0, 3] = told.hub_radius
+    if spec.hub_radius is not None:
+        out[0, 3] = spec.hub_radius
     return out
 
 
-def _name(told: CondenseFile, k: int) -> str:
-    at, unit = told.sections[k], told.units.split()[0]
+def _name(spec: CondenseFile, k: int) -> str:
+    at, unit = spec.sections[k], spec.units.split()[0]
     return f"{list(at.point)} {unit}" if isinstance(at, At) else f"{at:g} {unit}"
 
 
-def _tie(told: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> Tie:
-    at = told.sections[k]
-    kind = (at.tie if isinstance(at, At) else None) or (told.root if k == 0 else told.tie)
-    name = _name(told, k)
-    if kind == "rigid" or told.weights == "mass":
+def _tie(spec: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> Tie:
+    at = spec.sections[k]
+    kind = (at.tie if isinstance(at, At) else None) or (spec.root if k == 0 else spec.tie)
+    name = _name(spec, k)
+    if kind == "rigid" or spec.weights == "mass":
         return ties.section(whole.model, frames[k], name, kind)
     on = ties.section(whole.model, frames[k], name, "rigid").freedoms
-    if told.weights == "even":
+    if spec.weights == "even":
         return ties.average(whole.model, on, frames[k], name, np.ones(len(on)))
     if whole.mass is None:
         raise CondensationError(

@@ -130,7 +130,7 @@ def example(
     for kind in KINDS:
         say(f"torsion of a flat bar, {kind or 'in place'}")
         torsion[kind or "in place"] = tuple(solids.torsion(n * solids.CHORD, kind) for n in LENGTHS)
-    told = Example(
+    printed = Example(
         freedoms=len(model.directions),
         hexahedra=int(np.prod(bricks.counts)),
         segments=segments,
@@ -141,7 +141,7 @@ def example(
         lengths=LENGTHS,
         versions=versions,
     )
-    return told, Drawn(bricks, pieces["in place"], solids.cuts(bricks, segments), solids.at(solids.ROOT))
+    return printed, Drawn(bricks, pieces["in place"], solids.cuts(bricks, segments), solids.at(solids.ROOT))
 
 
 def within(found: Example) -> bool:

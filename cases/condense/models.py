@@ -47,8 +47,8 @@ class Whole:
     resisted: float
 
 
-def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whole:
-    """The model that ``told`` names, what it leaves out taken from ``common``.
+def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whole:
+    """The model that ``spec`` names, what it leaves out taken from ``common``.
 
     Args:
         path: of the file that says it; other files lie beside it.
@@ -60,18 +60,18 @@ def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whol
     Raises:
         CaseError: naming the file and field at fault.
     """
-    if told.stiffness is None:
+    if spec.stiffness is None:
         raise CaseError(f"{path}: {field}stiffness: missing: name the file of a stiffness matrix")
-    nodes = told.nodes or common.nodes
+    nodes = spec.nodes or common.nodes
     if nodes is None:
         raise CaseError(f"{path}: {field}nodes: missing: name a CSV of {', '.join(NODES)}")
     place = _places(path.parent / nodes)
-    listed = told.freedoms if told.freedoms is not None else common.freedoms
+    listed = spec.freedoms if spec.freedoms is not None else common.freedoms
     mass = None
     try:
-        stiffness = _named(_load(path.parent, told.stiffness, "stiffness"), listed, place, path, field)
-        if told.mass is not None:
-            mass = _named(_load(path.parent, told.mass, "mass"), listed, place, path, field)
+        stiffness = _named(_load(path.parent, spec.stiffness, "stiffness"), listed, place, path, field)
+        if spec.mass is not None:
+            mass = _named(_load(path.parent, spec.mass, "mass"), listed, place, path, field)
         for what, matrix in (("stiffness", stiffness), ("mass", mass)):
             if matrix is not None:
                 _no_negative(f"{path}: {field}{what}", matrix)
@@ -86,8 +86,8 @@ def read(path: Path, field: str, told: Model, common: Model, units: str) -> Whol
     return Whole(model, ss.csr_array(unit @ _in_order(mass, stiffness) @ unit), resisted)
 
 
-def _load(folder: Path, told: str | Matrix, what: str) -> Exported:
-    name, chosen = (told.file, told.matrix) if isinstance(told, Matrix) else (told, what)
+def _load(folder: Path, spec: str | Matrix, what: str) -> Exported:
+    name, chosen = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, what)
     path = folder / name
     files.inside(path)
     try:
@@ -143,16 +143,16 @@ def _named(
     if isinstance(listed, str):
         table = read_table(path.parent / listed, FREEDOMS)
         at = path.parent / listed
-        pairs, told = (
+        pairs, spec = (
             np.column_stack([_integers(at, c, table[c]) for c in FREEDOMS]),
             f"{listed} lists {len(table['node'])}",
         )
     else:
         pairs = np.array([(n, f) for n in place for f in listed])
-        told = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"
+        spec = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"
     if len(pairs) != rows:
         raise CaseError(
-            f"{path}: {field}freedoms: {told}, {matrix.name} has {rows} rows: of another model, or constrained?"
+            f"{path}: {field}freedoms: {spec}, {matrix.name} has {rows} rows: of another model, or constrained?"
         )
     return exported.labelled(matrix.name, matrix.matrix, pairs)
 

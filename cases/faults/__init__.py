@@ -1,1 +1,1 @@
-"""Seeded faults: a component made wrong on purpose, run through the real matrix; a named cell must fail or be inconclusive."""
+"""Seeded faults: one faulty component run through the real matrix; a named cell must fail or be inconclusive."""

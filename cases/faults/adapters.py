@@ -30,7 +30,7 @@ def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     return make
 
 
-def told(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
+def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
     """What comes back is altered."""
 
     def make(right: Any) -> Any:
@@ -110,15 +110,15 @@ def _adapter(name: str, what: str, size: str, make: Any, trial: Trial = PARK) ->
 REST = Trial("park-cantilever", (0.0,), ("exact-beam",))
 
 FAULTS = (
-    _adapter("frequencies in Hz", "the code's hertz are taken for rad/s", "factor 2π", told(_times(1 / (2 * np.pi)))),
+    _adapter("frequencies in Hz", "the code's hertz are taken for rad/s", "factor 2π", answered(_times(1 / (2 * np.pi)))),
     _adapter("frequencies squared", "eigenvalues are taken for frequencies", "factors",
-             told(lambda m: replace(m, frequencies=m.frequencies**2))),
+             answered(lambda m: replace(m, frequencies=m.frequencies**2))),
     _adapter("frame turned", "y and z of the code are z and y here", "no frequency; no partner",
-             told(lambda m: replace(m, shapes=m.shapes[:, :, [0, 2, 1, 3]])), FAST),
+             answered(lambda m: replace(m, shapes=m.shapes[:, :, [0, 2, 1, 3]])), FAST),
     _adapter("root and tip exchanged", "shapes are sampled from the tip", "no frequency; no partner",
-             told(lambda m: replace(m, shapes=m.shapes[:, ::-1]))),
-    _adapter("lost column", "the flapwise column of every shape is lost", "no frequency; no partner", told(_without(2))),
-    _adapter("swapped modes", "shapes belong to other frequencies", "factor 6", told(_shuffled)),
+             answered(lambda m: replace(m, shapes=m.shapes[:, ::-1]))),
+    _adapter("lost column", "the flapwise column of every shape is lost", "no frequency; no partner", answered(_without(2))),
+    _adapter("swapped modes", "shapes belong to other frequencies", "factor 6", answered(_shuffled)),
     _adapter("too few modes", "the code returns two modes, whatever it is asked for", "no answer",
              asked(lambda run: (run[0], run[1], 2))),
     _adapter("coarse declared fine", "three terms, whatever refinement is asked for", "third modes by percents",
@@ -146,11 +146,11 @@ FAULTS = (
              given(lambda b: replace(b, mass=1.005 * b.mass)), REST),
     _adapter("modulus", "stiffness a thousandth of what it is: kN for N", "all modes −97 % at rest",
              given(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
-    _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", told(_zero)),
-    _adapter("wide bracket", "60 % wrong, and within 90 % by its own account", "+60 %", told(_wide)),
+    _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", answered(_zero)),
+    _adapter("wide bracket", "60 % wrong, and within 90 % by its own account", "+60 %", answered(_wide)),
     _adapter("crash", "the code's process dies", "no answer", _crashes),
     _adapter("digits lost", "six digits of a code on core's own discretisation", "1e-6",
-             told(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
+             answered(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
     Fault("one Gauss point an element", "adapter", "a finite element's matrices are integrated with one point", "factors",
           ((registry, "locate", _found_at("southwell.cases.faults.one_point:CODE", "scikit-fem")),),
           Trial("park-cantilever", (10.0,), ("scikit-fem",))),

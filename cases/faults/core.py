@@ -8,11 +8,12 @@ import numpy as np
 
 from ...core import solve
 from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
+from ...core.chain import solution
 from ...core.chain.steady import Steady
 from ...core.effects import Effects
 from ...core.element import discretize, sections
 from ...core.element.discretize import Chain
-from ..verify import core_solver, mistakes
+from ..verify import core_faults, core_solver
 from .seeding import Fault, Trial
 
 Balance = Callable[..., Steady]
@@ -64,7 +65,7 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     def make(right: Balance) -> Balance:
         def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
             state = right(body, omega, gravity, replace(model, **lacks), guess)
-            return replace(state, pencil=mistakes.softened(body, state, omega, factor))
+            return replace(state, pencil=core_faults.softened(body, state, omega, factor))
 
         return wrong
 
@@ -205,7 +206,7 @@ def _own_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any
 
 
 def _shifted(blade: Blade) -> Blade:
-    return mistakes.shifted(blade)
+    return core_faults.shifted(blade)
 
 
 def _core(name: str, what: str, size: str, seam: Any, trial: Trial, fast: bool = False) -> Fault:
@@ -219,7 +220,7 @@ FAULTS = (
         "no geometric stiffness",
         "the centrifugal tension does not stiffen",
         "first chordwise −71 %",
-        (solve, BALANCE, modelled(geometric=False)),
+        (solution, BALANCE, modelled(geometric=False)),
         PARK,
         True,
     ),
@@ -227,7 +228,7 @@ FAULTS = (
         "softening's sign",
         "spin softening is added instead of taken away",
         "first chordwise +57 %",
-        (solve, BALANCE, softening(-1.0)),
+        (solution, BALANCE, softening(-1.0)),
         PARK,
         True,
     ),
@@ -235,7 +236,7 @@ FAULTS = (
         "frozen frame",
         "linearised in a frame that stands still: chordwise is read as flapwise",
         "first chordwise +31 %",
-        (solve, BALANCE, softening(0.0, coriolis=False)),
+        (solution, BALANCE, softening(0.0, coriolis=False)),
         PARK,
         True,
     ),
@@ -251,7 +252,7 @@ FAULTS = (
         "no Coriolis",
         "no Coriolis force",
         "first chordwise 1.7 % at γ = 10",
-        (solve, BALANCE, modelled(coriolis=False)),
+        (solution, BALANCE, modelled(coriolis=False)),
         FAST,
         True,
     ),
@@ -275,7 +276,7 @@ FAULTS = (
         "Coriolis' sign",
         "the gyroscopic terms turn the other way: frequencies stay, the lag between stretch and bending is reversed",
         "no frequency; MAC of mixed modes below 0.8",
-        (solve, BALANCE, pencil(lambda p: replace(p, C=_negative(p.C)))),
+        (solution, BALANCE, pencil(lambda p: replace(p, C=_negative(p.C)))),
         AXIAL,
     ),
     _core(
@@ -283,7 +284,7 @@ FAULTS = (
         "a factor of 2 lost in the Coriolis terms",
         "first chordwise 1.2 % at γ = 10",
         (
-            solve,
+            solution,
             BALANCE,
             pencil(
                 lambda p: replace(
@@ -297,14 +298,14 @@ FAULTS = (
         "no prestretch",
         "the steady state is that of the undeformed blade",
         "first chordwise 10 % at γ = 50",
-        (solve, BALANCE, modelled(prestretch=False)),
+        (solution, BALANCE, modelled(prestretch=False)),
         AXIAL,
     ),
     _core(
         "half the softening",
         "spin softening of half the size",
         "first chordwise +17 %",
-        (solve, BALANCE, softening(0.5)),
+        (solution, BALANCE, softening(0.5)),
         PARK,
     ),
     _core(

@@ -82,9 +82,9 @@ FAULTS = (
     _counting("core confirms core", "who has core's discretisation or frames counts", "a group",
               (witnesses, "_kind", lambda right: lambda cell, origin: "code")),
     _counting("explained is agreed", "every witness agrees", "a group",
-              (witnesses, "_gravest", lambda right: lambda standings: "agrees")),
+              (witnesses, "_worst", lambda right: lambda standings: "agrees")),
     _counting("best mode counts", "a witness agrees if it does in any mode", "a group",
-              (witnesses, "_gravest", lambda right: lambda standings: next(
+              (witnesses, "_worst", lambda right: lambda standings: next(
                   (s for s in ("agrees", "explained", "open", "disagrees") if s in set(standings)), "agrees"))),
     _counting("too few are enough", "no number of groups is required", "a group",
               (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9)),

@@ -35,7 +35,7 @@ AFTER: dict[str, Run] = {
     "an answer that is gone": replace(BEFORE, cells=BEFORE.cells[:2]),
     "a mode that is new and fails": replace(BEFORE, cells=(*BEFORE.cells, _cell(4, verdict="fail", difference=2e-3))),
     "a target that was loosened": replace(BEFORE, cells=(_cell(1, target=2e-3), *BEFORE.cells[1:])),
-    "a fault that nobody catches any more": replace(BEFORE, controls=(_fault(()),)),
+    "a fault that is no longer detected": replace(BEFORE, controls=(_fault(()),)),
     "a frequency that moved": replace(BEFORE, cells=(_cell(1, frequency=10.0 * (1 + 1e-6)), *BEFORE.cells[1:])),
     "a code that was not run": replace(BEFORE, cells=(_cell(0, family="", frequency=None, verdict="not run"),)),
 }

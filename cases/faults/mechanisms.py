@@ -43,7 +43,7 @@ def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
     return (linearize, "about", make), (periodic, "about", make)
 
 
-def _told(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
+def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
     """What a code answers is altered."""
 
     def make(right: Any) -> Any:
@@ -99,13 +99,13 @@ FAULTS = (
     Fault("loop: coupling", "core", "the stiffness that a loop couples two coordinates by is dropped", "percents",
           _about(lambda found: replace(found, K=np.diag(np.diag(found.K)))), LINKED),
     Fault("mechanism: damping lost", "adapter", "of eigenvalues the moduli alone come back", "damping ratio 0.14",
-          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
+          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
     Fault("mechanism: sixth digit", "adapter", "six digits of the very same equations", "1e-6",
-          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
+          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
     Fault("mechanism: one mode", "adapter", "the code returns its first mode alone", "no answer",
-          ((mechanism_columns, "answers", _told(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
+          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
     Fault("mechanism: shapes exchanged", "adapter", "shapes belong to other eigenvalues", "factors",
-          ((mechanism_columns, "answers", _told(_exchanged)),), DAMPED),
+          ((mechanism_columns, "answers", _answered(_exchanged)),), DAMPED),
     Fault("loop left open", "adapter", "the joint that closes the loop is dropped", "factors; no partner",
           ((mechanism_columns, "answers", _given(_open)),), ASKED),
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
@@ -113,5 +113,5 @@ FAULTS = (
     Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
           ((mechanism_columns, "alike", _by_number),), blinds="mechanism: shapes told of others"),
     Fault("mechanism: shapes told of others", "adapter", "every shape is a mixture of two", "MAC 0.5",
-          ((mechanism_columns, "answers", _told(_mixed)),), DAMPED),
+          ((mechanism_columns, "answers", _answered(_mixed)),), DAMPED),
 )  # fmt: skip

@@ -143,8 +143,8 @@ def cells(trial: Trial) -> tuple[Cell, ...]:
     if trial.case in library.mechanisms():
         return matrix.run([_turning(trial)], known(trial), Serial(), parts=False).cells
     case, changed = _variant(trial)
-    told = case.text.compare
-    compare = msgspec.structs.replace(told, modes=trial.modes or told.modes, motions=trial.motions or told.motions)
+    given = case.text.compare
+    compare = msgspec.structs.replace(given, modes=trial.modes or given.modes, motions=trial.motions or given.motions)
     one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
     return matrix.run([one], known(trial), Serial(), parts=False).cells
 

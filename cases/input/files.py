@@ -14,7 +14,7 @@ from pathlib import Path
 from ...core.regular_files import read_bytes
 from .errors import CaseError
 
-ELSEWHERE = (
+NOT_THE_FILE = (
     ("version https://git-lfs", "Git's pointer to a large file, not the file: fetch it by `git lfs pull`"),
     ("<!doctype html", "a web page, not the file: download the raw file"),
     ("<html", "a web page, not the file: download the raw file"),
@@ -116,9 +116,9 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
         found = raw.decode("latin-1")
     if not found.strip():
         raise CaseError(f"{path}: empty: was it written to the end?")
-    for begins, told in ELSEWHERE:
+    for begins, what in NOT_THE_FILE:
         if found.lstrip()[: len(begins)].lower() == begins:
-            raise CaseError(f"{path}: {told}")
+            raise CaseError(f"{path}: {what}")
     return found
 
 

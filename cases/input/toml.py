@@ -86,7 +86,7 @@ def finite(value: Any, path: str, field: str = "") -> None:
         raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
     elif isinstance(value, int | float) and abs(value) > LARGEST:
         shown = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
-        raise CaseError(f"{path}: {field}: {shown}: nothing is so large; a slip in the exponent? correct it")
+        raise CaseError(f"{path}: {field}: {shown}: implausibly large; check the exponent")
 
 
 def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:

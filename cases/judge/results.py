@@ -1,4 +1,4 @@
-"""What a run leaves behind: a row a cell, tidy, and nothing that cannot be written to ``results.jsonl``.
+"""The results of a run: one row per cell, all of it written to ``results.jsonl``.
 
 That file has one JSON object a line, told apart by ``kind``. The first line is the plan: every case and code of the run. The
 last one is the completion record: how many lines of each kind precede it. A file without either, or without the cells that
@@ -216,7 +216,7 @@ class Run:
         versions: package or code → version.
         command: what was typed, to reproduce.
         settings: of each case's blade.
-        controls: what became of core made wrong on purpose.
+        controls: results of the seeded faults.
         shares: where differences come from.
         origins: where the answers of each column come from.
         plan: every column that the run was to have.

@@ -76,8 +76,8 @@ def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float 
     return Witness(
         name=name,
         kind=kind,
-        standing=_gravest(_standing(c, c.target) for c in cells),
-        fine=_gravest(_standing(c, FINE) for c in cells) if kind in ("code", "closed form", "undeclared") else None,
+        standing=_worst(_standing(c, c.target) for c in cells),
+        fine=_worst(_standing(c, FINE) for c in cells) if kind in ("code", "closed form", "undeclared") else None,
         answers=sum(c.difference is not None for c in cells),
         largest=max(abs(c.difference or 0.0) for c in cells),
         target=max(c.target for c in cells),
@@ -111,7 +111,7 @@ def _standing(cell: Cell, target: float) -> Standing:
     return "disagrees" if verdict == "fail" else "open"
 
 
-def _gravest(standings: Iterable[Standing]) -> Standing:
+def _worst(standings: Iterable[Standing]) -> Standing:
     found = list(standings)
     order: tuple[Standing, ...] = ("disagrees", "open", "explained", "agrees")
     return next(s for s in order if s in found)

@@ -1,7 +1,7 @@
 """One run against an earlier one: what moved, what got worse, what is gone; and what took longer, which decides nothing.
 
 Cells are the same where case, code, rotor speed and mode are. What counts against a run: a miss that was none before
-(including that of a cell that was not there), an answer that is gone, a wider target, a seeded fault that nobody catches any
+(including that of a cell that was not there), an answer that is gone, a wider target, a seeded fault that is not detected any
 more. Moved frequencies are listed, and count only if that is asked for: who improves a discretisation moves them and is
 right to. Measured data are no answers: they are counted, and nothing about them counts against a run.
 """
@@ -91,7 +91,7 @@ class Comparison:
         new: cells with an answer that had none.
         uncaught: seeded faults that were caught and are not now; all of them if none is tried any more.
         timings: by code; they decide nothing.
-        missed: seeded faults that nobody catches in this run: the harness is blind to them.
+        missed: seeded faults that this run does not detect.
     """
 
     before: Entry
@@ -153,7 +153,7 @@ def compare(
     changes = [Change(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
     moved = [c for c in changes if abs(c.moved or 0.0) > tolerance]
     worse = sorted((c for c in changes if _worse(c)), key=lambda c: -RANK[c.after.verdict])
-    told = {c.after.key for c in worse}
+    listed = {c.after.key for c in worse}
     tried = {c.control: bool(c.caught) for c in after.controls}
     return Comparison(
         before=before,
@@ -161,7 +161,7 @@ def compare(
         moved=tuple(sorted(moved, key=lambda c: -abs(c.moved or 0.0))),
         worse=tuple(worse),
         better=tuple(c for c in changes if _better(c)),
-        gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in told),
+        gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
         new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
         uncaught=tuple(c for c in before.controls if c.caught and not tried.get(c.control, bool(tried))),
         timings=tuple(_timings(before, after, [e for e in earlier if e.machine == after.machine][-RUNS:])),

@@ -45,7 +45,7 @@ Key = tuple[str, str, float, int]
 
 
 class Caught(msgspec.Struct, frozen=True, array_like=True):
-    """Who noticed one deliberate mistake in core, in one case at one speed (rad/s); an array in the file."""
+    """Who noticed one deliberate fault in core, in one case at one speed (rad/s); an array in the file."""
 
     control: str
     case: str

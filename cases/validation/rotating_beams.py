@@ -83,7 +83,7 @@ def solved(blade: Blade, rpm: float) -> dict[str, tuple[float, float]]:
     found = converged(blade, rpm * RPM, Compare(modes=COUNT), ALL_EFFECTS)
     if isinstance(found, Failure):
         raise ValueError(f"{blade.name}: {rpm:g} rpm: {found.reason}")
-    estimates = [s.estimate for s in found.settled]
+    estimates = [s.estimate for s in found.modes]
     values = [(e.value / (2.0 * np.pi), e.uncertainty or 0.0) if e else (np.inf, 0.0) for e in estimates]
     return dict(zip(numbered(found.names), values, strict=True))
 

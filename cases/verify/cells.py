@@ -1,4 +1,4 @@
-"""From a solver's study and core's reference to rows: the difference, how sure it is, and what it means."""
+"""From a solver's refinements and core's reference to rows: the difference, how sure it is, and what it means."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
 from ..judge.verdict import Judgement, bracketed, discretised, judge, known
 from .reference import Reference
-from .refinement import Settled, Study, settle
+from .refinement import RefinedMode, Refinements, follow
 
 FAILED: dict[str, Verdict] = {
     "not installed": "not run",
@@ -67,22 +67,24 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
     )
 
 
-def refined(head: Head, omega: float, reference: Reference, study: Study, order: int, bracket: bool = False) -> Rows:
+def refined(
+    head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, bracket: bool = False
+) -> Rows:
     """A code's cells at one speed, one for each mode the case compares, and every refinement's frequencies."""
-    if not study.answers or (study.failure and study.failure.kind == "nonsense"):
-        return [failed(head, omega, study.failure)], []
-    settled = settle(study.answers, reference.core.wanted, order, bracket)
-    late = f"finer: {study.failure.reason}" if study.failure else ""
+    if not refinements.answers or (refinements.failure and refinements.failure.kind == "nonsense"):
+        return [failed(head, omega, refinements.failure)], []
+    refined_modes = follow(refinements.answers, reference.core.wanted, order, bracket)
+    late = f"finer: {refinements.failure.reason}" if refinements.failure else ""
     cells = []
-    for i, mine in enumerate(settled):
-        cell = _row(head, omega, i, reference, study.answers[-1], mine.partner)
+    for i, mine in enumerate(refined_modes):
+        cell = _row(head, omega, i, reference, refinements.answers[-1], mine.partner)
         if still := _still(reference, i, head.motions):
             cell = replace(cell, verdict="not applicable", reason=still)
         elif mine.estimate:
             cell = _judged(cell, reference, i, mine, late)
         cells.append(cell)
     levels = [
-        Level(head.case, omega, i + 1, head.code, n, f) for i, mine in enumerate(settled) for n, f in mine.history
+        Level(head.case, omega, i + 1, head.code, n, f) for i, mine in enumerate(refined_modes) for n, f in mine.history
     ]
     return cells, levels
 
@@ -133,8 +135,8 @@ def same(
 
 def printed(head: Head, omega: float, i: int, reference: Reference, value: Estimate, note: str) -> Cell:
     """The cell of a printed number for the ``i``-th mode the case compares."""
-    settled = Settled(value, Pair(i, 1.0, note), ())
-    return _judged(_row(head, omega, i, reference, None, settled.partner), reference, i, settled, "")
+    refined_modes = RefinedMode(value, Pair(i, 1.0, note), ())
+    return _judged(_row(head, omega, i, reference, None, refined_modes.partner), reference, i, refined_modes, "")
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
         ordinal=int(numbered(reference.core.names)[i].split()[-1]),
         frequency=datum.value,
     )
-    base = reference.core.settled[i].estimate
+    base = reference.core.modes[i].estimate
     if base is None:
         return replace(cell, verdict="not applicable", reason="core has no frequency to compare it with")
     found = Validation(
@@ -212,21 +214,21 @@ def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     return replace(cell, verdict=verdict, reason=reason)
 
 
-def given(head: Head, omega: float, reference: Reference, study: Study, order: int, what: str) -> Rows:
+def given(head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, what: str) -> Rows:
     """Cells of one given discretisation of core's: its coarsest answer, explained by what refining it does.
 
     Args:
         what: names the discretisation, for the reason.
-        study: core's, the discretisation in question first, then ever finer ones of its kind.
+        refinements: core's, the discretisation in question first, then ever finer ones of its kind.
     """
-    if not study.answers:
-        return [failed(head, omega, study.failure)], []
-    first = replace(study, answers=study.answers[:1])
+    if not refinements.answers:
+        return [failed(head, omega, refinements.failure)], []
+    first = replace(refinements, answers=refinements.answers[:1])
     coarse, levels = refined(head, omega, reference, first, order)
-    fine, _ = refined(head, omega, reference, study, order)
+    fine, _ = refined(head, omega, reference, refinements, order)
     cells = []
     for i, (cell, limit) in enumerate(zip(coarse, fine, strict=True)):
-        base, difference = reference.core.settled[i].estimate, cell.difference
+        base, difference = reference.core.modes[i].estimate, cell.difference
         if difference is not None and base is not None:
             cell = replace(cell, uncertainty=base.uncertainty)
             verdict, reason = discretised(difference, base.uncertainty, head.target, 0.0, limit.difference, what)
@@ -259,7 +261,7 @@ def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes |
 
 def _known(reference: Reference, i: int, target: float) -> Judgement:
     """What the effects that the reference lacks do to its ``i``-th mode."""
-    full, base = reference.full[i], reference.core.settled[i].estimate
+    full, base = reference.full[i], reference.core.modes[i].estimate
     shift = base.value / full - 1.0 if full and base else None
     verdict, reason = known(shift, target, reference.effects[i])
     if full and reference.likeness[i] < LEAST_MAC:
@@ -277,8 +279,8 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
     return "" if motion in motions else f"by its own declaration no mode of this code has any {motion} motion"
 
 
-def _judged(cell: Cell, reference: Reference, i: int, mine: Settled, late: str) -> Cell:
-    base, best = reference.core.settled[i].estimate, mine.estimate
+def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: str) -> Cell:
+    base, best = reference.core.modes[i].estimate, mine.estimate
     if base is None or best is None:
         return cell
     difference = best.value / base.value - 1.0

@@ -162,10 +162,10 @@ def _refined(head: Head, name: str, blade: Blade, refining: Refining, limits: Li
         return answers(name, blade, runs, limits)
 
     count = max(r.core.count for _, r in core)
-    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
     return _join(
         refined(head, omega, r, s, refining.order, refining.bracket)
-        for (omega, r), s in zip(core, studies, strict=True)
+        for (omega, r), s in zip(core, refinements, strict=True)
     )
 
 
@@ -175,9 +175,9 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
 
     refining = core_solver.as_given(source)
     count = max(r.core.count for _, r in core)
-    studies = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
     return _join(
-        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, studies, strict=True)
+        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, refinements, strict=True)
     )
 
 

@@ -1,6 +1,6 @@
-"""What well-known mistakes would do to a blade's frequencies, so that a miss can be told from its likeness.
+"""What well-known faults do to a blade's frequencies, so that a miss can be recognised.
 
-Each of ``mistakes.MISTAKES`` is solved in core alone. Whether the harness notices such mistakes is another question, which
+Each of ``core_faults.CORE_FAULTS`` is solved in core alone. Whether the harness notices such faults is another question, which
 ``faults`` answers with the real matrix.
 """
 
@@ -15,11 +15,11 @@ from ...core.eigen import UnstableError
 from ...core.modes import Modes
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, families, pair, weights
+from .core_faults import CORE_FAULTS, Solve
 from .core_solver import START, qualifying
-from .mistakes import MISTAKES, Solve
 
 ELEMENTS = START
-"""With and without a mistake: their error is much the same, and all but cancels in what the mistake changes."""
+"""With and without a fault: their error is much the same, and all but cancels in what the fault changes."""
 
 NEAR = 5e-2
 """Relative distance within which core's converged answer and this coarser one are the same mode of a family: lumped mass is
@@ -28,7 +28,7 @@ NEAR = 5e-2
 
 @dataclass(frozen=True)
 class Changed:
-    """One mode with and without a mistake: its name, and frequencies in rad/s; ``wrong`` None where none is like it."""
+    """One mode with and without a fault: its name, and frequencies in rad/s; ``wrong`` None where none is like it."""
 
     name: str
     right: float
@@ -42,19 +42,19 @@ class Changed:
 
 @dataclass(frozen=True)
 class Wrong:
-    """What one mistake does to a blade's compared modes at one speed; none if it leaves no steady state."""
+    """What one fault does to a blade's compared modes at one speed; none if it leaves no steady state."""
 
-    mistake: str
+    fault: str
     omega: float
     modes: tuple[Changed, ...]
 
 
 def solve(variant: Variant, compare: Compare) -> list[Wrong]:
-    """Every mistake in one blade at every speed."""
+    """Every fault in one blade at every speed."""
     out = []
     for omega in variant.speeds.tolist():
         known: dict[Solve, Modes | None] = {}
-        for m in MISTAKES:
+        for m in CORE_FAULTS:
             if omega or m.at_rest:
                 if m.right not in known:
                     known[m.right] = _solved(m.right, variant.blade, omega, compare)

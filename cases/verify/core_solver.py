@@ -18,7 +18,7 @@ from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare, Discretisation
 from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights
 from ..judge.uncertainty import widened
-from .refinement import Refining, Settled, Wanted, settle, solve
+from .refinement import RefinedMode, Refining, Wanted, follow, solve
 
 SURE = 5e-5
 """Core is refined until its own uncertainty, relative, is no more than this: a quarter of what a code is allowed."""
@@ -45,7 +45,7 @@ class Converged:
     """Core's modes at one speed: which of them a case compares, their estimates and families, in the same order."""
 
     wanted: Wanted
-    settled: tuple[Settled, ...]
+    modes: tuple[RefinedMode, ...]
     names: tuple[str, ...]
 
     @property
@@ -122,27 +122,28 @@ def _converged(
         return Wanted(finest, qualifying(finest, weight, compare), weight)
 
     plan = refining(blade)
-    (study,) = solve(ask, [omega], plan, count, wanted)
-    if not study.answers:
-        return study.failure or Failure("refused", "no answer")
-    target = wanted(omega, study.answers)
+    (refinements,) = solve(ask, [omega], plan, count, wanted)
+    if not refinements.answers:
+        return refinements.failure or Failure("refused", "no answer")
+    target = wanted(omega, refinements.answers)
     if len(target.indices) < compare.modes:
         if count > 2 * compare.modes + MARGIN:
             raise CaseError(
-                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s {len(target.indices)} of the lowest "
-                f"{len(study.answers[-1].frequencies)} modes move so: lower it"
+                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s only {len(target.indices)} of the lowest "
+                f"{len(refinements.answers[-1].frequencies)} modes qualify; reduce it"
             )
         return _converged(blade, omega, compare, model, weight, DEEPER * count)
     named = families(target.reference, weight)
-    factor, unsure = rigid_strain_bias(blade, omega, plan.levels[0], count, model)
-    settled = tuple(
-        _corrected(one, factor[k], unsure[k])
-        for k, one in zip(target.indices, settle(study.answers, target, plan.order), strict=True)
+    meshes = [answer.elements for answer in refinements.answers]
+    factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, model)
+    refined_modes = tuple(
+        _corrected(one, float(factor[k]), float(unsure[k]))
+        for k, one in zip(target.indices, follow(refinements.answers, target, plan.order), strict=True)
     )
-    return Converged(target, settled, tuple(named[k] for k in target.indices))
+    return Converged(target, refined_modes, tuple(named[k] for k in target.indices))
 
 
-def _corrected(one: Settled, factor: float, unsure: float) -> Settled:
+def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
     """Without the bias of rigid strains."""
     if one.estimate is None:
         return one

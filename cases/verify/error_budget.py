@@ -1,7 +1,7 @@
 """Where differences come from: discretisation, model form, rounding, each switched on in core alone to show its share.
 
 A difference between two answers has four sources: the discretisation of each, the digits a table prints, what a model leaves
-out, and mistakes. Here the first three are told mode by mode, so that a reader can say what is left for the fourth. Every
+out, and faults. Here the first three are told mode by mode, so that a reader can say what is left for the fourth. Every
 share is the relative change of a frequency of core's with one thing altered, against core with all effects and a fine
 division of its own:
 
@@ -64,8 +64,8 @@ def solve(case: Case, variant: Variant) -> list[Share]:
     """The shares in one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
     blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
     printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
-    told = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
-    omega, count = max(told or variant.speeds.tolist()), 2 * compare.modes + 2
+    printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
+    omega, count = max(printed_at or variant.speeds.tolist()), 2 * compare.modes + 2
     right = _solved(blade, omega, FINE, count)
     if right is None:
         return []

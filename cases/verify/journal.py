@@ -131,8 +131,8 @@ def _lines(path: Path) -> tuple[list[dict[str, Any]], int]:
 
 
 def _about(run: Run) -> dict[str, Any]:
-    told = {"plan": run.plan, "settings": run.settings, "versions": run.versions, "command": run.command}
-    return {"kind": "run", **msgspec.to_builtins(told)}
+    run_facts = {"plan": run.plan, "settings": run.settings, "versions": run.versions, "command": run.command}
+    return {"kind": "run", **msgspec.to_builtins(run_facts)}
 
 
 def _current(lines: list[dict[str, Any]]) -> list[str]:

@@ -27,7 +27,7 @@ from .names import unique
 from .reference import references
 from .settings import settings
 from .user_columns import columns as added_columns
-from .user_results import Added, check
+from .user_results import UserResults, check
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def run(
     on_progress: Callable[[Progress], None] = lambda _: None,
     seconds: float | None = None,
     memory: int = Limits.memory,
-    added: Sequence[Added] = (),
+    user_results: Sequence[UserResults] = (),
     parts: bool = True,
     on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
 ) -> Run:
@@ -95,10 +95,12 @@ def run(
     """
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
     known = _known(codes, [v.blade for v in blades])
-    unique(cases, known, added)
-    check(added, blades, [c.name for c in known])
+    unique(cases, known, user_results)
+    check(user_results, blades, [c.name for c in known])
     shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
-    plans = [task for case in cases for task in _tasks(case, known, shown, _limits(case, seconds, memory), added)]
+    plans = [
+        task for case in cases for task in _tasks(case, known, shown, _limits(case, seconds, memory), user_results)
+    ]
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -133,7 +135,7 @@ def run(
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions(known, added),
+        versions=versions(known, user_results),
         settings=tuple(setting for case in cases for setting in settings(case)),
         shares=tuple(made_of),
         origins=tuple(
@@ -183,7 +185,7 @@ def _tasks(
     codes: Sequence[Description],
     shown: Mapping[str, Sequence[Description]],
     limits: Limits,
-    added: Sequence[Added],
+    user_results: Sequence[UserResults],
 ) -> list[_Task]:
     """One for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
@@ -193,7 +195,7 @@ def _tasks(
     out = []
     for v in case.variants:
         made = _dated(columns(case, v, shown[v.name], limits), codes)
-        made += tuple(added_columns(v, added, case.text.compare))
+        made += tuple(added_columns(v, user_results, case.text.compare))
         models = [column.model for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
         out.append(_Task(v, made, question, case.text.compare.modes, shares=partial(error_budget.solve, case, v)))
@@ -215,10 +217,10 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
     return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
 
 
-def versions(codes: Iterable[Description], added: Sequence[Added] = ()) -> dict[str, str]:
+def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:
     """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
-    files = {one.name: f"{'measured,' if one.measured else 'results'} in {Path(one.path).name}" for one in added}
+    files = {one.name: f"{'measured,' if one.measured else 'results'} in {Path(one.path).name}" for one in user_results}
     theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
     return {"python": python_version(), **ours, **theirs, **files}
 

@@ -8,13 +8,15 @@ from ..input.errors import CaseError
 from ..input.schema import Case
 from .columns import OTHER_METHOD
 from .mechanism_case import MechanismCase
-from .user_results import Added
+from .user_results import UserResults
 
 OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed tables")
 """Columns of this package that are no codes, as in results and as in tables."""
 
 
-def unique(cases: Sequence[Case | MechanismCase], codes: Sequence[Description], added: Sequence[Added]) -> None:
+def unique(
+    cases: Sequence[Case | MechanismCase], codes: Sequence[Description], user_results: Sequence[UserResults]
+) -> None:
     """Every name is that of one thing only.
 
     Args:
@@ -29,7 +31,7 @@ def unique(cases: Sequence[Case | MechanismCase], codes: Sequence[Description], 
     for table in dict.fromkeys(tables):
         columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
     columns += [(code.name, f"--codes {code.asked}") for code in codes]
-    columns += [(one.name, f"--add {one.path}") for one in added]
+    columns += [(one.name, f"--add {one.path}") for one in user_results]
     _once("code", columns, "leave one out, or give it another name")
 
 

@@ -17,7 +17,7 @@ from ..judge.verdict import unsigned
 from .cells import Coarse, Head, excused, printed
 from .core_solver import answers, as_given
 from .reference import Reference
-from .refinement import settle, solve
+from .refinement import follow, solve
 
 
 @dataclass(frozen=True)
@@ -118,8 +118,8 @@ def discretised(
         return answers(blade, runs, source.mass, source.stiffness, model)
 
     plan = as_given(source)
-    (study,) = solve(ask, [omega], plan, reference.core.count, lambda *_: wanted)
-    fine = settle(study.answers, wanted, plan.order)
+    (refinements,) = solve(ask, [omega], plan, reference.core.count, lambda *_: wanted)
+    fine = follow(refinements.answers, wanted, plan.order)
     found: list[Coarse | None] = []
     for mode in fine:
         levels = dict(mode.history)

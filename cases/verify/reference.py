@@ -79,7 +79,7 @@ def _reference(
     mine: Converged, full: Converged, target: float, model: Effects, solve: Callable[[Effects], Converged | Failure]
 ) -> Reference:
     whole, likeness = _partners(mine, full)
-    values = [s.estimate.value if s.estimate else None for s in mine.settled]
+    values = [s.estimate.value if s.estimate else None for s in mine.modes]
     shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
     effects: list[list[Effect]] = [[] for _ in values]
     if any(shift is None or abs(shift) > target for shift in shifts):  # each effect alone is worth solving for
@@ -97,8 +97,8 @@ def _change(without: float | None, whole: float | None) -> float | None:
 def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
     """Frequencies in ``other`` of the modes of ``mine``, and how alike the shapes are."""
     if isinstance(other, Failure):
-        return (None,) * len(mine.settled), (0.0,) * len(mine.settled)
-    theirs = dict(zip(other.wanted.indices, other.settled, strict=True))
+        return (None,) * len(mine.modes), (0.0,) * len(mine.modes)
+    theirs = dict(zip(other.wanted.indices, other.modes, strict=True))
     wanted = mine.wanted
     found = pair(wanted.reference, other.wanted.reference, wanted.indices, wanted.weight, least=MAJORITY)
     estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in found]

@@ -37,7 +37,7 @@ class Refining:
 
 
 @dataclass(frozen=True)
-class Settled:
+class RefinedMode:
     """One mode, followed through the refinements.
 
     Attributes:
@@ -54,7 +54,7 @@ class Settled:
 
 
 @dataclass(frozen=True)
-class Study:
+class Refinements:
     """A solver's answer at one speed: its modes at every refinement, and why the finest asked for is not there."""
 
     answers: tuple[Modes, ...]
@@ -76,7 +76,7 @@ def solve(
     refining: Refining,
     count: int,
     wanted: Callable[[float, Sequence[Modes]], Wanted],
-) -> list[Study]:
+) -> list[Refinements]:
     """Studies at each speed. Coarse refinements are asked for first, so that a time limit costs the fine ones.
 
     Args:
@@ -108,7 +108,7 @@ def solve(
         open_ = [omega for omega in speeds if omega not in failed]
         unsure = [omega for omega in open_ if not _sure(solved[omega], wanted(omega, solved[omega]), refining)]
         runs = [(omega, finer, count) for omega in unsure] if finer <= refining.cap else []
-    return [Study(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
+    return [Refinements(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
 
 
 def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
@@ -116,24 +116,24 @@ def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
         s.bracketed
         or s.estimate is None
         or (s.estimate.uncertainty is not None and s.estimate.uncertainty <= refining.sure)
-        for s in settle(answers, wanted, refining.order, refining.bracket)
+        for s in follow(answers, wanted, refining.order, refining.bracket)
     )
 
 
-def settle(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[Settled]:
+def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[RefinedMode]:
     """Each wanted mode's estimate from a solver's answers at rising refinements; ``bracket`` as in ``Refining``."""
     pairs = [pair(wanted.reference, modes, wanted.indices, wanted.weight) for modes in answers]
-    return [_settle(answers, [level[i] for level in pairs], order, bracket) for i in range(len(wanted.indices))]
+    return [_follow(answers, [level[i] for level in pairs], order, bracket) for i in range(len(wanted.indices))]
 
 
-def _settle(answers: Sequence[Modes], partners: Sequence[Pair], order: int, bracket: bool) -> Settled:
+def _follow(answers: Sequence[Modes], partners: Sequence[Pair], order: int, bracket: bool) -> RefinedMode:
     found = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
     last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code gave no modes")
     history = tuple((m.elements, float(m.frequencies[k])) for m, k in found)
     if last.mode is None:
-        return Settled(None, last, history)
+        return RefinedMode(None, last, history)
     own = float(answers[-1].uncertainty[last.mode]) if len(answers[-1].uncertainty) else None
     if bracket and own is not None:
-        return Settled(from_bracket(history[-1][1], own), last, history, bracketed=True)
+        return RefinedMode(from_bracket(history[-1][1], own), last, history, bracketed=True)
     refined = from_refinement([n for n, _ in history], [f for _, f in history], order)
-    return Settled(widened(refined, own or 0.0), last, history)
+    return RefinedMode(widened(refined, own or 0.0), last, history)

@@ -23,7 +23,7 @@ from ..judge.verdict import Effect
 from . import mechanism_columns
 from .core_solver import Converged
 from .reference import Reference
-from .refinement import Settled, Wanted
+from .refinement import RefinedMode, Wanted
 
 TYPES: dict[str, type] = {
     kind.__name__: kind
@@ -32,7 +32,7 @@ TYPES: dict[str, type] = {
     "Converged": Converged,
     "Reference": Reference,
     "MechanismReference": mechanism_columns.Reference,
-    "Settled": Settled,
+    "ConvergedMode": RefinedMode,
     "Wanted": Wanted,
 }
 """Name in the file → dataclass."""

@@ -19,13 +19,13 @@ from ..judge.uncertainty import Estimate
 from .cells import Datum, Head, empty, measured, printed
 from .columns import Column, References, Rows
 from .reference import Reference, references
-from .user_results import Added, Given, at
+from .user_results import Given, UserResults, at
 
 
-def columns(variant: Variant, added: Sequence[Added], compare: Compare) -> list[Column]:
+def columns(variant: Variant, user_results: Sequence[UserResults], compare: Compare) -> list[Column]:
     """A column for each file that has something about a blade."""
     out = []
-    for one in added:
+    for one in user_results:
         mine = [row for row in one.rows if row.blade in ("", variant.name)]
         if not mine:
             continue
@@ -47,7 +47,9 @@ def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
             k = _place(row, reference)
             sure = Estimate(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega))
             cells.append(
-                _elsewhere(head, omega, row, reference) if k is None else printed(head, omega, k, reference, sure, "")
+                _without_partner(head, omega, row, reference)
+                if k is None
+                else printed(head, omega, k, reference, sure, "")
             )
     return cells, []
 
@@ -66,7 +68,9 @@ def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given]
         k = _place(row, solved[omega])
         datum = Datum(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega), row.inputs)
         cells.append(
-            _elsewhere(head, omega, row, solved[omega]) if k is None else measured(head, omega, k, solved[omega], datum)
+            _without_partner(head, omega, row, solved[omega])
+            if k is None
+            else measured(head, omega, k, solved[omega], datum)
         )
     return cells, []
 
@@ -79,7 +83,7 @@ def _off(row: Given, omega: float) -> float:
     return abs(row.omega / omega - 1.0) if omega else 0.0
 
 
-def _elsewhere(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
+def _without_partner(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
     """The cell of a row about a mode that the case does not compare."""
     called, known = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
     reason = f"line {row.line}: the case does not compare mode {called} here: it compares {known}"

@@ -74,7 +74,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Added:
+class UserResults:
     """A file of results, what to call them, and whether they are measured."""
 
     name: str
@@ -113,7 +113,7 @@ class _Columns:
         return (FREQUENCY | MEASURED)[self.frequency]
 
 
-def read(name: str, path: Path, defaults: Defaults | None = None) -> Added:
+def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults:
     """The results in a CSV file; ``defaults`` are for measured ones.
 
     Raises:
@@ -132,7 +132,7 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> Added:
             raise CaseError(f"{where}: {len(cells)} columns instead of {len(header)}: a missing or stray comma?")
         rows.append(_given(where, k, dict(zip(header, cells, strict=True)), columns, defaults or Defaults()))
     _no_repeats(rows, path, columns.measured)
-    return Added(name, str(path), tuple(rows), columns.measured)
+    return UserResults(name, str(path), tuple(rows), columns.measured)
 
 
 def _header(header: Sequence[str], where: str) -> _Columns:
@@ -155,8 +155,8 @@ def _header(header: Sequence[str], where: str) -> _Columns:
     allowed = ("uncertainty [%]", f"uncertainty {frequency.partition(' ')[2]}")
     sure = [column for column in header if column in UNCERTAINTY]
     if len(sure) > 1 or not set(sure) <= set(allowed):
-        told = f"{where}: columns of uncertainty: {', '.join(sure)}: give one at most, {' or '.join(allowed)}"
-        raise CaseError(told)
+        message = f"{where}: columns of uncertainty: {', '.join(sure)}: give one at most, {' or '.join(allowed)}"
+        raise CaseError(message)
     if INPUTS in header and frequency not in MEASURED:
         raise CaseError(
             f"{where}: column {INPUTS!r} is for measured frequencies: leave it out, or name theirs 'measured [Hz]'"
@@ -219,14 +219,14 @@ def _no_repeats(rows: Sequence[Given], path: Path, measured: bool) -> None:
         seen[key] = row.line
 
 
-def check(added: Sequence[Added], variants: Sequence[Variant], codes: Iterable[str]) -> None:
+def check(user_results: Sequence[UserResults], variants: Sequence[Variant], codes: Iterable[str]) -> None:
     """Every name is free, and every row is of a blade and a speed that the run has; a measured one of a speed in its range.
 
     Raises:
         CaseError: one line, as for ``read``.
     """
     taken = set(codes)
-    for one in added:
+    for one in user_results:
         if one.name in taken:
             raise CaseError(f"--add {one.name}: there is a code or another file of that name: call it something else")
         taken.add(one.name)

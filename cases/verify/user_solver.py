@@ -28,7 +28,7 @@ from .refinement import Refining, solve
 
 
 @dataclass(frozen=True)
-class Yours:
+class UserSolver:
     """A solver to be judged.
 
     Attributes:
@@ -66,45 +66,45 @@ class Yours:
         return len(inspect.signature(self.solve).parameters) != 2
 
 
-def rows(yours: Yours, variant: Variant, compare: Compare) -> Rows:
+def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
     """Its cells of one blade at all the case's speeds: against core, and against printed numbers that core agrees with,
     with the table's effects and with the solver's.
 
     Raises:
         CaseError: if core cannot solve the blade.
     """
-    target = yours.target or compare.target
-    head = Head(variant.name, yours.name, "", "code", target, "nothing")
+    target = solver.target or compare.target
+    head = Head(variant.name, solver.name, "", "code", target, "nothing")
     speeds = variant.speeds.tolist()
-    if why := yours.unsupported(variant.blade):
+    if why := solver.unsupported(variant.blade):
         return [empty(head, omega, "not applicable", why) for omega in speeds], []
-    model = felt(yours.effects, variant.blade)
+    model = felt(solver.effects, variant.blade)
     solved = references(variant.blade, speeds, compare, [model])
     core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
     if len(core) < len(speeds):
-        raise CaseError(f"{variant.name}: core without {', '.join(yours.lacks)} has no steady state at every speed")
-    finest = 4 * yours.levels[-1]
-    refining = Refining(yours.levels, yours.order, finest) if yours.refines else Refining((1,), 0, 1, bracket=True)
+        raise CaseError(f"{variant.name}: core without {', '.join(solver.lacks)} has no steady state at every speed")
+    finest = 4 * solver.levels[-1]
+    refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
     count = max(r.core.count for _, r in core)
     by_speed = {omega: r.core.wanted for omega, r in core}
-    studies = solve(
-        lambda runs: _answers(yours, variant.blade, runs), speeds, refining, count, lambda w, _: by_speed[w]
+    refinements = solve(
+        lambda runs: _answers(solver, variant.blade, runs), speeds, refining, count, lambda w, _: by_speed[w]
     )
     cells, levels = [], []
-    for (omega, reference), study in zip(core, studies, strict=True):
-        new = refined(head, omega, reference, study, refining.order, refining.bracket)
+    for (omega, reference), one in zip(core, refinements, strict=True):
+        new = refined(head, omega, reference, one, refining.order, refining.bracket)
         cells += new[0]
         levels += new[1]
     return cells + _printed(cells, variant, compare, solved), levels
 
 
-def _answers(yours: Yours, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
+def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
     """What it answers; a mistake in what it returns is its failure, an exception in it is its author's to see."""
     out: list[Answer] = []
     for omega, elements, count in runs:
-        found = yours.solve(blade, omega, elements, count) if yours.refines else yours.solve(blade, omega)
+        found = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
         try:
-            out.append(_modes(omega, elements, *found, exact=not yours.refines))
+            out.append(_modes(omega, elements, *found, exact=not solver.refines))
         except (TypeError, ValueError) as error:
             out.append(Failure("nonsense", f"not (frequencies, shapes): {error}"))
     return out
@@ -167,7 +167,7 @@ def _against(mine: Cell, number: Cell, printed: float) -> Cell:
 
 
 def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
-    """Which deliberate mistake in core gives the frequency that a miss has; empty if none does.
+    """Which fault in core gives the frequency that a miss has; empty if none does.
 
     One that explains nine tenths of the difference, at least.
     """
@@ -180,6 +180,6 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
             if wrong.omega == cell.omega and same and m.change is not None:
                 rest = cell.frequency / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
-                    told = f"as core with this mistake: {wrong.mistake} ({percent(m.change)}; {unsigned(rest)} from it)"
-                    found.append((abs(rest), told))
+                    likeness = f"as core with this fault: {wrong.fault} ({percent(m.change)}; {unsigned(rest)} from it)"
+                    found.append((abs(rest), likeness))
     return min(found)[1] if found else ""

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.verify.user_results import Added
+from ...cases.verify.user_results import UserResults
 from ...core.participation import FAMILIES
 from ..shared.certain import certain
 from ..shared.style import MUTED, WIDTH, beside, house, key, title
@@ -31,14 +31,14 @@ LETTER = 0.066
 """Width of a letter of the labels at the lines' ends, inches."""
 
 
-def draw(diagram: Campbell, units: Units, heading: str, added: Sequence[Added] = ()) -> Figure:
+def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[UserResults] = ()) -> Figure:
     """The diagram.
 
     Lines are the modes; each stretch has the colour of what moves in it there, so that a veering shows as two lines that trade
     colours. The operating range is shaded. Where a mode is nearer to n per revolution than the margin within that range, it
     is underlaid in red; the same deserves a look in the table of margins. Where n per revolution reaches only the lowest of
-    many modes, those have a scale of their own, and the rest lies above it on a coarser one. Points of ``added``, as those of a
-    test rig, lie over the lines.
+    many modes, those have a scale of their own, and the rest lies above it on a coarser one. Points of
+    ``user_results``, such as a test rig's, lie over the lines.
     """
     with house():
         low, height = 0.95, 5.9
@@ -56,7 +56,7 @@ def draw(diagram: Campbell, units: Units, heading: str, added: Sequence[Added] =
             ]
         for axes, limits in zip(panels, ranges, strict=True):
             _panel(axes, diagram, units, limits)
-            points.draw(axes, added, diagram.blade.name, units)
+            points.draw(axes, user_results, diagram.blade.name, units)
         lowest, highest = panels[0], panels[-1]
         rays(lowest, diagram, units)
         band_label(highest, diagram, units)
@@ -74,9 +74,9 @@ def draw(diagram: Campbell, units: Units, heading: str, added: Sequence[Added] =
         for axes in panels[1:]:
             axes.spines["bottom"].set_visible(False)
             axes.tick_params(bottom=False, labelbottom=False)
-        hidden = points.outside(added, diagram, ranges[-1][1] / units.frequencies)
+        hidden = points.outside(user_results, diagram, ranges[-1][1] / units.frequencies)
         title(figure, heading, "; ".join(part for part in (_below(diagram, units), hidden) if part))
-        handles = [*legend(diagram), *points.legend(added, diagram.blade.name)]
+        handles = [*legend(diagram), *points.legend(user_results, diagram.blade.name)]
         key(figure, handles, 0.07, across=-(-len(handles) // (1 + (len(handles) > 5))))
     return figure
 

@@ -10,7 +10,7 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
-from ...cases.verify.user_results import Added
+from ...cases.verify.user_results import UserResults
 from ..shared.style import house, save
 from ..shared.units import Units
 from . import csv_tables, encounters, shapes
@@ -29,11 +29,11 @@ def write(
     command: str,
     about: Sequence[str] = (),
     extra: Sequence[tables.Sheet] = (),
-    added: Sequence[Added] = (),
+    user_results: Sequence[UserResults] = (),
 ) -> tuple[Path, ...]:
     """Figures (SVG and PNG), CSV, and a Markdown page that holds everything.
 
-    ``about`` says where the blade is from; ``extra`` are tables beyond those of every diagram; points of ``added`` are
+    ``about`` says where the blade is from; ``extra`` are tables beyond those of every diagram; points of ``user_results`` are
     drawn over the lines.
 
     Raises:
@@ -42,7 +42,7 @@ def write(
     folder.mkdir(parents=True, exist_ok=True)
     name, k = diagram.blade.name, shapes_at(diagram)
     drawn = {
-        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed", added),
+        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed", user_results),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
     }
     close = encounters.draw(diagram, units, f"{name}: where modes meet")

@@ -7,14 +7,14 @@ from matplotlib.lines import Line2D
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.judge.measured import COVERAGE
-from ...cases.verify.user_results import Added, Given
+from ...cases.verify.user_results import Given, UserResults
 from ..shared.style import INK, MARKERS
 from ..shared.units import Units
 
 
-def draw(axes: Axes, added: Sequence[Added], blade: str, units: Units) -> None:
+def draw(axes: Axes, user_results: Sequence[UserResults], blade: str, units: Units) -> None:
     """The points of each file, with bars of two standard uncertainties where they are measured."""
-    for k, one in enumerate(added):
+    for k, one in enumerate(user_results):
         mine = _of(one, blade)
         bars = [COVERAGE * (r.value.uncertainty or 0.0) * r.value.value * units.frequencies for r in mine]
         axes.errorbar(
@@ -31,7 +31,7 @@ def draw(axes: Axes, added: Sequence[Added], blade: str, units: Units) -> None:
         )
 
 
-def legend(added: Sequence[Added], blade: str) -> list[Line2D]:
+def legend(user_results: Sequence[UserResults], blade: str) -> list[Line2D]:
     """An entry for each file with points of this blade."""
     return [
         Line2D(
@@ -44,20 +44,20 @@ def legend(added: Sequence[Added], blade: str) -> list[Line2D]:
             mfc=INK if one.measured else "white",
             label=f"{one.name}, measured, ± 2 u_D" if one.measured else one.name,
         )
-        for k, one in enumerate(added)
+        for k, one in enumerate(user_results)
         if _of(one, blade)
     ]
 
 
-def outside(added: Sequence[Added], diagram: Campbell, top: float) -> str:
+def outside(user_results: Sequence[UserResults], diagram: Campbell, top: float) -> str:
     """How many points lie beyond the diagram's speeds, or above ``top`` (rad/s), in words; empty if none does."""
     low, high = diagram.wanted.speeds[0], diagram.wanted.speeds[-1]
-    every = [r for one in added for r in _of(one, diagram.blade.name)]
+    every = [r for one in user_results for r in _of(one, diagram.blade.name)]
     n = sum(r.omega < low - r.slack or r.omega > high + r.slack or r.value.value > top for r in every)
     return f"{n} of {len(every)} added points outside" if n else ""
 
 
-def _of(one: Added, blade: str) -> list[Given]:
+def _of(one: UserResults, blade: str) -> list[Given]:
     return [row for row in one.rows if row.blade in ("", blade)]
 
 

@@ -94,9 +94,9 @@ def _rise(rise: float, doubt: float) -> str:
 def _southwell(fit: Southwell, sure: float) -> tuple[str, str]:
     """φ with the digits that the frequencies leave it, four at most, and the residual where it exceeds their uncertainty."""
     size = abs(fit.coefficient)
-    told = certain(fit.coefficient, fit.uncertainty / size if size else np.inf, 4)
+    text = certain(fit.coefficient, fit.uncertainty / size if size else np.inf, 4)
     least = max(sure, 1e-6)
-    return told, f"{100 * fit.residual:.2g} %" if fit.residual >= least else f"< {100 * least:.1g} %"
+    return text, f"{100 * fit.residual:.2g} %" if fit.residual >= least else f"< {100 * least:.1g} %"
 
 
 def _margins(diagram: Campbell, units: Units) -> Sheet:

@@ -36,10 +36,10 @@ def verdict(found: Comparison, strict: bool) -> str:
         "better": len(found.better),
         "new": len(found.new),
     }
-    told = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
-    told += f"; {found.measured} measured, not judged" if found.measured else ""
+    moved = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
+    moved += f"; {found.measured} measured, not judged" if found.measured else ""
     sign = "✔ gate passed" if found.passed(strict) else "✘ gate failed"
-    return f"{sign}: {len(found.after.cells)} cells against {_named(found.before)}: {told}"
+    return f"{sign}: {len(found.after.cells)} cells against {_named(found.before)}: {moved}"
 
 
 def _named(entry: Entry) -> str:
@@ -52,7 +52,7 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
         ("Worse", [_change(c) for c in found.worse]),
         ("Held to a wider target than before", [_loosened(c) for c in found.loosened]),
         ("Gone", _gone(found.gone)),
-        ("Seeded faults that nobody catches any more", [_uncaught(c) for c in found.uncaught]),
+        ("Seeded faults that are no longer detected", [_uncaught(c) for c in found.uncaught]),
         ("Seeded faults that this run must catch, and does not", [{"fault": name} for name in found.missed]),
         ("Moved", [_change(c) for c in found.moved]),
         ("Better", [_change(c) for c in found.better]),
@@ -64,7 +64,7 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
 
 def _times(found: Comparison) -> str:
     same = found.before.machine == found.after.machine
-    return "Times, which decide nothing" + ("" if same else "; not the same machine, or not known to be")
+    return "Timings (informational)" + ("" if same else "; not the same machine, or not known to be")
 
 
 def _place(point: Point) -> Row:
@@ -123,7 +123,7 @@ def _column(gone: Gone) -> tuple[str, str]:
 
 def _uncaught(control: Caught) -> Row:
     return {
-        "mistake": control.control,
+        "fault": control.control,
         "case": control.case,
         "speed, rad/s": f"{control.omega:.6g}",
         "was caught by": ", ".join(control.caught),
@@ -173,14 +173,14 @@ def annotations(found: Comparison, folder: Path) -> list[str]:
     files = case_files(folder)
     worse = {c.after.key for c in found.worse}
     standing = [p for p in found.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
-    told = [("error", p.case, text) for p, text in _by_column([(c.after, _became(c)) for c in found.worse])]
-    told += [
+    rows = [("error", p.case, text) for p, text in _by_column([(c.after, _became(c)) for c in found.worse])]
+    rows += [
         ("error", r["case"], f"{r['code']}: {r['answers']} answers gone, now {r['now']}") for r in _gone(found.gone)
     ]
     for control, case in dict.fromkeys((c.control, c.case) for c in found.uncaught):
-        told.append(("error", case, f"{control}: a mistake in core that nobody catches any more"))
-    told += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing])]
-    return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in told]
+        rows.append(("error", case, f"{control}: a fault in core that is no longer detected"))
+    rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing])]
+    return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]
 
 
 def _became(change: Change) -> str:
@@ -188,10 +188,10 @@ def _became(change: Change) -> str:
     return f"{was} → {change.after.verdict}, {_digits(change.after.frequency)} rad/s"
 
 
-def _by_column(told: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
+def _by_column(points: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
     """The first of each case and code, and how many more there are."""
     groups: dict[tuple[str, str], list[tuple[Point, str]]] = {}
-    for point, text in told:
+    for point, text in points:
         groups.setdefault((point.case, point.code), []).append((point, text))
     out = []
     for (point, text), *rest in groups.values():

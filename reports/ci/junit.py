@@ -28,9 +28,9 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
     """
     findings = _findings(found, strict) if found else {}
     root = Element("testsuites", name="southwell")
-    if told := summary.incomplete(run):
+    if messages := summary.incomplete(run):
         test = _test(SubElement(root, "testsuite", name="the run"), "southwell", "the run is complete", 0.0)
-        SubElement(test, "error", type="incomplete", message=_text(told)).text = _text(told)
+        SubElement(test, "error", type="incomplete", message=_text(messages)).text = _text(messages)
     shared: dict[tuple[str, str, float], int] = {}
     for c in run.cells:
         shared[c.case, c.code, c.omega] = shared.get((c.case, c.code, c.omega), 0) + 1
@@ -52,13 +52,13 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
 
 def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, int], str]:
     """What a gate has against cells that are there."""
-    told = {
+    messages = {
         c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in found.worse
     }
     for c in found.moved if strict else ():
         if c.before:
-            told.setdefault(c.after.key, f"moved: {c.before.frequency!r} → {c.after.frequency!r} rad/s")
-    return told
+            messages.setdefault(c.after.key, f"moved: {c.before.frequency!r} → {c.after.frequency!r} rad/s")
+    return messages
 
 
 def _regressions(root: Element, found: Comparison) -> None:
@@ -76,7 +76,7 @@ def _regressions(root: Element, found: Comparison) -> None:
 
 def _lost(suite: Element, control: Caught) -> None:
     test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s", 0.0)
-    _failed(test, "not caught", f"was caught by {', '.join(control.caught)}; nobody catches it now")
+    _failed(test, "not caught", f"was caught by {', '.join(control.caught)}; no code detects it now")
 
 
 def _name(code: str, mode: int, family: str, omega: float) -> str:

@@ -15,7 +15,7 @@ import pytest
 if TYPE_CHECKING:
     from ...cases.input.schema import Case, Variant
     from ...cases.judge.results import Cell
-    from ...cases.verify.user_solver import Yours
+    from ...cases.verify.user_solver import UserSolver
 
 MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
 
@@ -43,9 +43,9 @@ def pytest_configure(config: pytest.Config) -> None:
     """Names the mark; gathers results if a report is wanted, where there is one process that sees them all."""
     config.addinivalue_line("markers", HELP)
     if folder := config.getoption("--southwell-report"):
-        from .pytest_report import Report, Told
+        from .pytest_report import PlanSender, Report
 
-        gathers = Told() if hasattr(config, "workerinput") else Report(folder, config)
+        gathers = PlanSender() if hasattr(config, "workerinput") else Report(folder, config)
         config.pluginmanager.register(gathers, "southwell-report")
 
 
@@ -53,7 +53,7 @@ def pytest_configure(config: pytest.Config) -> None:
 class Chosen:
     """One test: a solver, a blade, a speed (rad/s) and which of the modes that the case compares, from 1."""
 
-    yours: "Yours"
+    solver: "UserSolver"
     case: "Case"
     variant: "Variant"
     omega: float
@@ -80,24 +80,24 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     from ...cases.input.errors import CaseError
     from ...cases.input.library import select
     from ...cases.verify.names import unique
-    from ...cases.verify.user_solver import Yours
+    from ...cases.verify.user_solver import UserSolver
 
-    told = config.getoption("--southwell-target")
+    target = config.getoption("--southwell-target")
     try:
-        yours = Yours(*mark.args, **{**mark.kwargs, **({"target": told} if told else {})})
-        yours.effects  # noqa: B018  (the names of effects are looked at here, once)
+        solver = UserSolver(*mark.args, **{**mark.kwargs, **({"target": target} if target else {})})
+        solver.effects  # noqa: B018  (the names of effects are looked at here, once)
     except TypeError as error:
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
     wanted = config.getoption("--southwell-cases")
     try:
         some = [select(n) for n in wanted.split(",")] if wanted else None
-        cases = [select(n) for n in yours.cases] or some or _all()
+        cases = [select(n) for n in solver.cases] or some or _all()
         unique(cases, [], [])
         only = {v.name for c in some or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error
     return [
-        Chosen(yours, case, variant, omega, k)
+        Chosen(solver, case, variant, omega, k)
         for case in cases
         for variant in case.variants
         if variant.name in only
@@ -133,7 +133,7 @@ class CellUnderTest:
 
         chosen = self.chosen
         cells, levels = self._once(
-            "cells", lambda: user_solver.rows(chosen.yours, chosen.variant, chosen.case.text.compare)
+            "cells", lambda: user_solver.rows(chosen.solver, chosen.variant, chosen.case.text.compare)
         )
         mine = [c for c in cells if c.omega == chosen.omega and c.mode in (0, chosen.mode)]
         here = [v for v in levels if v.omega == chosen.omega and v.mode == chosen.mode]
@@ -146,7 +146,7 @@ class CellUnderTest:
                 case "known difference":
                     known.append(cell.reason)
                 case "fail" | "inconclusive":
-                    known.append(self._excuse(cell) or pytest.fail(self._told(cell), pytrace=False))
+                    known.append(self._excuse(cell) or pytest.fail(self._message(cell), pytrace=False))
         if known:
             pytest.xfail("; ".join(dict.fromkeys(known)))
 
@@ -154,14 +154,14 @@ class CellUnderTest:
         """The cause of a known difference, if the mark names one that is large enough."""
         from ...cases.judge.verdict import percent, unsigned
 
-        for pattern, (cause, most) in self.chosen.yours.known.items():
+        for pattern, (cause, most) in self.chosen.solver.known.items():
             named = fnmatch.fnmatchcase(self.chosen.name, pattern) or fnmatch.fnmatchcase(cell.case, pattern)
             if named and cell.difference is not None and abs(cell.difference) <= most:
                 return f"known, up to {unsigned(most)}: {cause}: {percent(cell.difference)}"
         return ""
 
-    def _told(self, cell: "Cell") -> str:
-        """What a miss says: the numbers, the verdict, and the mistake it looks like."""
+    def _message(self, cell: "Cell") -> str:
+        """What a miss says: the numbers, the verdict, and the fault it looks like."""
         from ...cases.verify import controls
         from ...cases.verify.user_solver import alike
 
@@ -173,14 +173,14 @@ class CellUnderTest:
         like = (
             ""
             if cell.difference is None
-            else alike(cell, self._once("mistakes", partial(controls.solve, variant, compare)))
+            else alike(cell, self._once("faults", partial(controls.solve, variant, compare)))
         )
-        told = f"{where}: {self.chosen.yours.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
-        return f"{told}; {like}" if like else told
+        text = f"{where}: {self.chosen.solver.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
+        return f"{text}; {like}" if like else text
 
     def _once(self, what: str, make: Any) -> Any:
         """What all tests of one blade share."""
-        key = (what, id(self.chosen.yours), self.chosen.variant.name)
+        key = (what, id(self.chosen.solver), self.chosen.variant.name)
         if key not in self.solved:
             self.solved[key] = make()
         return self.solved[key]
@@ -204,5 +204,5 @@ def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
 
     from ...cases.verify.settings import settings
 
-    told = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
-    return msgspec.json.encode({"cells": cells, "levels": levels, "settings": told}).decode()
+    about = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
+    return msgspec.json.encode({"cells": cells, "levels": levels, "settings": about}).decode()

@@ -28,16 +28,16 @@ def _planned(session: pytest.Session) -> list[list[Any]]:
         chosen = getattr(item, "callspec", None) and item.callspec.params.get(FIXTURE)  # type: ignore[attr-defined]
         if isinstance(chosen, Chosen):
             owner = item.nodeid.partition("[")[0]
-            first = owners.setdefault((chosen.variant.name, chosen.yours.name), owner)
+            first = owners.setdefault((chosen.variant.name, chosen.solver.name), owner)
             if first != owner:
                 raise pytest.UsageError(
-                    f"{first} and {owner}: both solvers are named {chosen.yours.name!r}: give name=…"
+                    f"{first} and {owner}: both solvers are named {chosen.solver.name!r}: give name=…"
                 )
-            planned.append([chosen.variant.name, chosen.yours.name, chosen.omega, chosen.mode])
+            planned.append([chosen.variant.name, chosen.solver.name, chosen.omega, chosen.mode])
     return planned
 
 
-class Told:
+class PlanSender:
     """In a process of pytest-xdist: tells the one that reports what is to be run."""
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:

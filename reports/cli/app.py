@@ -115,25 +115,25 @@ def _status(words: list[str]) -> int:
         status = _run(words)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        status = _told(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
+        status = _reported(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
     except (CycloptsError, UsageError) as error:
-        status = _told(error, BAD_INPUT)
+        status = _reported(error, BAD_INPUT)
     except IncompleteError as error:
-        status = _told(error, INCOMPLETE)
+        status = _reported(error, INCOMPLETE)
     except KeyboardInterrupt:
-        status = _told("interrupted", INTERRUPTED)
+        status = _reported("interrupted", INTERRUPTED)
     except OSError as error:
         what = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
-        status = _told(what, BAD_INPUT)
+        status = _reported(what, BAD_INPUT)
     except Exception as error:
         from ...cases.input.errors import CaseError
         from ...references.protocol.registry import UnknownCodeError
 
         if isinstance(error, CaseError | UnknownCodeError):
-            return _told(error, BAD_INPUT)
+            return _reported(error, BAD_INPUT)
         traceback.print_exc()
         what = f"internal error: {type(error).__name__}: {error}: please report it, with the lines above"
-        status = _told(what, INTERNAL)
+        status = _reported(what, INTERNAL)
     return status
 
 
@@ -144,7 +144,7 @@ def _run(words: list[str]) -> int:
         return chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
 
 
-def _told(what: object, status: int) -> int:
+def _reported(what: object, status: int) -> int:
     """Say in one line why there is no more; the status."""
     from ...cases.input.errors import brief
 

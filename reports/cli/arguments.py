@@ -92,8 +92,8 @@ def found(path: Path) -> Run:
     try:
         run = journal.read(file) if file.name == journal.NAME else results.read(file)
     except OSError as error:
-        told = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
-        raise CaseError(f"{file}: {told}") from error
+        message = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
+        raise CaseError(f"{file}: {message}") from error
     except ValueError as error:
         raise CaseError(str(error)) from error
     if not run.cells and run.unfinished:

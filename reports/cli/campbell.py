@@ -211,18 +211,18 @@ def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campb
     Raises:
         CaseError: what ``campbell`` raises.
     """
-    told = Told(blade.name, wanted.speeds, units)
+    progress = SpeedProgress(blade.name, wanted.speeds, units)
     with ExitStack() as stack:
-        stack.enter_context(told.bar)
-        here = solver(blade, wanted, told, units.at)
+        stack.enter_context(progress.bar)
+        here = solver(blade, wanted, progress, units.at)
         if workers == 1:
             return campbell(blade, wanted, here)
         pool = Pool(min(workers, len(wanted.speeds)))
         stack.callback(pool.stop)
-        return campbell(blade, wanted, _shared(blade, wanted, pool, here, told, units))
+        return campbell(blade, wanted, _shared(blade, wanted, pool, here, progress, units))
 
 
-class Told:
+class SpeedProgress:
     """A progress bar on standard error over the requested speeds; inserted speeds are shown as they are solved."""
 
     def __init__(self, name: str, speeds: Sequence[float], units: Units) -> None:
@@ -249,7 +249,9 @@ class Told:
             self.bar.update(self.task, description=f"modes come close: inserting {self.units.at(omega)}")
 
 
-def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told: Told, units: Units) -> Solver:
+def _shared(
+    blade: Blade, wanted: Wanted, executor: Executor, here: Solver, progress: SpeedProgress, units: Units
+) -> Solver:
     """A solver that has the speeds asked for solved by ``executor`` from the start, and others ``here`` as they come."""
     ahead = {omega: executor.submit(_one, blade, wanted, omega, units) for omega in wanted.speeds}
 
@@ -257,7 +259,7 @@ def _shared(blade: Blade, wanted: Wanted, executor: Executor, here: Solver, told
         if omega not in ahead:
             return here(omega)
         found = ahead[omega].result()
-        told(omega)
+        progress(omega)
         return found
 
     return answer

@@ -68,14 +68,14 @@ def command(
     if file is None:
         raise CaseError("file: missing: give a TOML file that names matrices, nodes and sections, or --example")
     speeds, units = campbell_options.speeds(rpm, omega) or ((0.0,), RAD_S)
-    path, told, blade = Path(file), None, None
+    path, spec, blade = Path(file), None, None
     if path.suffix == ".json":
         blade = condensed.read(path)
     else:
-        told = condensing.condense(path)
-        blade = told.blade
+        spec = condensing.condense(path)
+        blade = spec.blade
     found = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
-    text = page.own(blade, found, units, told, _line())
+    text = page.own(blade, found, units, spec, _line())
     folder = _folder(out)
     _write(folder, text, blade)
     output().print(text, markup=False, soft_wrap=True)

@@ -40,8 +40,8 @@ def command(
         names = [str(folder) for folder in folders]
     runs = {name: found(folder) for name, folder in zip(names, folders, strict=True)}
     for name, run in runs.items():
-        if told := incomplete(run):
-            print(f"{name}: {told}")
+        if message := incomplete(run):
+            print(f"{name}: {message}")
     kept = load(history) if history is not None else None
     try:
         print(write(runs, kept, out))

@@ -79,8 +79,8 @@ def command(
     missed = [c.control for c in run.controls if c.missed]
     gate = compare(before, after, earlier, tolerance, missed)
     console = output()
-    if told := incomplete(run):
-        console.print(told, markup=False, soft_wrap=True)
+    if message := incomplete(run):
+        console.print(message, markup=False, soft_wrap=True)
     for shown in gate_text.tables(gate):
         console.print(shown)
     console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)

@@ -37,8 +37,8 @@ def cases() -> int:
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
         table.add_row(name, known.text.title, blades, first.facts["speeds"])
     for name in library.mechanisms():
-        told = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
-        table.add_row(name, told.title, "mechanism", told.facts["speeds"])
+        about = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
+        table.add_row(name, about.title, "mechanism", about.facts["speeds"])
     console.output().print(table)
     return PASSED
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cases.verify import user_results
-from ...cases.verify.user_results import Added, Defaults
+from ...cases.verify.user_results import Defaults, UserResults
 from .errors import UsageError
 
 
@@ -29,7 +29,7 @@ def _percent(option: str, text: str) -> float:
     return value
 
 
-def added(text: str, u: Defaults) -> Added:
+def added(text: str, u: Defaults) -> UserResults:
     """The file of one ``--add``.
 
     Raises:
@@ -42,7 +42,7 @@ def added(text: str, u: Defaults) -> Added:
     return user_results.read(name, Path(path), u)
 
 
-def check(files: Sequence[Added], data: str | None, inputs: str | None) -> None:
+def check(files: Sequence[UserResults], data: str | None, inputs: str | None) -> None:
     """Refuse an uncertainty that is of nothing.
 
     Raises:

@@ -29,8 +29,8 @@ def modes(found: Solution, title: str) -> Table:
         sure = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
         numbers = (certain(row["frequency_rad_s"], sure), certain(row["frequency_hz"], sure))
         grows = row["damping_ratio"] < -max(1e-9, sure)
-        told = (_ratio(row["damping_ratio"], sure), relative(sure))
-        out.add_row(str(row["mode"]), *numbers, *told, escape(row["led_by"]) + ("; grows" if grows else ""))
+        ratio = (_ratio(row["damping_ratio"], sure), relative(sure))
+        out.add_row(str(row["mode"]), *numbers, *ratio, escape(row["led_by"]) + ("; grows" if grows else ""))
     return out
 
 

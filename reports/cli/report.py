@@ -56,8 +56,8 @@ def show(run: Run, folder: Path) -> Path | None:
     report = None if keep else matrix_report.write(run, folder)
     show_tables(run)
     kept = f"{folder / RESULTS}: of an earlier run, unchanged"
-    told = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
-    output().print(told, markup=False, soft_wrap=True)
+    message = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
+    output().print(message, markup=False, soft_wrap=True)
     return report
 
 

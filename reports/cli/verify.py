@@ -30,7 +30,7 @@ from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.store import Cached, Store
-from ...cases.verify.user_results import Added
+from ...cases.verify.user_results import UserResults
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Limits
@@ -163,8 +163,8 @@ def command(
         if not stopped:
             kept.remove()
             return summary.status(run)
-    told = f"{len(run.cells)} cells are kept" if run.cells else "nothing was finished yet"
-    print(f"southwell: {stopped.what}: {told}; {CONTINUE}", file=sys.stderr)
+    what = f"{len(run.cells)} cells are kept" if run.cells else "nothing was finished yet"
+    print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
 
 
@@ -186,7 +186,7 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
 def _solve(
     chosen: Sequence[Case | MechanismCase],
     codes: Sequence[Description],
-    files: Sequence[Added],
+    files: Sequence[UserResults],
     about: Run,
     kept: Journal,
     out: Path,
@@ -217,7 +217,7 @@ def _solve(
     try:
         scratch.mkdir()
         with watch:
-            done = matrix.run(chosen, codes, executor, watch.show, added=files, on_plan=begin, **limits)
+            done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
         controls = tuple(found[name] for name in seeded)
@@ -302,10 +302,10 @@ def _changed(case: Case | MechanismCase, given: Sequence[Change]) -> Case | Mech
         return case
     if not isinstance(case, Case):
         raise UsageError(f"--set {given[0]}: {case.name} is a mechanism, not a blade: leave it out")
-    told = "changed: " + ", ".join(str(change) for change in given)
+    what = "changed: " + ", ".join(str(change) for change in given)
     text = replaced(
         case.text,
-        title=f"{case.text.title}; {told}",
+        title=f"{case.text.title}; {what}",
         compare=replaced(case.text.compare, tables=()),
         discretisation=None,
     )

@@ -111,20 +111,20 @@ Codes: {codes}. `{command}`
 
 
 def own(
-    blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units, told: Condensation | None, command: str
+    blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units, spec: Condensation | None, command: str
 ) -> str:
     """A user's own blade: what was read, the segments, the modes."""
     n = len(blade.segments)
     total = sum(body(s)[0] for s in blade.segments)
     length = sum(np.linalg.norm(s.undeformed[:3, 3]) for s in blade.segments)
     text = f"# {blade.name}: {n} rigid bodies and complex stiffness elements\n\n"
-    if told:
-        lines = [told.told.title, f"Source: {told.told.source}." if told.told.source else ""]
+    if spec:
+        lines = [spec.spec.title, f"Source: {spec.spec.source}." if spec.spec.source else ""]
         text += "".join(f"{line}\n\n" for line in lines if line)
-        how = "each from a model of its own" if told.told.segments else "cut in place from one model"
+        how = "each from a model of its own" if spec.spec.segments else "cut in place from one model"
         text += (
-            f"{told.freedoms} freedoms condensed to {6 * n}; segments {how}. "
-            f"Rigid motions of the finite element model leave {told.resisted:.0e} of the forces in it unbalanced.\n\n"
+            f"{spec.freedoms} freedoms condensed to {6 * n}; segments {how}. "
+            f"Rigid motions of the finite element model leave {spec.resisted:.0e} of the forces in it unbalanced.\n\n"
         )
     text += f"Mass {total:.6g} kg, length {length:.6g} m, first section at {blade.root[0, 3]:.6g} m from the rotor's axis.\n\n"
     text += """## Segments

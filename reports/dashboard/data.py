@@ -10,7 +10,7 @@ from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ..shared import summary
-from ..shared.summary import GRAVEST_FIRST, SYMBOL, broad, columns, labels, plus_minus, size
+from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, labels, plus_minus, size
 from ..shared.units import BY_KEY, Units
 from ..verification import code_pages, controls, evidence, witnesses
 from ..verification.figures import core_lines
@@ -31,12 +31,12 @@ def page(name: str, kind: str = "case") -> str:
 
 
 def verdicts() -> list[dict[str, str]]:
-    """Names and signs, gravest first; cells have their place in this list."""
-    return [{"name": v, "sign": SYMBOL[v]} for v in GRAVEST_FIRST]
+    """Names and signs, worst first; cells have their place in this list."""
+    return [{"name": v, "sign": SYMBOL[v]} for v in WORST_FIRST]
 
 
 def first(run: Run, name: str) -> dict[str, Any]:
-    """The matrix: every cell in short, cases, columns, what became of core made wrong on purpose."""
+    """The matrix: every cell in short, cases, columns, results of the seeded faults."""
     known, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
     named = labels(run.cells)
     titles = {s.case: s.title for s in run.settings}
@@ -58,7 +58,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
                 heads.index(broad(c)),
                 round(c.omega * units(run, c.case).speeds, 6),
                 named.get(c, ""),
-                GRAVEST_FIRST.index(c.verdict),
+                WORST_FIRST.index(c.verdict),
                 size(c),
                 plus_minus(c) if size(c) is not None else "",
                 c.reason,
@@ -114,7 +114,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
         "name": case,
         "setting": asdict(setting) if setting else None,
         "answer": evidence.verdict(Run(tuple(cells))),
-        "told": told(run, case),
+        "verdict_counts": verdict_counts(run, case),
         "speed": u.speed,
         "frequency": u.frequency,
         "perSpeed": u.frequencies / u.speeds,
@@ -138,8 +138,8 @@ def _lines(cells: list[Cell], u: Units) -> list[dict[str, Any]]:
     return [{"name": name, "points": points} for name, points in scaled.items()]
 
 
-def told(run: Run, case: str) -> list[dict[str, Any]]:
-    """A case's answers by verdict, gravest first: how many, and the farthest from core for its target, and where."""
+def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
+    """A case's answers by verdict, worst first: how many, and the farthest from core for its target, and where."""
     out, cells = [], [c for c in run.cells if c.case == case]
     for verdict, n in summary.counts(cells).items():
         mine = [c for c in cells if c.verdict == verdict]
@@ -149,7 +149,7 @@ def told(run: Run, case: str) -> list[dict[str, Any]]:
         where = ", ".join(part for part in parts if part)
         more = f"; target {summary.allowed(far.target)}" if far and verdict != "known difference" else ""
         if n:
-            out.append({"verdict": GRAVEST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{more}"})
+            out.append({"verdict": WORST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{more}"})
     return out
 
 
@@ -162,7 +162,7 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
         "speed": c.omega * u.speeds,
         "mode": c.mode,
         "name": name,
-        "verdict": GRAVEST_FIRST.index(c.verdict),
+        "verdict": WORST_FIRST.index(c.verdict),
         "text": plus_minus(c) if size(c) is not None else "",
         "reason": c.reason,
         "target": target(c),
@@ -196,7 +196,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
                 "title": _known(name).get("title", ""),
                 "version": run.versions.get(name, ""),
                 "shares": shared(run, name),
-                "counts": [[GRAVEST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
+                "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
                 "worst": _placed(far),
                 "known": _placed(known),
                 "defects": len(code_pages.defects(name)),
@@ -207,7 +207,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
 
 def _placed(cell: Cell | None) -> list[Any] | None:
     """Verdict, size, case; None for none."""
-    return [GRAVEST_FIRST.index(cell.verdict), plus_minus(cell), cell.case] if cell else None
+    return [WORST_FIRST.index(cell.verdict), plus_minus(cell), cell.case] if cell else None
 
 
 def of_code(run: Run, name: str) -> dict[str, Any]:
@@ -219,7 +219,7 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
         far = summary.worst(mine)
         where = f"{named[far]}, {units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in mine))
-        verdict = GRAVEST_FIRST.index(summary.gravest(mine))
+        verdict = WORST_FIRST.index(summary.worst_verdict(mine))
         worst.append([case, page(case), verdict, len(mine), plus_minus(far) if far else "", where, reason])
     return {
         "name": name,

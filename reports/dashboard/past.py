@@ -11,7 +11,7 @@ from typing import Any
 
 from ...cases.regression.gate import MOVED
 from ...cases.regression.history import Entry, History, Key
-from ..shared.summary import GRAVEST_FIRST
+from ..shared.summary import WORST_FIRST
 from .data import verdicts
 from .steps import frequency_steps, timing_steps
 
@@ -38,7 +38,7 @@ def _run(e: Entry) -> dict[str, Any]:
         "date": e.date,
         "machine": e.machine,
         "versions": e.versions,
-        "counts": [[k, n] for k, v in enumerate(GRAVEST_FIRST) if (n := sum(p.verdict == v for p in e.cells))],
+        "counts": [[k, n] for k, v in enumerate(WORST_FIRST) if (n := sum(p.verdict == v for p in e.cells))],
         "caught": len({c.control for c in e.controls if c.caught}),
         "controls": len({c.control for c in e.controls}),
     }
@@ -59,7 +59,7 @@ def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
         there = [p for p in points if p is not None]
         values = [None if p is None else p.frequency for p in points]
         differences = [None if p is None else p.difference for p in points]
-        judged = [None if p is None else GRAVEST_FIRST.index(p.verdict) for p in points]
+        judged = [None if p is None else WORST_FIRST.index(p.verdict) for p in points]
         family = there[-1].family
         out.append([case, code, omega, mode, family, _short(values), _short(differences, 1.0), _short(judged)])
     return out

@@ -186,7 +186,7 @@ class VerifyResult:
                 {
                     "code": code,
                     "shares": cells["shares"].iloc[0],
-                    "verdict": next(v for v in summary.GRAVEST_FIRST if v in verdicts),
+                    "verdict": next(v for v in summary.WORST_FIRST if v in verdicts),
                     "difference": cells["difference"].abs().max(),
                     "modes": len(cells),
                 }

@@ -24,7 +24,7 @@ SYMBOL: dict[Verdict, str] = {
 }
 """A sign beside each verdict's name; never instead of it."""
 
-GRAVEST_FIRST: tuple[Verdict, ...] = (
+WORST_FIRST: tuple[Verdict, ...] = (
     "fail",
     "inconclusive",
     "known difference",
@@ -67,10 +67,10 @@ def status(run: Run) -> int:
     return FAILED if not compared(run.cells) or blind or bad or short(run) else PASSED
 
 
-def gravest(cells: Iterable[Cell]) -> Verdict:
+def worst_verdict(cells: Iterable[Cell]) -> Verdict:
     """The verdict that stands for several cells."""
     found = {c.verdict for c in cells}
-    return next(v for v in GRAVEST_FIRST if v in found)
+    return next(v for v in WORST_FIRST if v in found)
 
 
 def size(cell: Cell) -> float | None:
@@ -90,17 +90,17 @@ def largest(cells: Iterable[Cell]) -> Cell | None:
 
 
 def worst(cells: Iterable[Cell]) -> Cell | None:
-    """The farthest from the answer of the cells with the gravest verdict; None if there are none, or none with numbers."""
+    """The farthest from the answer of the cells with the worst verdict; None if there are none, or none with numbers."""
     cells = list(cells)
-    grave = gravest(cells) if cells else None
+    grave = worst_verdict(cells) if cells else None
     return largest(c for c in cells if c.verdict == grave)
 
 
 def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
-    """How many cells have each verdict; all verdicts, gravest first."""
+    """How many cells have each verdict; all verdicts, worst first."""
     found = Counter(c.verdict for c in cells)
     assert set(found) <= set(get_args(Verdict))
-    return {v: found[v] for v in GRAVEST_FIRST}
+    return {v: found[v] for v in WORST_FIRST}
 
 
 def cases(run: Run) -> list[str]:

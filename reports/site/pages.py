@@ -77,14 +77,14 @@ def cases() -> Pages:
 
 
 def _row(case: Case | MechanismCase) -> dict[str, str]:
-    first, *_ = told = settings(case)
+    first, *_ = facts = settings(case)
     what = f"[{plain(first.title)}]({case.name}.md)"
-    blades = "a mechanism" if isinstance(case, MechanismCase) else str(len(told))
+    blades = "a mechanism" if isinstance(case, MechanismCase) else str(len(facts))
     return {"case": f"`{case.name}`", "what": what, "blades": blades, "speeds": plain(first.facts["speeds"])}
 
 
 def _case(case: Case | MechanismCase) -> str:
-    first, *_ = told = settings(case)
+    first, *_ = facts = settings(case)
     path = f"mechanisms/{case.name}.toml" if isinstance(case, MechanismCase) else f"{case.name}.toml"
     parts = [
         f"# {plain(first.title)}",
@@ -92,14 +92,14 @@ def _case(case: Case | MechanismCase) -> str:
         f"*Source:* {plain(first.source)}.",
         f"```console\nsouthwell verify {case.name}\n```",
         f"File: `cases/data/{path}`.",
-        *(_facts(s) for s in told),
+        *(_facts(s) for s in facts),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _facts(told: Setting) -> str:
-    rows = [{"": plain(k), told.case: plain(v)} for k, v in told.facts.items()]
-    return f"## {plain(told.case)}\n\n{table(rows)}"
+def _facts(facts: Setting) -> str:
+    rows = [{"": plain(k), facts.case: plain(v)} for k, v in facts.facts.items()]
+    return f"## {plain(facts.case)}\n\n{table(rows)}"
 
 
 def codes(run: Run) -> Pages:

@@ -53,7 +53,7 @@ BEGIN, END = "<!-- {}: begin, written by `make readme` -->", "<!-- {}: end -->"
 """Enclose what is written: ``command`` and ``results``."""
 
 
-ELSEWHERE = ("sharpy", "frame3dd", "calculix")
+ISOLATED = ("sharpy", "frame3dd", "calculix")
 """Codes that `make verify` does not install, and uses where they are: the rows are those of any machine."""
 
 
@@ -61,13 +61,13 @@ def condense(run: Run) -> Run:
     """The rows that the tables need: of each case and column the worst cell, and all of the paper's Table 1."""
     cells: list[Cell] = []
     for case in summary.cases(run):
-        mine = [c for c in run.cells if c.case == case and c.code not in ELSEWHERE]
+        mine = [c for c in run.cells if c.case == case and c.code not in ISOLATED]
         for name in columns(mine, broad):
             group = [c for c in mine if broad(c) == name]
-            grave = summary.gravest(group)
+            grave = summary.worst_verdict(group)
             cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
     table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
-    cells += [c for c in table if c.code not in ELSEWHERE]
+    cells += [c for c in table if c.code not in ISOLATED]
     kept = dict.fromkeys(replace(c, seconds=None) for c in cells)
     return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings)
 
@@ -81,7 +81,8 @@ def five(run: Run) -> str:
         answers = [c for c in codes if c.verdict not in ("not run", "not applicable")]
         others = [c for c in answers if c.verdict != "pass"]
         short = {
-            code: summary.gravest(c for c in others if c.code == code) for code in dict.fromkeys(c.code for c in others)
+            code: summary.worst_verdict(c for c in others if c.code == code)
+            for code in dict.fromkeys(c.code for c in others)
         }
         codes = [c for c in answers if c.code not in short]
         worst = max(codes, key=lambda c: abs(c.difference or 0.0))

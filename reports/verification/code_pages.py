@@ -115,7 +115,7 @@ def version(run: Run, code: Description) -> str:
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
-    """For each blade: the gravest verdict, how many cells have which, and its largest difference; empty without cells."""
+    """For each blade: the worst verdict, how many cells have which, and its largest difference; empty without cells."""
     labels = summary.labels(run.cells)
     rows = []
     for case in dict.fromkeys(c.case for c in cells):

@@ -14,7 +14,7 @@ def headline(run: Run) -> str:
     if not tried:
         return ""
     if missed:
-        return f"**Negative controls: seeded faults are not noticed: {missed}.** This harness is blind."
+        return f"**Negative controls not detected: {missed}.**"
     left = len(run.controls) - len(tried)
     rest = f"; {left} were not run, for want of a code" if left else ""
     return f"Negative controls: {len(tried)} of {len(tried)} seeded faults, run through the whole pipeline, are detected{rest}."

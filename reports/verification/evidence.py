@@ -20,10 +20,10 @@ KINDS: dict[str, Callable[[Cell], bool]] = {
 """A cell is of the first kind that takes it; the second and third check the answer, the fourth the implementation only."""
 
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
-"""What is named before all else, gravest first."""
+"""What is named before all else, worst first."""
 
 SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
-"""Verdicts on a difference from core with the same effects, gravest first."""
+"""Verdicts on a difference from core with the same effects, worst first."""
 
 
 def verdict(run: Run) -> str:
@@ -60,16 +60,16 @@ def _mute(cell: Cell) -> bool:
 def urgent(run: Run) -> list[str]:
     """Lines for the worst failure, for failures without a number, and for the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
-    told = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+    sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
     mute = {(c.code, c.case): c.reason for c in run.cells if _mute(c)}
-    return [*told, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
+    return [*sentences, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
 
 
 def first(run: Run) -> list[str]:
     """What a reader looks for first: the answer, and what is urgent; if nothing is, the independent answer that is
     farthest from core for its target."""
     far = farthest(c for c in run.cells if c.shares == "nothing")
-    data = [told for told in (measured(run),) if told]
+    data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *urgent(run), *data]
     return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}.", *data]
@@ -82,11 +82,11 @@ def measured(run: Run) -> str:
         return ""
     seen = [c for c in cells if visible(c)]
     most = max(seen, key=visible, default=None)
-    told = f"model error visible in {len(seen)}"
+    visibly = f"model error visible in {len(seen)}"
     if most:
-        told += f", at least {least(visible(most))} ({where(run, most)})"
+        visibly += f", at least {least(visible(most))} ({where(run, most)})"
     n = len(cells)
-    return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {told}; not visible in {n - len(seen)}."
+    return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {visibly}; not visible in {n - len(seen)}."
 
 
 def _statement(cell: Cell) -> str:
@@ -121,7 +121,7 @@ def rows(run: Run) -> list[dict[str, str]]:
 
 
 def farthest(cells: Iterable[Cell]) -> Cell | None:
-    """Of the gravest of ``SAME`` there, the one that is largest for its target."""
+    """Of the worst of ``SAME`` there, the one that is largest for its target."""
     cells = list(cells)
     for verdict in SAME:
         if there := [c for c in cells if c.verdict == verdict]:

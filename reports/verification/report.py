@@ -33,7 +33,7 @@ LARGEST: dict[Verdict, str] = {
     "known difference": "Largest known difference",
     "pass": "Largest difference that passes",
 }
-"""What the headline names, gravest first."""
+"""What the headline names, worst first."""
 
 SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a"}
 """Verdicts as the heat table has them, under a legend that has them in full."""
@@ -93,9 +93,9 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     environment.filters["plain"] = plain
     found = lumped.taken(run)
     return environment.get_template("report.md.jinja").render(
-        headline=marked(run, [told for told in (summary.incomplete(run), *evidence.first(run)) if told]),
+        headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[plain(told) for told in (witnesses.headline(run), controls.headline(run)) if told],
+        remarks=[plain(line) for line in (witnesses.headline(run), controls.headline(run)) if line],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -120,7 +120,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 
 def headline(run: Run) -> list[str]:
-    """The verdict in a few sentences, the gravest first; text without markup."""
+    """The verdict in a few sentences, the worst first; text without markup."""
     lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
@@ -141,12 +141,12 @@ def marked(run: Run, lines: Sequence[str]) -> list[str]:
 
 def unasked(run: Run) -> str:
     """Codes that answered nowhere, and why, in a line; empty if there are none."""
-    told = []
+    omitted = []
     for name in _silent(run):
         mine = [c for c in run.cells if broad(c) == name]
         reasons = "; ".join(dict.fromkeys(c.reason for c in mine if c.verdict == "not run"))
-        told.append(f"{plain(name)} ({plain(reasons) or 'not applicable'})")
-    return ", ".join(told)
+        omitted.append(f"{plain(name)} ({plain(reasons) or 'not applicable'})")
+    return ", ".join(omitted)
 
 
 def _silent(run: Run) -> list[str]:
@@ -176,7 +176,7 @@ def heat(run: Run, linked: bool = False) -> str:
 def _heat(cells: Sequence[Cell]) -> str:
     if not cells:
         return ""
-    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    verdict, worst = summary.worst_verdict(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
     shown = f"<br>{amount(size, worst.target)}{summary.wide(worst)}" if worst and size is not None else ""
     return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{shown}"
@@ -193,7 +193,7 @@ class Section:
     focus: str
     main: str
     rest: list[tuple[str, str]]
-    told: str
+    verdicts: str
     measured: str
     figures: list[str]
     reasons: str
@@ -210,7 +210,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     judged = [c for c in cells if c.role != "measured"] or cells
     speeds = sorted({c.omega for c in judged if c.mode})
     printed = [c.omega for c in cells if c.role == "table"]
-    focus = max(printed or speeds, default=None)
+    focus = max([omega for omega in printed if omega in speeds] or speeds, default=None)
     tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
     reasons, split = why(judged, unit), error_budget.rows(run, case)
     return Section(
@@ -221,7 +221,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         focus=unit.at(focus) if focus is not None else "",
         main=tables[focus] if focus is not None else "",
         rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
-        told=told(cells),
+        verdicts=verdicts(cells),
         measured=measured(run, case, unit),
         figures=figures,
         reasons=table(reasons) if reasons else "",
@@ -250,7 +250,7 @@ def measured(run: Run, case: str, unit: Units) -> str:
     return table(rows) if rows else ""
 
 
-def told(cells: Sequence[Cell]) -> str:
+def verdicts(cells: Sequence[Cell]) -> str:
     """One case's cells by verdict, and the largest difference of each of those that have one."""
     parts = []
     for verdict, n in summary.counts(cells).items():
@@ -292,10 +292,7 @@ def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
     """A row for every cell that does not plainly pass; neighbours that differ in nothing but speed share one."""
     names = summary.labels(cells)
     grave = [
-        c
-        for verdict in summary.GRAVEST_FIRST
-        for c in cells
-        if c.verdict == verdict and (verdict != "pass" or c.reason)
+        c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)
     ]
     rows = []
     for (verdict, name, mode, reason), group in groupby(

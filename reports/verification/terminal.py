@@ -36,7 +36,7 @@ BETWEEN = 2
 
 
 def matrix(run: Run, width: int) -> Iterator[Table]:
-    """Case × code: sign and largest difference; the gravest verdict of all modes and speeds.
+    """Case × code: sign and largest difference; the worst verdict of all modes and speeds.
 
     In as many tables beneath each other as the ``width`` in characters wants.
     """
@@ -81,7 +81,7 @@ def controls(run: Run) -> Table:
 def _field(cells: Sequence[Cell]) -> str:
     if not cells:
         return ""
-    verdict, worst = summary.gravest(cells), summary.worst(cells)
+    verdict, worst = summary.worst_verdict(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
     number = f" {_short(size, worst.target)}{_wide(worst)}" if worst and size is not None else ""
     return f"[{COLOUR[verdict]}]{SYMBOL[verdict]}{number}[/]"

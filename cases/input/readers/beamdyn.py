@@ -60,28 +60,28 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     else:
         main = _main(path, mount)
     hub = load(mount.main) if mount.main and is_elastodyn(mount.main) else None
-    told = elastodyn.hub(hub) if hub else None
-    settled = elastodyn.settle(mount, told.mount if told else None)
-    if main is None and settled.length is None:
+    stated = elastodyn.hub(hub) if hub else None
+    mounted = elastodyn.complete(mount, stated.mount if stated else None)
+    if main is None and mounted.length is None:
         raise CaseError(
             f"{path}: length: stations are fractions of it, and the main file with the key points is not beside it: "
             "give that file instead, or --length for a straight, untwisted blade"
         )
-    axis = _axis(_points(main)) if main is not None else line(settled.length or 0.0)
+    axis = _axis(_points(main)) if main is not None else line(mounted.length or 0.0)
     found, stiffness, mass = _sections(text)
     eta = fractions(found, "station_eta")
-    files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if told and mount.main else ())
-    blade = assemble(path.stem, path, axis, eta, stiffness, mass, settled)
-    if told and told.tip_mass:
-        blade = replace(blade, tip_mass=np.diag([told.tip_mass] * 3 + [0.0] * 3))
+    files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if stated and mount.main else ())
+    blade = assemble(path.stem, path, axis, eta, stiffness, mass, mounted)
+    if stated and stated.tip_mass:
+        blade = replace(blade, tip_mass=np.diag([stated.tip_mass] * 3 + [0.0] * 3))
     notes = [
         "matrices made symmetric",
         "twist between key points: a cubic spline, sampled at key points and stations",
     ]
     if main is None:
         notes.append("no main file: straight, untwisted")
-    if told is None:
-        open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+    if stated is None:
+        open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
         notes += [f"no ElastoDyn main file: {', '.join(open_)} taken as 0"] if open_ else []
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
     left = (*_damping(text), *(_actuator(main) if main else ()), *(elastodyn_unused.of_main(hub) if hub else ()))

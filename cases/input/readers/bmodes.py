@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
 from ..errors import CaseError
-from .elastodyn import settle
+from .elastodyn import complete
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, shearing, turned
 from .source import OPENFAST_AXES, Mount, Reading, Source
 from .text import Text, fractions, keys, leading, load, table, value, whole, word
@@ -73,26 +73,26 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
 
     tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
-    told = Mount(
+    stated = Mount(
         length=tip - hub_radius,
         hub_radius=hub_radius,
         precone=np.radians(value(main, named, "precone")),
         pitch=-np.radians(value(main, named, "bl_thp")),
     )
-    settled = settle(mount or Mount(), told)
+    mounted = complete(mount or Mount(), stated)
     y_mass, y_tension = -(p["cg_offst"] - p["sc_offst"]), -(p["tc_offst"] - p["sc_offst"])
     stretch = about(bending(p["axial_stff"], p["flp_stff"], p["edge_stff"]), y_tension, 0.0)
     inertia = turned(section_mass(p["mass_den"], p["flp_iner"], p["edge_iner"]), np.radians(p["str_tw"] - p["tw_iner"]))
     try:
         blade = Blade(
             name=path.stem,
-            stations=eta * float(settled.length or 0.0),
+            stations=eta * float(mounted.length or 0.0),
             stiffness=rigid(stretch + shearing(p["tor_stff"], 0.0, 0.0), SHEAR_Y, SHEAR_Z),
             mass=about(inertia, y_mass, 0.0),
             twist=-np.radians(p["str_tw"]),
-            hub_radius=settled.hub_radius or 0.0,
-            precone=settled.precone or 0.0,
-            pitch=settled.pitch or 0.0,
+            hub_radius=mounted.hub_radius or 0.0,
+            precone=mounted.precone or 0.0,
+            pitch=mounted.pitch or 0.0,
             tip_mass=_tip(main, named),
             root=np.array(_root(main, named)),
         )

@@ -71,8 +71,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         main, text = path, load(hub(text).blade_file)
     else:
         main = mount.main or (None if mount.length else beside(path, is_main, blade_file))
-    told = hub(load(main)) if main else None
-    return _blade(text, mount, told, main)
+    stated = hub(load(main)) if main else None
+    return _blade(text, mount, stated, main)
 
 
 def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
@@ -132,13 +132,13 @@ def blade_file(text: Text) -> Path:
     return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
 
 
-def settle(mount: Mount, told: Mount | None) -> Mount:
-    """``mount`` with what it leaves open from ``told``."""
+def complete(mount: Mount, stated: Mount | None) -> Mount:
+    """``mount`` with what it leaves open from ``stated``."""
     given = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
-    return replace(told or Mount(), **given)
+    return replace(stated or Mount(), **given)
 
 
-def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Reading:
+def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> Reading:
     named = keys(text)
     count = whole(text, named, "NBlInpSt")
     factors = {name: value(text, named, name) for name in MULTIPLIERS}
@@ -158,19 +158,19 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Rea
     found = table(text, start, count, columns)
     found.positive(*[name for name in POSITIVE if name in columns])
     eta = fractions(found, "BlFract")
-    settled = settle(mount, told.mount if told else None)
-    if settled.length is None:
+    mounted = complete(mount, stated.mount if stated else None)
+    if mounted.length is None:
         raise CaseError(
             f"{text.path}: length: stations are fractions of it, and the main file that says it is not here: "
             "give --main FILE, or --length and --hub-radius"
         )
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
     flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
-    tip = np.diag([told.tip_mass] * 3 + [0.0] * 3) if told else np.zeros((6, 6))
+    tip = np.diag([stated.tip_mass] * 3 + [0.0] * 3) if stated else np.zeros((6, 6))
     twist = -np.radians(found["StrcTwst"])
     offsets = mount.offsets is not False
     there = {name: found[name] for name in fast7_offsets.COLUMNS if offsets and name in found.columns}
-    axis = fast7_offsets.line(eta * settled.length, there, twist)
+    axis = fast7_offsets.line(eta * mounted.length, there, twist)
     mass = section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia)
     try:
         blade = Blade(
@@ -185,9 +185,9 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Rea
             mass=about(mass, *axis.mass_centre.T) if axis.mass_centre.any() else mass,
             twist=twist,
             curve=axis.curve,
-            hub_radius=settled.hub_radius or 0.0,
-            precone=settled.precone or 0.0,
-            pitch=settled.pitch or 0.0,
+            hub_radius=mounted.hub_radius or 0.0,
+            precone=mounted.precone or 0.0,
+            pitch=mounted.pitch or 0.0,
             tip_mass=tip,
         )
     except BladeError as error:
@@ -200,7 +200,7 @@ def _blade(text: Text, mount: Mount, told: Hub | None, main: Path | None) -> Rea
         *(elastodyn_unused.of_main(load(main)) if main else ()),
     )
     files = (text.path,) if main is None else (text.path, main)
-    notes = _notes(factors, main, settled, columns)
+    notes = _notes(factors, main, mounted, columns)
     if used:
         largest = ", ".join(f"{name} {max(there[name], key=abs):g} m" for name in used)
         notes += (
@@ -215,9 +215,9 @@ def _columns(names: list[str]) -> tuple[str, ...]:
     return tuple(known.get(name.lower(), name) for name in names)
 
 
-def _notes(factors: dict[str, float], main: Path | None, settled: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:
+def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:
     said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
-    given = settled.multipliers
+    given = mounted.multipliers
     out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
     rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]
     if rigid:
@@ -227,6 +227,6 @@ def _notes(factors: dict[str, float], main: Path | None, settled: Mount, columns
     if main is not None:
         out.append("tower, nacelle, hub and drive train of the main file are no part of a blade")
     if main is None:
-        given = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+        given = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
         out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))
     return tuple(out)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ....core.blade import Blade, BladeError
 from ..errors import CaseError
 from . import hawc2_htc
-from .elastodyn import settle
+from .elastodyn import complete
 from .matrices import HAWC2, about, bending, fault, in_axes, shearing, turned
 from .source import Mount, Reading, Source
 from .text import ROUNDING, Table, Text, leading, load, table
@@ -76,7 +76,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     found.need(
         np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
     )
-    rises = np.concatenate([[True], np.diff(r) > 0])
+    rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
     found.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
@@ -93,7 +93,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     else:
         notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")
-    settled = settle(mount, None)
+    mounted = complete(mount, None)
     open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is None]
     if open_:
         notes.append(f"{', '.join(open_)} taken as 0: in HAWC2 they are other bodies'")
@@ -104,10 +104,10 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             stiffness=stiffness,
             mass=mass,
             twist=twist,
-            hub_radius=settled.hub_radius or 0.0,
+            hub_radius=mounted.hub_radius or 0.0,
             curve=curve,
-            precone=settled.precone or 0.0,
-            pitch=settled.pitch or 0.0,
+            precone=mounted.precone or 0.0,
+            pitch=mounted.pitch or 0.0,
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error

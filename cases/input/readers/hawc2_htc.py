@@ -156,7 +156,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     c2[0, 2] = 0.0 if abs(c2[0, 2]) <= ROUNDING * abs(c2[-1, 2]) else c2[0, 2]
     if c2[0, 2] != 0:
         raise CaseError(f"{sections[0].at}: sec: z = {c2[0, 2]:g} m: the first section is the root; begin at z = 0")
-    falls = np.flatnonzero(np.diff(c2[:, 2]) <= 0) + 1
+    falls = np.flatnonzero(np.diff(c2[:, 2]) <= ROUNDING * abs(c2[-1, 2])) + 1
     if len(falls):
         k = int(falls[0])
         raise CaseError(

@@ -82,9 +82,7 @@ def fault(matrix: Array) -> str | None:
             "it must be symmetric; a digit lost? correct one"
         )
     if not np.isfinite(scaled).all():
-        return (
-            "not positive definite: a diagonal entry is far too small for its row: a slip in the exponent? correct it"
-        )
+        return "not positive definite: a diagonal entry is far too small for its row: check the exponent"
     least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
     if least <= 0:
         return f"not positive definite (least scaled eigenvalue {least:.2g}): a coupling too large? check the entries"

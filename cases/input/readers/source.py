@@ -54,7 +54,7 @@ class Source:
         format: the format's name.
         files: all that were read.
         axes: the format's axes and centres, and what became of them in ours (see ``core.blade``).
-        notes: what the file does not say and how that was settled, multipliers applied.
+        notes: what the file does not say and how that was decided, multipliers applied.
         unused: non-zero quantities of the files that the blade does not hold.
     """
 

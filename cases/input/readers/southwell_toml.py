@@ -52,9 +52,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if path.suffix.lower() == ".csv":
         if mount.length is None:
             raise CaseError(f"{path}: length: stations are fractions of it: give --length and --hub-radius")
-        told = Stations(file=path.name, length=mount.length)
+        described = Stations(file=path.name, length=mount.length)
         source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight",))
-        return Reading(_mounted(told.blade(path.stem, path.parent), mount), source)
+        return Reading(_mounted(described.blade(path.stem, path.parent), mount), source)
     data = document(path)
     finite(data, str(path))
     text = convert(data, BladeFile, str(path))

@@ -107,7 +107,7 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
         if not math.isfinite(value):
             raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number; a gap in the data? give a value")
         if not believable(value):
-            raise CaseError(f"{text.at(k)}: {name}: {written}: nothing is so large; a slip in the exponent? correct it")
+            raise CaseError(f"{text.at(k)}: {name}: {written}: implausibly large; check the exponent")
     return found
 
 
@@ -185,7 +185,7 @@ def fractions(found: Table, name: str) -> Array:
     ends = np.ones(len(eta), bool)
     ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
     found.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
-    rises = np.concatenate([[True], np.diff(eta) > 0])
+    rises = np.concatenate([[True], np.diff(eta) > ROUNDING])
     found.need(rises, name, eta, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
     return eta
 

@@ -30,7 +30,7 @@ from ....core.blade import AXIAL, SHEAR_Y, SHEAR_Z, TORSION
 from ..errors import CaseError
 from . import beamdyn
 from .beamdyn_axis import Axis, measured
-from .elastodyn import settle
+from .elastodyn import complete
 from .matrices import fault, mass_fault, rigid
 from .source import OPENFAST_AXES, Mount, Reading, Source, unused
 from .text import load
@@ -51,7 +51,7 @@ SAME = 1e-9
 """Grid points nearer than this, of the length, are one."""
 
 
-class Told(NamedTuple):
+class Layout(NamedTuple):
     """What a version says where: the elements, and what turns its angles into degrees."""
 
     version: int
@@ -72,33 +72,33 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     top = fields(load(path))
-    told = _told(top)
-    settled = settle(mount or Mount(), _hub(top, told))
-    eta, stiffness, mass, loose = (_lists if told.version == 2 else _rows)(told.elastic)
+    layout = _layout(top)
+    mounted = complete(mount or Mount(), _hub(top, layout))
+    eta, stiffness, mass, loose = (_lists if layout.version == 2 else _rows)(layout.elastic)
     name = top.find("name")
     called = name.word() if name else path.stem
-    blade = beamdyn.assemble(called, path, _axis(told), eta, stiffness, mass, settled)
-    blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(told.elastic))
+    blade = beamdyn.assemble(called, path, _axis(layout), eta, stiffness, mass, mounted)
+    blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(layout.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
-    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(settled, n) is None]
+    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
     if open_:
         notes.append(f"{', '.join(open_)} taken as 0")
-    if told.version == 1 and told.degrees == 1.0:
+    if layout.version == 1 and layout.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
     if loose:
         keys = ", ".join(key for key, i in STRAINS.items() if i in loose)
         notes.append(f"{keys} zero or not given: those strains are rigid")
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
-    mu = told.elastic.find("structural_damping", "mu") if told.elastic.find("structural_damping") else None
+    mu = layout.elastic.find("structural_damping", "mu") if layout.elastic.find("structural_damping") else None
     left = unused("structural_damping.mu", mu.numbers(), "s", path, "modes are undamped") if mu else ()
-    return Reading(blade, Source(f"{NAME} {told.version}", (path,), axes, tuple(notes), left))
+    return Reading(blade, Source(f"{NAME} {layout.version}", (path,), axes, tuple(notes), left))
 
 
-def _told(top: Field) -> Told:
+def _layout(top: Field) -> Layout:
     blade = top.get("components", "blade")
     new = blade.find("structure", "elastic_properties") if blade.find("structure") else None
     if new is not None:
-        return Told(2, new, blade.get("reference_axis"), blade.get("outer_shape", "twist"), 1.0)
+        return Layout(2, new, blade.get("reference_axis"), blade.get("outer_shape", "twist"), 1.0)
     old = blade.find("elastic_properties_mb", "six_x_six") if blade.find("elastic_properties_mb") else None
     if old is None:
         raise CaseError(
@@ -107,10 +107,10 @@ def _told(top: Field) -> Told:
         )
     axis, twist = (old.find(key) or blade.get("outer_shape_bem", key) for key in ("reference_axis", "twist"))
     already = np.abs(twist.get("values").numbers()).max() > FAR
-    return Told(1, old, axis, twist, 1.0 if already else float(np.degrees(1.0)))
+    return Layout(1, old, axis, twist, 1.0 if already else float(np.degrees(1.0)))
 
 
-def _hub(top: Field, told: Told) -> Mount:
+def _hub(top: Field, layout: Layout) -> Mount:
     """Hub radius, and precone towards +z."""
     hub = top.find("components", "hub")
     if hub is None:
@@ -119,27 +119,27 @@ def _hub(top: Field, told: Told) -> Mount:
     diameter, cone = hub.find("diameter"), hub.find("cone_angle")
     orientation = top.find("assembly", "rotor_orientation") if top.find("assembly") else None
     upwind = orientation is None or orientation.word().lower() == "upwind"
-    radians = cone.number() * (1.0 if told.version == 1 else np.pi / 180) if cone else None
+    radians = cone.number() * (1.0 if layout.version == 1 else np.pi / 180) if cone else None
     return Mount(
         hub_radius=diameter.number() / 2 if diameter else None,
         precone=None if radians is None else float(-radians if upwind else radians),
     )
 
 
-def _axis(told: Told) -> Axis:
+def _axis(layout: Layout) -> Axis:
     """The curve and the twist in degrees, in windIO's axes."""
-    parts = [_curve(told.axis.get(key)) for key in "xyz"] + [_curve(told.twist)]
+    parts = [_curve(layout.axis.get(key)) for key in "xyz"] + [_curve(layout.twist)]
     grid = np.sort(np.concatenate([part.x for part in parts]))
     grid = grid[np.append(True, np.diff(grid) > SAME)]
     x, y, z, twist = (part(grid) for part in parts)
     start = np.abs([x[0], y[0], z[0]]).max()
     if start > SAME * z[-1]:
-        raise CaseError(f"{told.axis.at}: begins {start:g} m from the root: give it from the root, at 0, 0, 0")
+        raise CaseError(f"{layout.axis.at}: begins {start:g} m from the root: give it from the root, at 0, 0, 0")
     z[0] = 0.0
     if (flat := np.diff(z) <= SAME * np.abs(z).max()).any():
         k = int(np.argmax(flat)) + 1
-        raise CaseError(f"{told.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
-    values = np.stack([x - x[0], y - y[0], twist * told.degrees], axis=1)
+        raise CaseError(f"{layout.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
+    values = np.stack([x - x[0], y - y[0], twist * layout.degrees], axis=1)
     return measured(CubicSpline(z, values, bc_type="natural"), z)
 
 

@@ -8,7 +8,7 @@ function casePage() {
   const s = DATA.setting;
   MAIN.append(make("h1", {}, DATA.name));
   if (s) MAIN.append(make("p", {}, s.title));
-  MAIN.append(make("div", { id: "headline", class: `v${Math.min(...DATA.told.map((t) => t.verdict))}` }, make("p", {}, make("strong", {}, DATA.answer)), ...DATA.told.map((t) =>
+  MAIN.append(make("div", { id: "headline", class: `v${Math.min(...DATA.verdict_counts.map((t) => t.verdict))}` }, make("p", {}, make("strong", {}, DATA.answer)), ...DATA.verdict_counts.map((t) =>
     make("p", {}, `${t.count} ${sign(t.verdict)}`, t.text ? `, at worst ${t.text} (${t.where})` : t.where ? ` (${t.where})` : ""))));
   if (s) MAIN.append(make("p", { class: "muted" }, s.description),
     make("p", { class: "muted" }, Object.entries(s.facts).map(([k, v]) => `${k}: ${v}`).join(" · ")), make("p", { class: "muted" }, `Source: ${s.source}`));

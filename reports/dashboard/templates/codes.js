@@ -17,7 +17,7 @@ function code() {
     DATA.lacks === undefined ? "" : ` · leaves out: ${DATA.lacks || "nothing"}`));
   if (DATA.hint && DATA.version === "not installed") MAIN.append(make("p", { class: "muted" }, `To install: ${DATA.hint}`));
   MAIN.append(make("h2", {}, "The largest difference, blade by blade"),
-    table(["case", "gravest verdict", "cells", "difference ± uncertainty", "where", "why"], DATA.worst.map(([name, page, v, n, text, where, why]) =>
+    table(["case", "worst verdict", "cells", "difference ± uncertainty", "where", "why"], DATA.worst.map(([name, page, v, n, text, where, why]) =>
       row(link(page, name), judged(v), n, text, where, make("td", { class: "reason" }, why))), { id: "worst" }),
     make("h2", {}, "Known defects"));
   if (!DATA.defects.length) MAIN.append(make("p", { id: "defects" }, "None known."));

@@ -1,5 +1,5 @@
 "use strict";
-// The history: the runs, who moved what between two of them, where numbers stepped, and every number run by run.
+// The history: the runs, changes between two of them, where numbers stepped, and every number run by run.
 
 const RUNS = DATA.runs, MOVED = 1e-9, MOST = 400;
 const [CASE, CODE, OMEGA, MODE, FAMILY, VALUES, DIFFERENCES, VERDICTS] = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -16,7 +16,7 @@ function versions(from, to) {
 function historyPage() {
   MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.torn.length ? `; left out, for they are cut short: line ${DATA.torn.join(", line ")} of the file` : "", "."));
   if (!RUNS.length) return;
-  MAIN.append(table(["run", "commit", "date, UTC", "cells", "mistakes caught", "machine", "new versions"], RUNS.map((r, k) => row(k + 1, make("td", { title: r.commit }, r.commit.slice(0, 12)), date(r),
+  MAIN.append(table(["run", "commit", "date, UTC", "cells", "faults caught", "machine", "new versions"], RUNS.map((r, k) => row(k + 1, make("td", { title: r.commit }, r.commit.slice(0, 12)), date(r),
     make("td", {}, ...r.counts.map(([v, n]) => make("span", { class: `chip v${v}`, title: DATA.verdicts[v].name }, `${n} ${DATA.verdicts[v].sign}`))),
     r.controls ? `${r.caught} of ${r.controls}` : "", r.machine, make("td", { class: "reason" }, k ? versions(k - 1, k) : ""))).reverse(), { id: "runs" }),
     make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
@@ -79,7 +79,7 @@ function between() {
       clock.length ? make("details", {}, make("summary", {}, "Times of what both have"), table(["code", "from, s", "to, s", "ratio"], clock, { id: "times" }))
         : make("p", { class: "muted" }, "Times are not compared: different machines, or none."));
   }
-  MAIN.append(make("h2", {}, "Who moved what between two runs"), make("div", { class: "filters" }, chooser("from", options, (v) => { from = Number(v); draw(); }, "from", from),
+  MAIN.append(make("h2", {}, "Changes between two runs"), make("div", { class: "filters" }, chooser("from", options, (v) => { from = Number(v); draw(); }, "from", from),
     chooser("to", options, (v) => { to = Number(v); draw(); }, "to", to)), place);
   draw();
 }

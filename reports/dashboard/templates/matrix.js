@@ -1,5 +1,5 @@
 "use strict";
-// The first page: the verdict, the heat map with its filters, core made wrong on purpose.
+// The first page: the verdict, the heat map with its filters, seeded faults.
 
 const [CASE, COLUMN, SPEED, NAME, VERDICT, SIZE, TEXT, REASON, TARGET] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
 const FILTERS = ["code", "family", "speed", "verdict"];
@@ -62,7 +62,7 @@ function matrix() {
   }
 
   MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("div", { id: "headline", class: DATA.right ? "v3" : "v0" }, ...DATA.headline.map((line) => make("p", {}, line))),
-    make("p", { class: "muted" }, "In each field: the gravest verdict of all modes and speeds shown, and the largest difference from core behind it. ",
+    make("p", { class: "muted" }, "In each field: the worst verdict of all modes and speeds shown, and the largest difference from core behind it. ",
       "Point at a field, or go from one to the next with the arrow keys, for details; Enter opens the case."),
     filters, make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))), place, detail);
   draw();
@@ -74,8 +74,8 @@ function matrix() {
 }
 
 function controls() {
-  MAIN.append(make("h2", {}, "Core made wrong on purpose"), make("p", { class: "muted" }, "Every run tries; the matrix must notice."),
-    table(["mistake", "outcome", "largest change of a frequency", "where", "cases", "caught by"], DATA.controls.map((o) => row(o.name,
+  MAIN.append(make("h2", {}, "Seeded faults"), make("p", { class: "muted" }, "Every run tries; the matrix must notice."),
+    table(["fault", "outcome", "largest change of a frequency", "where", "cases", "caught by"], DATA.controls.map((o) => row(o.name,
       make("td", { class: o.status === "caught" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "caught" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
       o.change === null && o.where ? "no such mode" : relative(o.change), o.where, make("td", { title: o.cases.join(", ") }, o.cases.length),
       make("td", { class: "reason" }, o.caught.length ? `${o.caught.length}: ${o.caught.join(", ")}` : "nobody"))), { id: "controls" }));

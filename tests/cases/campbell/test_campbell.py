@@ -121,15 +121,15 @@ def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "phrase"),
     [
         ({"speeds": (1.0,)}, "speeds: 1 given: a diagram needs two at least"),
         ({"operating": (1.0, 4.5)}, "operating range: 1 to 4.5 rad/s is not within the speeds, 0 to 4 rad/s"),
         ({"speeds": (1.0, 3.0), "operating": (0.5, 2.0)}, "not within the speeds"),
     ],
 )
-def test_what_cannot_be_asked_is_told(changes: dict[str, object], told: str) -> None:
-    with pytest.raises(CaseError, match=told):
+def test_what_cannot_be_asked_is_told(changes: dict[str, object], phrase: str) -> None:
+    with pytest.raises(CaseError, match=phrase):
         diagram(**changes)
 
 
@@ -287,8 +287,8 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
         return Modes(omega, np.array([5.0, 9.0]), shapes, 10, uncertainty=np.zeros(2))
 
     found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
-    told = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
-    assert "Not judged, since not followed over all of it: " in told
+    phrase = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
+    assert "Not judged, since not followed over all of it: " in phrase
     (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Not clear")
     assert sheet.rows[0][0] == "edge 1"
     assert sheet.rows[0][3] == "none"
@@ -299,8 +299,8 @@ def test_the_answer_in_one_line() -> None:
     assert verdict(diagram(margin=0.05, per_rev=(1,)), RAD_S) == (
         "Every mode keeps 5 % from n per revolution over 1 to 2 rad/s."
     )
-    told = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P
-    assert told == "✘ Over 1.1 to 2 rad/s, flap 1 meets 2P; edge 1 meets 2P and comes within 10 % of 3P."
+    phrase = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P
+    assert phrase == "✘ Over 1.1 to 2 rad/s, flap 1 meets 2P; edge 1 meets 2P and comes within 10 % of 3P."
     assert "none is judged" in verdict(diagram(operating=None), RAD_S)
 
 

@@ -65,16 +65,16 @@ def test_a_section_of_one_node_is_that_node(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "phrase"),
     [
         (b"\x89HDF\r\n\x1a\n\x00\x00", "K.mtx: not a text file"),
         ("%%MatrixMarket".encode("utf-16"), "K.mtx: not a text file"),
-        (b"", "no matrix in it"),
+        (b"", "no matrix found"),
     ],
 )
-def test_a_matrix_that_is_no_text_is_told(folder: Path, content: bytes, told: str) -> None:
+def test_a_matrix_that_is_no_text_is_told(folder: Path, content: bytes, phrase: str) -> None:
     (folder / "K.mtx").write_bytes(content)
-    with pytest.raises(CaseError, match=told) as caught:
+    with pytest.raises(CaseError, match=phrase) as caught:
         condense(folder / "bar.toml")
     assert "\n" not in str(caught.value)
 
@@ -88,5 +88,5 @@ def test_a_node_with_displacements_alone_cannot_be_a_section(folder: Path) -> No
             bars[across] = bars[:, across] = 0.0
         sio.mmwrite(folder / f"{name}.mtx", ss.coo_array(bars), symmetry="symmetric")
     (folder / "bar.toml").write_text(FILE.replace("[1, 2, 3, 4, 5, 6]", "[1, 2, 3]"))
-    with pytest.raises(CaseError, match="of a beam model each node's six freedoms"):
+    with pytest.raises(CaseError, match="in a beam model, the six freedoms of the node"):
         condense(folder / "bar.toml")

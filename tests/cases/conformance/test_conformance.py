@@ -1,4 +1,4 @@
-"""Every adapter of ours passes the conformance suite, core itself does, and every mistake that one can make fails it."""
+"""Every adapter of ours passes the conformance suite, core itself does, and every fault that one can make fails it."""
 
 import re
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def test_ours_conform(name: str) -> None:
 
 @dataclass
 class Core:
-    """Core as a code, with a mistake if wanted: in the blade it is given, in the modes it returns, in what it says."""
+    """Core as a code, with a fault if wanted: in the blade it is given, in the modes it returns, in what it says."""
 
     given: Callable[[Blade], Blade] = lambda blade: blade
     returned: Callable[[Modes], Modes] = lambda modes: modes
@@ -131,7 +131,7 @@ def first_column_of_tip_mass(blade: Blade) -> Blade:
     return replace(blade, tip_mass=np.diag([m, m, m, 0.0, 0.0, 0.0]))
 
 
-MISTAKES: dict[str, tuple[Core, set[str]]] = {
+FAULTS: dict[str, tuple[Core, set[str]]] = {
     "hertz": (Core(returned=lambda m: replace(m, frequencies=m.frequencies / (2 * np.pi))), {"cantilever at rest"}),
     "descending": (
         Core(returned=lambda m: replace(m, frequencies=m.frequencies[::-1], shapes=m.shapes[::-1])),
@@ -200,9 +200,9 @@ MISTAKES: dict[str, tuple[Core, set[str]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("mistake", MISTAKES)
-def test_mistakes_are_caught(mistake: str) -> None:
-    code, by = MISTAKES[mistake]
+@pytest.mark.parametrize("fault", FAULTS)
+def test_mistakes_are_caught(fault: str) -> None:
+    code, by = FAULTS[fault]
     names = "|".join(f"^{re.escape(name)}$" for name in by)
     found = failures(code, among=names)
     assert set(found) == by

@@ -1,4 +1,4 @@
-"""Codes for mechanisms pass their conformance checks, core itself does, and every mistake made here fails by name."""
+"""Codes for mechanisms pass their conformance checks, core itself does, and every fault made here fails by name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ def test_ours_conform(name: str) -> None:
 
 @dataclass
 class Core:
-    """Core as a code for mechanisms, with a mistake if wanted: in what it is given, or in what it returns."""
+    """Core as a code for mechanisms, with a fault if wanted: in what it is given, or in what it returns."""
 
     given: Callable[[mb.Mechanism], mb.Mechanism] = lambda mechanism: mechanism
     returned: Callable[[MechanismModes], MechanismModes] = lambda modes: modes
@@ -78,7 +78,7 @@ def last_joint_first(m: mb.Mechanism) -> mb.Mechanism:
     return replace(m, joints=(*m.joints[:-1], replace(j, at_parent=j.at_child, at_child=j.at_parent)))
 
 
-MISTAKES: dict[str, tuple[Core, str]] = {
+FAULTS: dict[str, tuple[Core, str]] = {
     "no gravity": (Core(given=lambda m: replace(m, gravity=(0.0, 0.0, 0.0))), "pendulum"),
     "no dampers": (Core(given=springs(damping=0.0)), "damped slide"),
     "no preload": (Core(given=springs(neutral=0.0)), "damped slide"),
@@ -110,9 +110,9 @@ MISTAKES: dict[str, tuple[Core, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("mistake", MISTAKES)
-def test_every_mistake_fails_a_check(mistake: str) -> None:
-    code, check = MISTAKES[mistake]
+@pytest.mark.parametrize("fault", FAULTS)
+def test_every_mistake_fails_a_check(fault: str) -> None:
+    code, check = FAULTS[fault]
     assert check in failures(code)
 
 

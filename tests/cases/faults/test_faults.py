@@ -16,7 +16,7 @@ from southwell.cases.judge.results import Control, Run
 from southwell.cases.verify import cells
 from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
-from southwell.reports.verification import controls as told
+from southwell.reports.verification import controls as reported
 
 from ...support import samples
 
@@ -139,16 +139,16 @@ def control(**changes: object) -> Control:
 def test_a_missed_fault_is_status_1_and_is_named() -> None:
     good = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), needs="exudyn-tree")))
     assert summary.status(good) == 0
-    headline = told.headline(good)
+    headline = reported.headline(good)
     assert headline.startswith("Negative controls: 1 of 1 seeded faults")
     assert headline.endswith("detected; 1 were not run, for want of a code.")
     blind = replace(good, controls=(control(caught=()),))
     assert summary.status(blind) == 1
-    assert "not noticed: no hub radius" in told.headline(blind)
-    assert [row["outcome"] for row in told.overview(replace(good, controls=(*good.controls, *blind.controls)))] == [
+    assert "not detected: no hub radius" in reported.headline(blind)
+    assert [row["outcome"] for row in reported.overview(replace(good, controls=(*good.controls, *blind.controls)))] == [
         "✔ detected", "○ needs exudyn-tree", "✘ missed",
     ]  # fmt: skip
-    assert told.headline(Run(())) == ""
+    assert reported.headline(Run(())) == ""
 
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:

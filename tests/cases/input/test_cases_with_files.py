@@ -39,9 +39,9 @@ def test_a_file_that_is_there_and_damaged_is_an_error(monkeypatch: pytest.Monkey
     path.parent.mkdir()
     path.write_text("nothing\n")
     monkeypatch.setenv(FILES, str(tmp_path))
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         library.load("iea-15")
-    assert not isinstance(told.value, FilesMissingError)
+    assert not isinstance(caught.value, FilesMissingError)
 
 
 def test_asked_for_by_name_it_is_bad_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

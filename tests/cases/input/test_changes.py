@@ -55,7 +55,7 @@ def test_numbers_are_set_in_their_unit_and_scaled() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "phrase"),
     [
         ("EI_flap", "not NAME=*FACTOR or NAME=VALUE"),
         ("EI_flap=1.1", "varies along the blade: give a factor, as in EI_flap=*1.1"),
@@ -67,10 +67,10 @@ def test_numbers_are_set_in_their_unit_and_scaled() -> None:
         ("hub_radius=-1", "hub_radius"),
     ],
 )
-def test_a_change_that_cannot_be_made_is_refused_by_name(text: str, told: str) -> None:
+def test_a_change_that_cannot_be_made_is_refused_by_name(text: str, phrase: str) -> None:
     with pytest.raises(CaseError, match="--set") as raised:
         apply(plain(), [parse(text)])
-    assert told in str(raised.value)
+    assert phrase in str(raised.value)
     assert "\n" not in str(raised.value)
 
 

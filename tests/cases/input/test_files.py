@@ -86,15 +86,15 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("content", "told"), BAD.values(), ids=BAD)
-def test_what_is_no_text_is_told_in_one_line(content: bytes, told: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("content", "phrase"), BAD.values(), ids=BAD)
+def test_what_is_no_text_is_told_in_one_line(content: bytes, phrase: str, tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes(content)
     with pytest.raises(CaseError) as caught:
         text(path)
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
-    assert told in message
+    assert phrase in message
     assert "\n" not in message
 
 

@@ -36,7 +36,7 @@ def test_mutated_input_is_refused_in_one_line_or_makes_sense(folder: Path, first
 
 def test_a_trial_notices(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A traceback, a message of two lines, nonsense that is taken, and a hang."""
-    told = []
+    reported = []
 
     def fault(kind: str) -> None:
         if kind == "two lines":
@@ -52,11 +52,11 @@ def test_a_trial_notices(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fuzz, "SECONDS", 0.2)
     for kind in ("two lines", "hang", "nonsense", "traceback"):
         monkeypatch.setattr(fuzz, "take", lambda *_, kind=kind: fault(kind))
-        told.append(fuzz.trial(SEED, 0, folder)[1])
-    assert told[0].startswith("message")
-    assert told[1].startswith("more than 0.2 s")
-    assert "AssertionError" in told[2]
-    assert "KeyError" in told[3]
+        reported.append(fuzz.trial(SEED, 0, folder)[1])
+    assert reported[0].startswith("message")
+    assert reported[1].startswith("more than 0.2 s")
+    assert "AssertionError" in reported[2]
+    assert "KeyError" in reported[3]
 
 
 def test_a_process_that_dies_is_told_and_the_rest_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -215,8 +215,10 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "told"), BAD, ids=[" ".join(new.split()) or f"no {old}" for old, new, _ in BAD])
-def test_bad_input_ends_in_one_line(tmp_path: Path, old: str, new: str, told: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("old", "new", "phrase"), BAD, ids=[" ".join(new.split()) or f"no {old}" for old, new, _ in BAD]
+)
+def test_bad_input_ends_in_one_line(tmp_path: Path, old: str, new: str, phrase: list[str]) -> None:
     assert WHOLE.count(old) >= 1
     path = write(tmp_path, WHOLE.replace(old, new, 1))
     with pytest.raises(CaseError) as caught:
@@ -224,7 +226,7 @@ def test_bad_input_ends_in_one_line(tmp_path: Path, old: str, new: str, told: li
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
-    for part in told:
+    for part in phrase:
         assert part in message, message
 
 
@@ -301,7 +303,7 @@ def test_bad_input_at_the_command_is_status_two(capsys, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         (("mechanism", "pitch-lnk"), "mechanism: 'pitch-lnk' is not known: did you mean pitch-link?"),
         (("modes", "pitch-link"), "it is a mechanism, not a blade: see `southwell mechanism pitch-link`"),
@@ -310,11 +312,11 @@ def test_bad_input_at_the_command_is_status_two(capsys, tmp_path: Path) -> None:
         (("verify", "FILE"), "speeds: missing"),
     ],
 )
-def test_a_mechanism_where_a_blade_is_wanted_and_the_reverse(capsys, tmp_path: Path, arguments, told: str) -> None:
+def test_a_mechanism_where_a_blade_is_wanted_and_the_reverse(capsys, tmp_path: Path, arguments, phrase: str) -> None:
     path = write(tmp_path, WHOLE)
     status, _, err = run(capsys, *(str(path) if a == "FILE" else a for a in arguments))
     assert (status, err.count("\n")) == (2, 1)
-    assert told in err
+    assert phrase in err
 
 
 def test_cases_lists_mechanisms_and_codes_lists_what_solves_them(capsys) -> None:

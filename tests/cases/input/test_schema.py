@@ -120,7 +120,7 @@ def test_impossible_ranges_are_refused(text: str) -> None:
 
 BAD = [
     ("length = 6.0", "length = 1e5", ["blade.length: 100000.0", "<= 10000"]),
-    ("length = 6.0", "length = 1e300", ["blade.length: 1e+300", "slip in the exponent"]),
+    ("length = 6.0", "length = 1e300", ["blade.length: 1e+300", "check the exponent"]),
     ('kind = "beam"', 'kind = "baem"', ["blade.kind: 'baem'", "did you mean beam?"]),
     ("modes = 3", "modes = 101", ["compare.modes: 101", "<= 100"]),
     ("modes = 3", 'modes = 3\nmotions = ["flap"]', ["compare.motions[0]: 'flap'", "did you mean flapwise?"]),
@@ -161,8 +161,10 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "told"), BAD, ids=[" ".join(new.split()) or f"no {old}" for old, new, _ in BAD])
-def test_bad_input_ends_in_one_line(write, old: str, new: str, told: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("old", "new", "phrase"), BAD, ids=[" ".join(new.split()) or f"no {old}" for old, new, _ in BAD]
+)
+def test_bad_input_ends_in_one_line(write, old: str, new: str, phrase: list[str]) -> None:
     assert GOOD.count(old) >= 1
     path = write(GOOD.replace(old, new, 1))
     with pytest.raises(CaseError) as caught:
@@ -170,7 +172,7 @@ def test_bad_input_ends_in_one_line(write, old: str, new: str, told: list[str]) 
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
-    for part in told:
+    for part in phrase:
         assert part in message
 
 
@@ -195,15 +197,15 @@ BAD_TABLES = [
 ]
 
 
-@pytest.mark.parametrize(("table", "told"), BAD_TABLES, ids=[told[0] for _, told in BAD_TABLES])
-def test_bad_tables_end_in_one_line(write, table: str | None, told: list[str]) -> None:
+@pytest.mark.parametrize(("table", "phrase"), BAD_TABLES, ids=[phrase[0] for _, phrase in BAD_TABLES])
+def test_bad_tables_end_in_one_line(write, table: str | None, phrase: list[str]) -> None:
     path = write(from_table(), table)
     with pytest.raises(CaseError) as caught:
         read(path)
     message = str(caught.value)
     assert message.startswith(str(path.parent / "table.csv"))
     assert "\n" not in message
-    for part in told:
+    for part in phrase:
         assert part in message
 
 

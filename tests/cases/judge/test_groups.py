@@ -15,7 +15,7 @@ from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, Independence, independence
 from southwell.references.protocol.quadratic import gyroscopic_modes
 from southwell.reports.shared import summary
-from southwell.reports.verification import witnesses as told
+from southwell.reports.verification import witnesses as reported
 
 from ...support import samples
 
@@ -69,13 +69,13 @@ def test_a_third_may_link_two() -> None:
 def test_who_has_something_of_cores_confirms_the_implementation_only(field: str) -> None:
     one = run(replace(origin("a", "A"), **{field: CORE}))
     assert count(one) == []
-    assert told.table(one)[0]["confirms the implementation only"] == "a"
+    assert reported.table(one)[0]["confirms the implementation only"] == "a"
 
 
 def test_who_declares_nothing_counts_for_nothing() -> None:
     one = replace(run(origin("a", "A")), origins=())
     assert count(one) == []
-    assert "a (undeclared" in told.table(one)[0]["counts for nothing"]
+    assert "a (undeclared" in reported.table(one)[0]["counts for nothing"]
 
 
 @pytest.mark.parametrize(
@@ -95,11 +95,11 @@ def test_who_does_not_agree_at_the_cases_target_is_in_no_group(changes: dict) ->
 def test_too_few_groups_are_status_1_and_a_line() -> None:
     enough = run(origin("a", "A"), origin("b", "B"), required=2)
     assert summary.status(enough) == 0
-    assert told.missing(enough) == []
+    assert reported.missing(enough) == []
     few = run(origin("a", "A"), origin("b", "A"), required=2)
     assert [(s.case, s.groups, s.required) for s in short(few)] == [("beam", 1, 2)]
     assert summary.status(few) == 1
-    assert told.missing(few)[0].startswith("beam: 1 of 2 required independent groups agree")
+    assert reported.missing(few)[0].startswith("beam: 1 of 2 required independent groups agree")
 
 
 def test_cases_require_groups_or_say_why_not() -> None:

@@ -40,7 +40,7 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "phrase"),
     [
         (lambda lines: lines[1:], "does not begin with the plan"),
         (lambda lines: lines[:-1], "does not end with the completion record"),
@@ -50,9 +50,9 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
         (lambda lines: lines + lines, "does not begin with the plan"),
     ],
 )
-def test_what_is_missing_is_said(path: Path, change: Callable[[list[str]], list[str]], told: str) -> None:
+def test_what_is_missing_is_said(path: Path, change: Callable[[list[str]], list[str]], phrase: str) -> None:
     path.write_text("".join(change(path.read_text().splitlines(keepends=True))))
-    assert told in results.read(path).unfinished
+    assert phrase in results.read(path).unfinished
 
 
 def test_a_column_of_the_plan_without_its_cells_is_a_gap(tmp_path: Path) -> None:
@@ -77,8 +77,8 @@ def test_a_file_that_cannot_be_written_wholly_leaves_the_earlier_one(tmp_path: P
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(OSError, match="No space left on device") as told:
+    with pytest.raises(OSError, match="No space left on device") as phrase:
         atomic.through(path, fails)
-    assert told.value.filename == str(path)
+    assert phrase.value.filename == str(path)
     assert path.read_text() == "before"
     assert [p.name for p in tmp_path.iterdir()] == ["file"]

@@ -67,13 +67,13 @@ def test_faster_than_theory_is_not_believed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "told"),
+    ("values", "phrase"),
     [([1.0, 1.1, 1.05], "not monotone: 1, 1.1, 1.05"), ([1.0, 1.1, 1.3], "not converging: 1, 1.1, 1.3")],
 )
-def test_what_does_not_converge_is_refused(values: list[float], told: str) -> None:
+def test_what_does_not_converge_is_refused(values: list[float], phrase: str) -> None:
     estimate = from_refinement((10, 20, 40), values, 2)
     assert estimate.uncertainty is None
-    assert told in estimate.note
+    assert phrase in estimate.note
     assert estimate.value == values[-1]
 
 

@@ -10,7 +10,7 @@ from southwell.cases.judge.results import Cell, Origin, Run
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification import terminal
-from southwell.reports.verification import witnesses as told
+from southwell.reports.verification import witnesses as reported
 
 from ...support import samples
 
@@ -72,7 +72,7 @@ def test_kinds_and_count() -> None:
     ],
 )
 def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: str) -> None:
-    """The gravest of a code's numbers: one that agrees beside it does not help."""
+    """The worst of a code's numbers: one that agrees beside it does not help."""
     (one,) = witnesses(run(cell("alpha"), cell("alpha", mode=2, **changes)), "beam")
     assert (one.standing, one.fine) == (standing, fine)
 
@@ -96,20 +96,20 @@ RUN = run(
 
 
 def test_the_report_counts_them() -> None:
-    first, second = told.table(RUN)
+    first, second = reported.table(RUN)
     assert first["independent groups"] == "3"
     assert first["who agrees, group by group"] == "(alpha); (exact); (author2000/a, author2000/b)"
     assert first["confirms the implementation only"] == "twin, chain"
     assert second["independent groups"] == "1"
     assert second["counts for nothing"].startswith("rough (disagrees")
-    assert "for each blade: 1 (other: beta) to 3" in told.headline(RUN)
-    assert [row["engine"] for row in told.origins(RUN)][:2] == ["alpha", "exact"]
+    assert "for each blade: 1 (other: beta) to 3" in reported.headline(RUN)
+    assert [row["engine"] for row in reported.origins(RUN)][:2] == ["alpha", "exact"]
 
 
 def test_without_declarations_nothing_is_counted() -> None:
     bare = run(cell("alpha"), declared=False)
-    assert told.headline(bare) == ""
-    assert told.table(bare)[0]["independent groups"] == "0"
+    assert reported.headline(bare) == ""
+    assert reported.table(bare)[0]["independent groups"] == "0"
 
 
 def test_the_matrix_says_what_each_column_shares() -> None:
@@ -136,6 +136,6 @@ def test_on_a_terminal_of_any_width_nothing_of_the_matrix_is_cut_off(width: int)
 
 def test_rows_that_do_not_say_leave_it_out() -> None:
     old = Run((samples.cell(),))
-    assert told.table(old) == []
-    assert told.headline(old) == ""
+    assert reported.table(old) == []
+    assert reported.headline(old) == ""
     assert "shares" not in matrix_report.heat(old)

@@ -188,7 +188,7 @@ def test_annotations_name_the_case_s_file_and_are_escaped(tmp_path: Path) -> Non
     assert [line.split(" ")[0] for line in lines] == ["::error"] * len(lines)
     assert all("\n" not in line for line in lines)
     assert sum("answers gone" in line for line in lines) == 2
-    assert sum("nobody catches" in line for line in lines) == 1
+    assert sum("no longer detected" in line for line in lines) == 1
     old = gate_text.annotations(compared(BAD, BAD), tmp_path)
     assert [line.split(" ")[0] for line in old] == ["::warning"] * 2  # misses, but old ones
 
@@ -222,7 +222,7 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
 
 
 @pytest.mark.parametrize(
-    ("line", "expected", "told"),
+    ("line", "expected", "phrase"),
     [
         ("{0}/before --against {0}/before", 0, "✔ gate passed: 6 cells against .*before: nothing moved"),
         ("{0}/before --against {0}/before/results.jsonl", 0, "nothing moved"),
@@ -238,10 +238,10 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
         ("{0}/moved.jsonl --against {0}/before --strict --tolerance 0.01", 0, "nothing moved"),
     ],
 )
-def test_the_command(folders, capsys: pytest.CaptureFixture[str], line: str, expected: int, told: str) -> None:
+def test_the_command(folders, capsys: pytest.CaptureFixture[str], line: str, expected: int, phrase: str) -> None:
     status, out, err = southwell(f"gate {folders(line)}", capsys)
     assert (status, err) == (expected, "")
-    assert re.search(told, out)
+    assert re.search(phrase, out)
 
 
 def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monkeypatch) -> None:
@@ -258,7 +258,7 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "phrase"),
     [
         ("{0}/none --against {0}/before", "none: cannot be read"),
         ("{0}/after --against {0}/none", "none: cannot be read"),
@@ -270,10 +270,10 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
         ("{0}/after --commit x", "of which history"),
     ],
 )
-def test_bad_input_is_one_line(folders, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
+def test_bad_input_is_one_line(folders, capsys: pytest.CaptureFixture[str], line: str, phrase: str) -> None:
     status, _, err = southwell(f"gate {folders(line)}", capsys)
     assert (status, err.count("\n")) == (2, 1)
-    assert re.search(told, err)
+    assert re.search(phrase, err)
 
 
 def test_verify_writes_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -112,17 +112,17 @@ def test_within_a_character(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "phrase"),
     [
         ('{"commit": "abc"}\n', "line 1: not a run .*date.*another version"),
         ('\n{"commit": 1}\n', "line 2: not a run .*commit"),
         ("a,b\nc,d\n", "line 1: not JSON.*southwell history"),
     ],
 )
-def test_another_file_is_refused(tmp_path: Path, text: str, told: str) -> None:
+def test_another_file_is_refused(tmp_path: Path, text: str, phrase: str) -> None:
     file = tmp_path / "other"
     file.write_text(text)
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=phrase):
         history.read(file)
 
 
@@ -153,7 +153,7 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "phrase"),
     [
         ("history add {0} --history {0}/h.jsonl", "results.jsonl: cannot be read (No such file"),
         ("history add {0}/good --history {0}/none/h.jsonl --commit a", "--history .*cannot be written"),
@@ -161,13 +161,13 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
         ("history list {0}/good", "not a run"),
     ],
 )
-def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str) -> None:
+def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str) -> None:
     (tmp_path / "empty").write_bytes(b"")
     results.write(tmp_path / "good", RUN)
     status, _, err = southwell(line.format(tmp_path), capsys)
     assert status == 2
     assert err.count("\n") == 1
-    assert re.search(told.replace("(", r"\("), err)
+    assert re.search(phrase.replace("(", r"\("), err)
 
 
 ADD, GATE = "history add {0}/cut --history {0}/h.jsonl --commit a", "gate {0}/good --against {0}/cut"

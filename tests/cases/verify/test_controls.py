@@ -1,4 +1,4 @@
-"""Deliberate mistakes in core: each is the one it is said to be. That the harness notices them: ``test_faults``."""
+"""Deliberate faults in core: each is the one it is said to be. That the harness notices them: ``test_faults``."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.verify import controls, mistakes
+from southwell.cases.verify import controls, core_faults
 from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes
@@ -22,7 +22,7 @@ def first(modes: Modes, column: int = Y) -> float:
     return float(family(modes, column)[0])
 
 
-def made(solve: mistakes.Solve, omega: float = OMEGA, blade: Blade | None = None) -> Modes:
+def made(solve: core_faults.Solve, omega: float = OMEGA, blade: Blade | None = None) -> Modes:
     return solve(blade or park(), omega, 15, 10, ALL_EFFECTS)
 
 
@@ -32,20 +32,20 @@ def exact(blade: Blade, omega: float = OMEGA) -> Modes:
 
 def test_without_geometric_stiffness_the_rotation_only_softens() -> None:
     """In the plane of rotation ω² = ω₀² − Ω²: 3.36 instead of 11.71; out of it ω₀ stays."""
-    wrong = made(mistakes.no_geometric_stiffness)
+    wrong = made(core_faults.no_geometric_stiffness)
     assert first(wrong) == pytest.approx(np.sqrt(AT_REST**2 - OMEGA**2), rel=1e-3)
     assert first(wrong, Z) == pytest.approx(AT_REST, rel=1e-3)
 
 
 def test_softening_reversed_adds_twice_the_square_of_the_speed() -> None:
     """ω² = ω_flap² + Ω² in the plane of rotation, but for stretch and Coriolis; out of it nothing changes."""
-    wrong, right = made(mistakes.softening_reversed), exact(park())
+    wrong, right = made(core_faults.softening_reversed), exact(park())
     assert first(wrong) == pytest.approx(np.sqrt(first(right, Z) ** 2 + OMEGA**2), rel=3e-4)
     assert first(wrong, Z) == pytest.approx(first(right, Z), rel=5e-5)
 
 
 def test_a_frozen_frame_reads_chordwise_as_flapwise() -> None:
-    wrong, right = made(mistakes.frozen_frame), exact(park())
+    wrong, right = made(core_faults.frozen_frame), exact(park())
     assert wrong.frequencies[:2] == pytest.approx([first(right, Z)] * 2, rel=5e-5)
     assert wrong.frequencies[0] / first(right) - 1.0 == pytest.approx(0.315, abs=1e-3)
 
@@ -57,7 +57,7 @@ def test_softening_is_that_of_points() -> None:
 
     blade = park()
     body = discretize(blade, 4, "half_end")
-    own = mistakes.spin_softening(body, pencil.undeformed(body), OMEGA)
+    own = core_faults.spin_softening(body, pencil.undeformed(body), OMEGA)
     mass = np.diagonal(body.lumps, axis1=1, axis2=2)[1:, 0]
     expected = -(OMEGA**2) * mass[:, None] * [1.0, 1.0, 0.0]
     np.testing.assert_allclose(np.diagonal(own.diagonal, axis1=1, axis2=2)[:, :3], expected, rtol=1e-12, atol=1e-12)
@@ -66,9 +66,9 @@ def test_softening_is_that_of_points() -> None:
 
 def test_a_shifted_axis_without_couplings_is_a_stiffer_beam() -> None:
     """EI_z + EA e² with e a quarter of √(EI_z/EA): frequencies times √(1 + 1/16); flapwise as before."""
-    wrong, right = made(mistakes.shifted_axis, 0.0), exact(park(), 0.0)
+    wrong, right = made(core_faults.shifted_axis, 0.0), exact(park(), 0.0)
     stiff = max(wrong.frequencies[:2])
-    assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + mistakes.OFFSET**2), rel=1e-4)
+    assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + core_faults.OFFSET**2), rel=1e-4)
     assert min(wrong.frequencies[:2]) == pytest.approx(right.frequencies[0], rel=1e-4)
 
 
@@ -76,15 +76,15 @@ def test_a_whole_end_mass_is_half_an_elements_mass_too_much() -> None:
     blade = park()
     extra = 0.5 * blade.mass[0, 0, 0] * blade.length / 15
     heavier = replace(blade, tip_mass=np.diag([extra] * 3 + [0.0] * 3))
-    ratio = first(made(mistakes.whole_end_mass)) / first(made(mistakes.lumped))
+    ratio = first(made(core_faults.whole_end_mass)) / first(made(core_faults.lumped))
     assert ratio == pytest.approx(first(exact(heavier)) / first(exact(blade)), abs=2e-3)
     assert ratio < 0.95
 
 
 def test_without_hub_radius_and_coriolis() -> None:
     blade = park()
-    assert first(made(mistakes.no_hub)) == pytest.approx(first(exact(replace(blade, hub_radius=0.0))), rel=1e-6)
-    without = made(mistakes.no_coriolis)
+    assert first(made(core_faults.no_hub)) == pytest.approx(first(exact(replace(blade, hub_radius=0.0))), rel=1e-6)
+    without = made(core_faults.no_coriolis)
     assert 1e-4 < first(without) / first(exact(blade)) - 1.0 < 1.3e-4  # Yoo–Shin coupled and uncoupled: 0.012 %
 
 
@@ -92,7 +92,7 @@ def test_a_coarse_mode_is_found_among_the_converged() -> None:
     """Fifteen point masses are 2 % off in the second mode; still it is the one that half a mass too much is seen in."""
     case = library.load("tip-mass")
     variant = replace(case.variants[0], speeds=np.array([12.0]))
-    (wrong,) = (w for w in controls.solve(variant, case.text.compare) if w.mistake == "whole end mass")
+    (wrong,) = (w for w in controls.solve(variant, case.text.compare) if w.fault == "whole end mass")
     assert max(wrong.modes, key=lambda m: abs(m.change or 0.0)).name == "flapwise 2"
 
 
@@ -101,5 +101,5 @@ def test_a_blade_that_a_mistake_leaves_singular_has_no_modes_to_tell_of() -> Non
     lagging = replace(park(), hub_radius=0.6, root=np.array([np.inf] * 5 + [0.0]))
     variant = replace(library.load("park-cantilever").variants[0], blade=lagging, speeds=np.array([OMEGA]))
     wrongs = controls.solve(variant, library.load("park-cantilever").text.compare)
-    assert next(w for w in wrongs if w.mistake == "no Coriolis").modes
-    assert len(wrongs) == len(mistakes.MISTAKES)
+    assert next(w for w in wrongs if w.fault == "no Coriolis").modes
+    assert len(wrongs) == len(core_faults.CORE_FAULTS)

@@ -110,12 +110,12 @@ def test_a_frequency_of_zero_is_a_failure() -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "told"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
+    ("code", "phrase"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
 )
-def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, told: str) -> None:
+def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) -> None:
     cells = of(code, "BLOWS", "NO_VERSION", "ZERO")
     assert [c.verdict for c in cells] == ["fail"]
-    assert told in cells[0].reason
+    assert phrase in cells[0].reason
     assert "\n" not in cells[0].reason
     assert any(c.verdict == "pass" for c in run("BLOWS", "NO_VERSION", "ZERO").cells)
 

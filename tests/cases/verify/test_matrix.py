@@ -97,7 +97,7 @@ def test_a_code_is_refined_until_it_is_sure(case) -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "verdict", "told"),
+    ("code", "verdict", "phrase"),
     [
         ("WRONG", "fail", "+0.20 % ±"),
         ("SLOW", "inconclusive", "observed order 0.20 instead of 2"),
@@ -106,10 +106,10 @@ def test_a_code_is_refined_until_it_is_sure(case) -> None:
         ("SPECTRAL", "pass", ""),
     ],
 )
-def test_verdicts(case, code: str, verdict: str, told: str) -> None:
+def test_verdicts(case, code: str, verdict: str, phrase: str) -> None:
     for cell in of(solve(case(), f"analytic:{code}"), code.lower()):
         assert cell.verdict == verdict
-        assert told in cell.reason
+        assert phrase in cell.reason
 
 
 def test_a_motion_that_a_code_does_not_have_is_not_applicable(case) -> None:
@@ -148,7 +148,7 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
 
 
 @pytest.mark.parametrize(
-    ("code", "verdict", "told"),
+    ("code", "verdict", "phrase"),
     [
         ("misbehaving:SEGFAULT", "fail", "SIGSEGV"),
         ("misbehaving:HANG", "inconclusive", "no answer within 3 s"),
@@ -156,11 +156,11 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
         ("misbehaving:GIVE_UP", "fail", "no steady state"),
     ],
 )
-def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, told: str) -> None:
+def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, phrase: str) -> None:
     run = solve(case("[2]"), code, "analytic:TWIN", timeout=3.0)
     (cell,) = of(run, "misbehaving")
     assert (cell.verdict, cell.mode, cell.frequency) == (verdict, 0, None)
-    assert told in cell.reason
+    assert phrase in cell.reason
     assert {c.verdict for c in of(run, "twin")} == {"pass"}
 
 
@@ -197,7 +197,7 @@ def test_a_speed_without_steady_state_is_bad_input(case) -> None:
 
 def test_more_modes_than_there_are_is_bad_input(case) -> None:
     many = case("[0]", 'motions = ["chordwise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
-    with pytest.raises(CaseError, match=r"compare\.modes: 4: at 0 rad/s 0 of the lowest 36 modes move so"):
+    with pytest.raises(CaseError, match=r"compare\.modes: 4: at 0 rad/s only 0 of the lowest 36 modes qualify"):
         solve(many)
 
 

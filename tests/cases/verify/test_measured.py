@@ -18,7 +18,7 @@ from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.verify import matrix, user_results
 from southwell.cases.verify.cells import Datum, Head, measured
 from southwell.cases.verify.reference import Reference, references
-from southwell.cases.verify.user_results import Added, Defaults
+from southwell.cases.verify.user_results import Defaults, UserResults
 from southwell.core.effects import ALL_EFFECTS
 from southwell.reports.cli import app as cli
 
@@ -30,7 +30,7 @@ CHORDWISE, FLAPWISE = 11.710953, 15.400199
 NONE = "speed [rad/s], measured [rad/s], mode\n"
 
 
-def read(tmp_path: Path, text: str, defaults: Defaults | None = None) -> Added:
+def read(tmp_path: Path, text: str, defaults: Defaults | None = None) -> UserResults:
     path = tmp_path / "rig.csv"
     path.write_text(text, encoding="utf-8")
     return user_results.read("rig", path, defaults)
@@ -42,9 +42,9 @@ def park(speeds: tuple[float, ...]):
     return replace(case, variants=(replace(variant, speeds=np.array(speeds)),))
 
 
-def run(file: Added) -> Run:
+def run(file: UserResults) -> Run:
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([park((0.0, 12.0))], [], executor, added=[file], parts=False)
+        return matrix.run([park((0.0, 12.0))], [], executor, user_results=[file], parts=False)
 
 
 def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(tmp_path: Path) -> None:
@@ -142,9 +142,9 @@ def test_an_uncertainty_in_the_frequencys_unit(tmp_path: Path) -> None:
     ],
 )
 def test_a_row_that_cannot_be_is_told_with_its_remedy(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         read(tmp_path, text)
-    message = str(told.value)
+    message = str(caught.value)
     assert message.startswith(str(tmp_path / "rig.csv"))
     assert words in message
     assert "\n" not in message

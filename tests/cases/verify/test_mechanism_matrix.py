@@ -58,18 +58,18 @@ def reference():
     return mechanism_columns.references(turning)[ALL_EFFECTS][2]
 
 
-def told(change) -> list:
+def reported(change) -> list:
     core = reference()
     answer = MechanismModes(core.modes.coordinates, core.modes.steady, core.modes.values, core.modes.shapes)
     return cells(HEAD, 30.0, core, change(answer), 2)
 
 
 def test_core_itself_passes() -> None:
-    assert [c.verdict for c in told(lambda a: a)] == ["pass", "pass"]
+    assert [c.verdict for c in reported(lambda a: a)] == ["pass", "pass"]
 
 
 def test_modes_are_paired_by_shape_not_by_number() -> None:
-    turned = told(lambda a: replace(a, values=a.values[::-1], shapes=1j * a.shapes[::-1]))
+    turned = reported(lambda a: replace(a, values=a.values[::-1], shapes=1j * a.shapes[::-1]))
     assert [c.verdict for c in turned] == ["pass", "pass"]
 
 
@@ -80,23 +80,23 @@ def test_coordinates_may_come_in_another_order_and_some_be_missing() -> None:
             a, coordinates=tuple(a.coordinates[k] for k in order), steady=a.steady[order], shapes=a.shapes[:, order]
         )
 
-    assert [c.verdict for c in told(fewer)] == ["pass", "pass"]
+    assert [c.verdict for c in reported(fewer)] == ["pass", "pass"]
 
 
 def test_a_frequency_that_is_off_fails() -> None:
-    bad = told(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
+    bad = reported(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
     assert [c.verdict for c in bad] == ["pass", "fail"]
     assert "more than" in bad[1].reason
 
 
 def test_a_damping_ratio_that_is_off_fails_though_the_frequency_is_right() -> None:
-    bad = told(lambda a: replace(a, values=1j * np.abs(a.values)))
+    bad = reported(lambda a: replace(a, values=1j * np.abs(a.values)))
     assert [c.verdict for c in bad] == ["fail", "pass"]
     assert "damping ratio 0, core's 0.1397" in bad[0].reason
 
 
 def test_a_shape_like_no_other_has_no_partner() -> None:
-    bad = told(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
+    bad = reported(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
     assert [c.verdict for c in bad] == ["fail", "fail"]
     assert "no partner, its most similar has MAC 0.5" in bad[0].reason
 
@@ -109,7 +109,7 @@ def test_coordinates_that_do_not_tell_the_modes_apart_are_a_failure() -> None:
         ones = np.ones((len(a.values), 1), complex)
         return replace(a, coordinates=("flap.rz",), steady=a.steady[[k]], shapes=ones)
 
-    (cell,) = told(flap_only)
+    (cell,) = reported(flap_only)
     assert cell.verdict == "fail"
     assert "coordinates flap.rz: these do not tell the 2 modes apart" in cell.reason
 
@@ -120,7 +120,7 @@ def test_spurious_modes_are_a_failure() -> None:
             a, values=np.append(a.values, 0.9 * a.values[1:]), shapes=np.append(a.shapes, a.shapes[:1], axis=0)
         )
 
-    (cell,) = told(more)
+    (cell,) = reported(more)
     assert (cell.verdict, "3 modes, and core has 2" in cell.reason) == ("fail", True)
 
 
@@ -128,7 +128,7 @@ def test_spurious_modes_are_a_failure() -> None:
     ("kind", "verdict"), [("crashed", "fail"), ("timed out", "inconclusive"), ("not installed", "not run")]
 )
 def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
-    (cell,) = told(lambda _: Failure(kind, "because"))
+    (cell,) = reported(lambda _: Failure(kind, "because"))
     assert (cell.verdict, cell.reason, cell.mode) == (verdict, "because", 0)
 
 

@@ -12,7 +12,7 @@ from ...support.killing import CASE, SUPPORT
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         ("a.toml b.toml", r"case: 'stub/a' is given twice, by a\.toml and by b\.toml: leave one out"),
         ("a.toml ./a.toml", r"case: 'stub/a' is given twice"),
@@ -29,7 +29,7 @@ from ...support.killing import CASE, SUPPORT
     ],
 )
 def test_a_name_given_twice_is_one_line(
-    arguments: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: str, phrase: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     shutil.copy(SUPPORT / "counted.py", tmp_path)  # the codes' own processes look in the current folder
@@ -42,5 +42,5 @@ def test_a_name_given_twice_is_one_line(
         cli.main(["verify", *arguments.split(), "--out", "out"])
     out, err = capsys.readouterr()
     assert (ended.value.code, out, err.count("\n")) == (2, "", 1)
-    assert re.search(told, err)
+    assert re.search(phrase, err)
     assert not (tmp_path / "out").exists()

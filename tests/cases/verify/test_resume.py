@@ -41,7 +41,7 @@ def answers(path: Path) -> int:
     return path.read_bytes().count(b'"kind":"answer"') if path.exists() else 0
 
 
-def told(folder: Path, command: str) -> tuple[int, str]:
+def reported(folder: Path, command: str) -> tuple[int, str]:
     """Status and first line of a command on the folder of results, in a process of its own."""
     line = [sys.executable, "-m", "southwell", *command.split(), "out"]
     done = subprocess.run(line, cwd=folder, env=killing.environment(folder), capture_output=True, text=True)
@@ -59,7 +59,7 @@ def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: P
     assert not (tmp_path / "out" / RESULTS).exists()
     if count == 8:
         for command in ("report", "gate", "dashboard"):
-            status, line = told(tmp_path, command)
+            status, line = reported(tmp_path, command)
             assert status == 3
             assert "ncomplete: " in line
     status, _, err = killing.ended(killing.start(tmp_path))
@@ -74,7 +74,7 @@ def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Pat
     out = tmp_path / "out"
     assert killing.kill(killing.start(tmp_path), (out / RESULTS).exists)
     before = killing.asked(tmp_path)
-    assert told(tmp_path, "gate")[0] == 3
+    assert reported(tmp_path, "gate")[0] == 3
     assert killing.ended(killing.start(tmp_path))[0] == 0
     assert killing.asked(tmp_path) == before
     same(tmp_path, undisturbed)
@@ -167,7 +167,7 @@ def test_killed_at_a_hundred_random_moments(tmp_path: Path, undisturbed: Path) -
         assert not set(killing.asked(tmp_path)[before:]) & set(kept), f"seed {seed}"
         assert killing.running(tmp_path) == [], f"seed {seed}"
         if alive and path.exists():
-            assert told(tmp_path, "gate")[0] == 3, f"seed {seed}"
+            assert reported(tmp_path, "gate")[0] == 3, f"seed {seed}"
         elif not alive:
             same(tmp_path, undisturbed)
     assert killing.ended(killing.start(tmp_path))[0] == 0

@@ -17,7 +17,7 @@ from southwell.core.blade import uniform_blade
 from southwell.references import published
 from southwell.references.theories import exact_beam, yoo_shin
 from southwell.reports.shared.units import RAD_S
-from southwell.reports.verification import error_budget as told
+from southwell.reports.verification import error_budget as reported
 
 from ...support.straight_blades import Y, family, park
 
@@ -142,13 +142,13 @@ def test_shares_survive_the_disk_and_are_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results.write(path, run())
     assert results.read(path) == run()
-    rows = told.rows(run(), CASE)
+    rows = reported.rows(run(), CASE)
     assert [row["cause"] for row in rows] == sorted(
         (row["cause"] for row in rows), key=["discretisation", "model form", "rounding"].index
     )
     assert {"chordwise 1", "flapwise 3"} <= set(rows[0])
     (inertia,) = (row for row in rows if row["what"] == "no rotary inertia")
     assert inertia["chordwise 3"].startswith("+0.054")
-    assert told.heading(run(), CASE, RAD_S) == "10 rad/s"
+    assert reported.heading(run(), CASE, RAD_S) == "10 rad/s"
     bare = Share(CASE, 10.0, "chordwise 9", "model form", "x", None)
-    assert told.rows(replace(run(), shares=(bare,)), CASE)[0]["chordwise 9"] == "no such mode"
+    assert reported.rows(replace(run(), shares=(bare,)), CASE)[0]["chordwise 9"] == "no such mode"

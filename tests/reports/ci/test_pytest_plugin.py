@@ -13,7 +13,7 @@ from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.regression import history
 from southwell.cases.verify import user_solver
-from southwell.cases.verify.user_solver import Yours
+from southwell.cases.verify.user_solver import UserSolver
 from southwell.core.modes import Modes
 from southwell.core.solve import modes
 from southwell.reports.ci import pytest_plugin
@@ -58,7 +58,7 @@ def test_effects_that_it_lacks_are_expected_failures_not_passes(project: pytest.
     done.stdout.re_match_lines([".*30rad_s-mode1.*no coriolis: .0.11 %.*without, core agrees"])
 
 
-def test_the_mistaken_solver_fails_wherever_it_turns_and_its_mistake_is_named(project: pytest.Pytester) -> None:
+def test_the_mistaken_solver_fails_wherever_it_turns_and_its_fault_is_named(project: pytest.Pytester) -> None:
     done = project.runpytest("test_mistaken.py", "--southwell-cases", "park-cantilever", "-rA")
     done.assert_outcomes(failed=36, passed=6)
     shown = done.stdout.str()
@@ -141,7 +141,7 @@ def test_a_function_of_blade_and_speed_alone() -> None:
         found = modes(blade, omega, 100, 12)
         return found.frequencies, found.shapes
 
-    cells, _ = user_solver.rows(Yours(solve), variant, compare)
+    cells, _ = user_solver.rows(UserSolver(solve), variant, compare)
     mine = [c for c in cells if c.role == "code"]
     assert [c.verdict for c in mine] == ["pass"] * 21
     assert max(abs(c.difference or 1.0) for c in mine) < 1e-6
@@ -155,7 +155,7 @@ def test_printed_numbers_are_held_against_it_too() -> None:
         found: Modes = modes(blade, omega, elements, count)
         return found.frequencies * (1 + 2e-3), found.shapes
 
-    cells, _ = user_solver.rows(Yours(solve, target=5e-3), variant, case.text.compare)
+    cells, _ = user_solver.rows(UserSolver(solve, target=5e-3), variant, case.text.compare)
     assert {c.verdict for c in cells if c.role == "code"} == {"pass"}
     printed = [c for c in cells if c.role == "table"]
     assert len(printed) >= 15
@@ -163,7 +163,7 @@ def test_printed_numbers_are_held_against_it_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "phrase"),
     [
         ("return [1.0], np.zeros((1, 20, 4))", "not (frequencies, shapes): shapes: (1, 20, 4), expected (1, 21, 4)"),
         ("return [np.nan], np.ones((1, 21, 4))", "not finite"),
@@ -172,17 +172,17 @@ def test_printed_numbers_are_held_against_it_too() -> None:
         ("return [], np.zeros((0, 21, 3))", "no modes"),
     ],
 )
-def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, told: str) -> None:
+def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, phrase: str) -> None:
     mark = 'import numpy as np\n@pytest.mark.southwell(solve=solve, cases=["quick.toml"])'
     body = re.sub(r"    found.*\n.*\n", f"    {text}\n", OFF).replace("def solve", "import numpy as np\ndef solve")
     quick.makepyfile(re.sub(r"@pytest.mark.*", mark, body))
     done = quick.runpytest("-x")
     done.assert_outcomes(failed=1)
-    assert told in done.stdout.str()
+    assert phrase in done.stdout.str()
 
 
 @pytest.mark.parametrize(
-    ("mark", "told"),
+    ("mark", "phrase"),
     [
         ("", "takes southwell_cell, and has no mark southwell"),
         ("@pytest.mark.southwell()", "missing 1 required positional argument: 'solve'"),
@@ -191,12 +191,12 @@ def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, 
         ('@pytest.mark.southwell(solve=print, cases=["wright-flapwis"])', "did you mean wright-flapwise"),
     ],
 )
-def test_a_mark_that_cannot_be_used_is_one_line(pytester: pytest.Pytester, mark: str, told: str) -> None:
+def test_a_mark_that_cannot_be_used_is_one_line(pytester: pytest.Pytester, mark: str, phrase: str) -> None:
     pytester.makepyfile(f"import pytest\n{mark}\ndef test_it(southwell_cell):\n    southwell_cell.check()\n")
     done = pytester.runpytest("--strict-markers")
     assert done.ret != 0
     shown = done.stdout.str() + done.stderr.str()
-    assert told in shown
+    assert phrase in shown
     assert "Traceback" not in shown
 
 
@@ -238,4 +238,4 @@ def test_installed_in_a_clean_environment(tmp_path: Path) -> None:
     assert (example / "out" / "report.md").exists()
     status, shown = tests("test_mistaken.py")
     assert (status, "18 failed, 3 passed" in shown) == (1, True), shown
-    assert "as core with this mistake: no geometric stiffness" in shown
+    assert "as core with this fault: no geometric stiffness" in shown

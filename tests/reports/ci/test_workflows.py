@@ -179,8 +179,8 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     for k, commit in enumerate(("aaa", "bbb"), 1):
         job = tmp_path / f"job{k}"
         git(tmp_path, "clone", "--quiet", "--depth=1", f"file://{origin}", str(job))
-        told = step(job, "Earlier runs")
-        assert ("no history yet" if k == 1 else "1 earlier runs") in told
+        phrase = step(job, "Earlier runs")
+        assert ("no history yet" if k == 1 else "1 earlier runs") in phrase
         (job / "reports" / "out").mkdir(parents=True)
         shutil.copy(ROOT / "reports" / "site" / "readme.jsonl", job / "reports" / "out" / "results.jsonl")
         step(job, "Add the run to the history", GITHUB_SHA=commit)

@@ -10,7 +10,7 @@ import pytest
 from southwell.cases.campbell.prestress import LOAD, STANDARD_GRAVITY
 from southwell.cases.input import library
 from southwell.core.solve import modes
-from southwell.reports.cli.campbell import Told
+from southwell.reports.cli.campbell import SpeedProgress
 from southwell.reports.shared.certain import certain
 from southwell.reports.shared.units import RPM
 
@@ -25,7 +25,7 @@ def beam(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         ("campbell", "BLADE"),
         ("campbell no-such-case", "'no-such-case' is not known"),
@@ -65,14 +65,14 @@ def beam(tmp_path: Path) -> Path:
     ],
 )
 def test_wrong_input_is_told_in_one_line(
-    arguments: str, told: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    arguments: str, progress: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     status, out, err = southwell(arguments, capsys)
     assert (status, out) == (2, "")
     assert err.startswith("southwell: ")
     assert err.count("\n") == 1
-    assert told in err
+    assert progress in err
     assert not list(tmp_path.iterdir())
 
 
@@ -241,10 +241,10 @@ def test_a_bad_load_is_one_line(
 ) -> None:
     table = tmp_path / "load.csv"
     table.write_text(f"{','.join(LOAD)}\n{rows}")
-    status, _, told = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
+    status, _, progress = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
     assert status == 2
-    assert told.count("\n") == 1
-    assert all(word in told for word in words)
+    assert progress.count("\n") == 1
+    assert all(word in progress for word in words)
 
 
 def test_several_processes_give_the_same_numbers(
@@ -262,12 +262,12 @@ def test_several_processes_give_the_same_numbers(
 
 
 def test_progress_counts_what_was_asked_for_and_names_what_is_between() -> None:
-    told = Told("blade", [0.0, 1.0], RPM)
-    told(0.0)
-    assert told.bar.tasks[0].completed == 1
-    told(0.5)
-    assert told.bar.tasks[0].completed == 1
-    assert "inserting 4.77465 rpm" in told.bar.tasks[0].description
+    progress = SpeedProgress("blade", [0.0, 1.0], RPM)
+    progress(0.0)
+    assert progress.bar.tasks[0].completed == 1
+    progress(0.5)
+    assert progress.bar.tasks[0].completed == 1
+    assert "inserting 4.77465 rpm" in progress.bar.tasks[0].description
 
 
 def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,7 +70,7 @@ def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, 
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         ("verify park-cantilevr", "'park-cantilevr' is not known: did you mean park-cantilever?"),
         ("verify park-blade/surrogat", "no such blade: did you mean park-blade/surrogate?"),
@@ -106,17 +106,17 @@ def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, 
         ("vrify", 'Unknown command "vrify"'),
     ],
 )
-def test_wrong_input_is_told_in_one_line(arguments: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_input_is_told_in_one_line(arguments: str, phrase: str, capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = southwell(arguments, capsys)
     assert status == 2
     assert out == ""
     assert err.startswith("southwell: ")
     assert err.count("\n") == 1
-    assert told in err
+    assert phrase in err
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "phrase"),
     [
         ("length = 2.0", "length = -2.0", "blade.length: -2.0"),
         ("length = 2.0", "length = nan", "blade.length: nan: not a finite number"),
@@ -128,13 +128,13 @@ def test_wrong_input_is_told_in_one_line(arguments: str, told: str, capsys: pyte
 )
 @pytest.mark.parametrize("command", ["verify", "modes"])
 def test_a_wrong_case_file_is_told_in_one_line(
-    command: str, old: str, new: str, told: str, beam: Path, capsys: pytest.CaptureFixture[str]
+    command: str, old: str, new: str, phrase: str, beam: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     beam.write_text(BEAM.replace(old, new))
     status, out, err = southwell(f"{command} {beam}", capsys)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert str(beam) in err
-    assert told in err
+    assert phrase in err
 
 
 def test_a_speed_without_a_steady_state_ends_a_verification_with_one_line(
@@ -159,7 +159,7 @@ def test_a_folder_that_cannot_be_written_is_told(
 
 
 @pytest.mark.parametrize(
-    ("content", "expected", "told"),
+    ("content", "expected", "phrase"),
     [
         ('{"kind": "cell", "nonsense": 1}\n', 2, "line 1: not a result"),
         ("not json\n", 2, "line 1: not a result"),
@@ -168,12 +168,12 @@ def test_a_folder_that_cannot_be_written_is_told(
     ],
 )
 def test_results_that_cannot_be_read_are_told(
-    content: str, expected: int, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    content: str, expected: int, phrase: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "results.jsonl").write_text(content)
     status, _, err = southwell(f"report {tmp_path}", capsys)
     assert status == expected
-    assert told in err
+    assert phrase in err
     assert err.count("\n") == 1
 
 
@@ -400,7 +400,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         ("modes park-cantilever --modes 1.5", "--modes: '1.5' is not a whole number"),
         ("modes park-cantilever --elements 100000000", "--elements. Must be <= 20000"),
@@ -422,7 +422,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
     ],
 )
 def test_what_went_wrong_before_is_told_in_one_line(
-    arguments: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    arguments: str, phrase: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Inputs that once ended in a traceback, in silence, never, or in the words of Python."""
     (tmp_path / "file").write_text("")
@@ -433,12 +433,12 @@ def test_what_went_wrong_before_is_told_in_one_line(
     assert (status, out) == (2, "")
     assert err.startswith("southwell: ")
     assert err.count("\n") == 1
-    assert told in err
+    assert phrase in err
     assert "Traceback" not in err
 
 
 @pytest.mark.parametrize(
-    ("source", "told"),
+    ("source", "phrase"),
     [
         ("CODE = undefined\n", "NameError: name 'undefined' is not defined"),
         ("def f(:\n", "SyntaxError"),
@@ -447,14 +447,14 @@ def test_what_went_wrong_before_is_told_in_one_line(
     ],
 )
 def test_an_adapter_that_cannot_be_imported_is_told_in_one_line(
-    source: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    source: str, phrase: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name = f"adapter{abs(hash(source))}"
     (tmp_path / f"{name}.py").write_text(source)
     monkeypatch.chdir(tmp_path)
     status, _, err = southwell(f"conform {name}:CODE", capsys)
     assert (status, err.count("\n")) == (2, 1)
-    assert told in err
+    assert phrase in err
     assert "in this folder?" in err
 
 
@@ -471,14 +471,14 @@ def test_stiffness_out_of_all_proportion_is_told_in_one_line(
 
 
 @pytest.mark.parametrize(
-    ("speed", "told"), [("0", "give speeds above 0"), ("1", "hold the hinge"), ("0:2:1", "give speeds above 0")]
+    ("speed", "phrase"), [("0", "give speeds above 0"), ("1", "hold the hinge"), ("0:2:1", "give speeds above 0")]
 )
 def test_a_hinge_that_nothing_holds_is_told(
-    speed: str, told: str, beam: Path, capsys: pytest.CaptureFixture[str]
+    speed: str, phrase: str, beam: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Lead and lag on a hinge at the rotor's axis: no restoring force at any speed."""
     hinged = BEAM.replace("hub_radius = 0.1", "hub_radius = 0.0\nroot = { lag = 0.0 }")
     beam.write_text(hinged)
     status, _, err = southwell(f"modes {beam} --omega {speed}", capsys)
     assert (status, err.count("\n")) == (2, 1)
-    assert told in err
+    assert phrase in err

@@ -58,7 +58,7 @@ def test_one_blade_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "phrase"),
     [
         ("convert park-blade {out}.toml", "park-blade: 3 blades (park-blade/windpact"),
         ("convert park-cantilever {out}.dat", "out.dat: ends in .dat: give the format with --to"),
@@ -73,11 +73,11 @@ def test_one_blade_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     ],
 )
 def test_bad_input_is_one_line_and_status_2(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str
 ) -> None:
     status, shown, err = southwell(line.format(out=tmp_path / "out", data=DATA), capsys)
     assert (status, shown) == (2, "")
-    assert told in err
+    assert phrase in err
     assert err.count("\n") == 1
     assert not list(tmp_path.iterdir())
 

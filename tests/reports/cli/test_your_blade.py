@@ -100,7 +100,7 @@ def test_each_line_of_the_diagram_has_its_uncertainty_and_who_confirms_it(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "phrase"),
     [
         (f"verify {BLADE}", "--rpm: missing"),
         ("verify missing.dat --rpm 0", "missing.dat: no such file"),
@@ -114,11 +114,11 @@ def test_each_line_of_the_diagram_has_its_uncertainty_and_who_confirms_it(
         (f"campbell {BLADE} --rpm 0:12:6 --azimuth 90 --verify", "without gravity"),
     ],
 )
-def test_wrong_options_are_one_line(arguments: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_options_are_one_line(arguments: str, phrase: str, capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = southwell(arguments, capsys)
     assert (status, out) == (2, "")
     assert err.count("\n") == 1
-    assert told in err
+    assert phrase in err
 
 
 @pytest.mark.parametrize("count", [1, 6, 11])

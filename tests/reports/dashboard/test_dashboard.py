@@ -74,7 +74,7 @@ def test_a_small_failure_is_named_before_large_known_differences(tmp_path: Path)
     assert mine["known"][0] == 2
     case = data(tmp_path / page("park-cantilever"))
     assert case["answer"] == "No: 1 answer contradicts core."
-    assert (case["told"][0]["verdict"], case["told"][0]["count"]) == (0, 1)
+    assert (case["verdict_counts"][0]["verdict"], case["verdict_counts"][0]["count"]) == (0, 1)
 
 
 DEUTERANOPE = np.array([[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]])

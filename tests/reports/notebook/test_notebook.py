@@ -77,7 +77,7 @@ def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blad
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "phrase"),
     [
         (lambda b: southwell.read("no-such.dat"), "no-such.dat"),
         (lambda b: southwell.read("park-blade"), "name one of"),
@@ -89,8 +89,8 @@ def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blad
         (lambda b: southwell.verify("park-cantilever", rpm=3.0), "own speeds"),
     ],
 )
-def test_what_cannot_be_is_one_line(call, told: str, blade: southwell.Blade) -> None:
+def test_what_cannot_be_is_one_line(call, phrase: str, blade: southwell.Blade) -> None:
     with pytest.raises(CaseError) as raised:
         call(blade)
-    assert told in str(raised.value)
+    assert phrase in str(raised.value)
     assert "\n" not in str(raised.value)

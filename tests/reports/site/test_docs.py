@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[3]
 DOCS = ROOT / "docs"
 PAGES = sorted(page.name for page in DOCS.glob("*.md"))
 
-ELSEWHERE = {"add-your-code.md": "test_add_your_code.py", "pytest-plugin.md": "test_pytest_plugin.py"}
+TESTED_BY = {"add-your-code.md": "test_add_your_code.py", "pytest-plugin.md": "test_pytest_plugin.py"}
 """Pages whose examples are followed by tests of their own: the second's are parts of tests/example_project."""
 
 NIGHTLY = {"add-a-case.md", "your-blade.md"}
@@ -71,7 +71,7 @@ def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
         first, *rest = settings(library.load(name))
         text = re.sub(r"\\(.)", r"\1", str(made[f"cases/{name}.md"]))
         assert first.description.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;") in text
-        assert all(f"## {told.case}" in text for told in (first, *rest))
+        assert all(f"## {phrase.case}" in text for phrase in (first, *rest))
     assert all(name in str(made["cases/index.md"]) for name in absent)
 
 
@@ -101,7 +101,7 @@ def test_the_api_has_every_module() -> None:
     [
         pytest.param(page, marks=pytest.mark.nightly) if page in NIGHTLY else page
         for page in PAGES
-        if page not in ELSEWHERE
+        if page not in TESTED_BY
     ],
 )
 def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:

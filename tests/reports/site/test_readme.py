@@ -43,9 +43,9 @@ def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_thro
         assert largest == summary.plus_minus(worst)
         foreign = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
         answered = {c.code for c in foreign if c.verdict not in ("not run", "not applicable")}
-        told = set() if others == "–" else {one.partition(" (")[0] for one in others.split(", ")}
-        assert {readme.plain(c.code) for c in mine} | told == {readme.plain(code) for code in answered}
-        assert not {c.code for c in mine} & told
+        reported = set() if others == "–" else {one.partition(" (")[0] for one in others.split(", ")}
+        assert {readme.plain(c.code) for c in mine} | reported == {readme.plain(code) for code in answered}
+        assert not {c.code for c in mine} & reported
 
 
 def test_the_output_of_the_command_is_what_it_prints(tmp_path: Path) -> None:
@@ -79,11 +79,11 @@ def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.Monke
     run = results.read(readme.ROWS)
     all_ = {name: library.load(name) for name in set(library.names()) - set(library.absent())}
     monkeypatch.delenv("SOUTHWELL_BLADES", raising=False)
-    elsewhere = set(library.absent())
-    ours = {v.name for name, case in all_.items() if name not in elsewhere for v in case.variants}
-    theirs = {v.name for name, case in all_.items() if name in elsewhere for v in case.variants} | elsewhere
+    absent = set(library.absent())
+    ours = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
+    theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | absent
     assert ours <= set(summary.cases(run)) <= ours | theirs | set(library.mechanisms())
-    anywhere = set(registry.OURS) - set(readme.ELSEWHERE)
+    anywhere = set(registry.OURS) - set(readme.ISOLATED)
     assert {registry.code(name).name for name in anywhere} <= {c.code for c in run.cells}
 
 
@@ -97,7 +97,7 @@ def test_cores_frequencies_in_the_table_are_those_that_core_gives_now() -> None:
     case = library.load(CASE)
     found = core_solver.converged(case.variants[0].blade, OMEGA, case.text.compare, ALL_EFFECTS)
     assert isinstance(found, core_solver.Converged)
-    estimates = [s.estimate.value for s in found.settled if s.estimate]
+    estimates = [s.estimate.value for s in found.modes if s.estimate]
     np.testing.assert_allclose(cores(), estimates, rtol=1e-9, err_msg="run `make verify` and `make readme`")
 
 

@@ -9,19 +9,19 @@ import pytest
 from matplotlib.figure import Figure
 
 from southwell.cases.verify import user_results
-from southwell.cases.verify.user_results import Added, Defaults
+from southwell.cases.verify.user_results import Defaults, UserResults
 from southwell.reports.campbell import points
 from southwell.reports.shared.units import RPM
 
 
-def read(tmp_path: Path, name: str, text: str) -> Added:
+def read(tmp_path: Path, name: str, text: str) -> UserResults:
     path = tmp_path / f"{name}.csv"
     path.write_text(text)
     return user_results.read(name, path, Defaults(data=0.01))
 
 
 @pytest.fixture
-def added(tmp_path: Path) -> list[Added]:
+def files(tmp_path: Path) -> list[UserResults]:
     rows = "0, 1.5, flapwise 1, mine\n10, 2.0, flapwise 1, mine\n30, 4.0, flapwise 1, mine\n0, 9.0, flapwise 1, other\n"
     return [
         read(tmp_path, name, f"speed [rpm], {kind} [Hz], mode, blade\n{rows}")
@@ -29,9 +29,9 @@ def added(tmp_path: Path) -> list[Added]:
     ]
 
 
-def test_measured_points_have_bars_and_both_have_a_legend(added: list[Added]) -> None:
+def test_measured_points_have_bars_and_both_have_a_legend(files: list[UserResults]) -> None:
     axes = Figure().add_subplot()
-    points.draw(axes, added, "mine", RPM)
+    points.draw(axes, files, "mine", RPM)
     rig, code = axes.containers
     line, _, (bars,) = rig.lines  # type: ignore[union-attr]
     assert [float(x) for x in line.get_xdata()] == pytest.approx([0.0, 10.0, 30.0])
@@ -41,13 +41,13 @@ def test_measured_points_have_bars_and_both_have_a_legend(added: list[Added]) ->
     )  # two standard uncertainties of 1 %
     assert rig.has_yerr  # type: ignore[union-attr]
     assert not code.has_yerr  # type: ignore[union-attr]
-    assert [h.get_label() for h in points.legend(added, "mine")] == ["rig, measured, ± 2 u_D", "code"]
-    assert not points.legend(added, "absent")
+    assert [h.get_label() for h in points.legend(files, "mine")] == ["rig, measured, ± 2 u_D", "code"]
+    assert not points.legend(files, "absent")
 
 
-def test_points_that_are_not_seen_are_counted(added: list[Added]) -> None:
+def test_points_that_are_not_seen_are_counted(files: list[UserResults]) -> None:
     wanted = SimpleNamespace(speeds=(0.0, 20 * np.pi / 30))
     diagram: Any = SimpleNamespace(blade=SimpleNamespace(name="mine"), wanted=wanted)
-    assert points.outside(added, diagram, top=100.0) == "2 of 6 added points outside"
-    assert points.outside(added, diagram, top=1.9 * 2 * np.pi) == "4 of 6 added points outside"
+    assert points.outside(files, diagram, top=100.0) == "2 of 6 added points outside"
+    assert points.outside(files, diagram, top=1.9 * 2 * np.pi) == "4 of 6 added points outside"
     assert points.outside([], diagram, top=1.0) == ""

@@ -179,11 +179,11 @@ def test_a_wide_target_is_told_clear_of_the_next_heading() -> None:
     """A table held to 2 % only, whose target lies at the right edge; a tiny one is not told in percent."""
     table = samples.cell(role="table", code="table", difference=0.014, target=0.02, frequency=11.86)
     wide = Run((table, samples.cell(code="twin", difference=1e-13, target=1e-8)))
-    for run, told in ((wide, "target 2.00 %"), (Run((samples.cell(target=1e-8, difference=1e-13),)), "target 1e-08")):
+    for run, phrase in ((wide, "target 2.00 %"), (Run((samples.cell(target=1e-8, difference=1e-13),)), "target 1e-08")):
         figure = drawn(differences(run, "beam", RAD_S))
         figure.draw_without_rendering()
         known = {t.get_text(): t.get_window_extent() for t in labels(figure.axes[0])}
-        assert known[told].x1 + 10 < known["largest"].x0
+        assert known[phrase].x1 + 10 < known["largest"].x0
 
 
 @given(st.lists(st.floats(-100, 100), max_size=8), st.floats(0.1, 30))

@@ -131,7 +131,7 @@ def test_the_heat_table_has_a_sign_and_a_word_for_every_case_and_code(report: st
 
 
 def test_a_code_without_any_answer_has_no_column_but_its_name_and_reason(report: str) -> None:
-    assert "No answer anywhere, so no column: delta (not installed" in report
+    assert "Omitted columns (no answer anywhere): delta (not installed" in report
     only = Run(tuple(c for c in samples.run().cells if c.code == "delta"))
     assert "○ not run" in matrix_report.heat(only)
 
@@ -251,7 +251,7 @@ def test_the_exit_status_is_0_only_if_all_is_within_target_or_explained(verdicts
 
 def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> None:
     run = Run((samples.cell(), samples.empty("fail", "crashed", omega=20.0)))
-    assert summary.gravest(run.cells) == "fail"
+    assert summary.worst_verdict(run.cells) == "fail"
     assert "✘ fail" in matrix_report.heat(run)
     assert "crashed" in matrix_report.write(run, tmp_path).read_text()
 

@@ -46,9 +46,9 @@ def test_they_change_no_status_and_no_answer() -> None:
 
 def test_they_are_counted_by_themselves_and_explained() -> None:
     assert "2 ✔ pass, 2 ◇ measured" in evidence.answer(WITH)
-    (told,) = (line for line in report.headline(WITH) if line.startswith("Measured"))
-    assert told.startswith("Measured: 2 frequencies, no evidence: model error visible in 1, at least 6.7 % (")
-    assert told.endswith("beam, rig, flapwise 1, 13 rad/s); not visible in 1.")
+    (line,) = (line for line in report.headline(WITH) if line.startswith("Measured"))
+    assert line.startswith("Measured: 2 frequencies, no evidence: model error visible in 1, at least 6.7 % (")
+    assert line.endswith("beam, rig, flapwise 1, 13 rad/s); not visible in 1.")
     (row,) = (r for r in evidence.rows(WITH) if r["evidence"].startswith("measured data"))
     assert row["answers"] == "2 ◇"
     assert "at least 6.0 %" in row["worst, for its target"]
@@ -68,7 +68,7 @@ def test_the_dashboard_holds_them_to_nothing() -> None:
         ("none", 8.0),
     ]
     names = [v["name"] for v in data.verdicts()]
-    assert [names[t["verdict"]] for t in data.told(WITH, "beam")] == ["pass", "measured"]
+    assert [names[t["verdict"]] for t in data.verdict_counts(WITH, "beam")] == ["pass", "measured"]
     assert data.of_case(WITH, "beam")["lines"] == data.of_case(PLAIN, "beam")["lines"]
 
 

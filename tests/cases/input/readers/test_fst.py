@@ -77,7 +77,7 @@ def test_fast_7s_primary_file_is_the_main_file() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "mount", "told"),
+    ("change", "mount", "phrase"),
     [
         (
             {"kind": "3"},
@@ -89,7 +89,7 @@ def test_fast_7s_primary_file_is_the_main_file() -> None:
         ({}, Mount(main=DATA / "elastodyn_main.dat"), r"--main .*: the .fst file names its main file itself"),
     ],
 )
-def test_bad_ones(folder: Path, change: dict[str, str], mount: Mount, told: str) -> None:
-    with pytest.raises(CaseError, match=told) as caught:
+def test_bad_ones(folder: Path, change: dict[str, str], mount: Mount, phrase: str) -> None:
+    with pytest.raises(CaseError, match=phrase) as caught:
         readers.read(primary(folder, **change), mount)
     assert "\n" not in str(caught.value)

@@ -190,6 +190,10 @@ BAD = {
         ("5.0000000E-01", "2.0E-01"),
         r"line 19: BlFract: 0.2: not beyond the station before it: a duplicate",
     ),
+    "no farther than rounding": (
+        ("2.0000000E-01  3.0", "1e-300  3.0"),
+        r"line 18: BlFract: 1e-300: not beyond the station before it",
+    ),
     "no name": (("AdjBlMs ", ""), r"bad.dat: AdjBlMs: not there: cut short, or the names removed"),
     "multiplier": (("1.5   AdjFlSt", "-1   AdjFlSt"), r"line 12: AdjFlSt: -1: it multiplies"),
     "multiplier no number": (("1.5   AdjFlSt", "one   AdjFlSt"), r"line 12: AdjFlSt: 'one' is not a finite number"),

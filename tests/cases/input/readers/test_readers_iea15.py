@@ -69,17 +69,17 @@ def test_the_half_chord_line_may_begin_beside_the_axis(blades: tuple[Blade, Blad
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "phrase"),
     [
         ("./iea15_bodies.htc", "./nowhere.htc", r"iea15.htc: line 2: continue_in_file: ./nowhere.htc: not found"),
         ("./iea15_bodies.htc", "./iea15.htc", r"iea15.htc: line 2: continue_in_file: the 10th within each other"),
         ("./iea15_bodies.htc ;", ";", r"iea15.htc: line 2: continue_in_file: no name: add it"),
     ],
 )
-def test_files_to_go_on_in_that_are_not_there(tmp_path: Path, old: str, new: str, told: str) -> None:
+def test_files_to_go_on_in_that_are_not_there(tmp_path: Path, old: str, new: str, phrase: str) -> None:
     path = tmp_path / "iea15.htc"
     path.write_text((DATA / "iea15.htc").read_text().replace(old, new))
-    with pytest.raises(CaseError, match=told):
+    with pytest.raises(CaseError, match=phrase):
         readers.read(path)
 
 

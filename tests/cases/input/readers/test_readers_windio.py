@@ -62,12 +62,12 @@ BAD: list[tuple[int, str, object, str]] = [
 
 
 @pytest.mark.parametrize(
-    ("version", "key", "value", "told"), BAD, ids=[f"{v} {k.split('.')[-1]} {o}"[:40] for v, k, o, _ in BAD]
+    ("version", "key", "value", "phrase"), BAD, ids=[f"{v} {k.split('.')[-1]} {o}"[:40] for v, k, o, _ in BAD]
 )
 def test_wrong_files_are_told_with_line_value_and_remedy(
-    tmp_path: Path, version: int, key: str, value: object, told: str
+    tmp_path: Path, version: int, key: str, value: object, phrase: str
 ) -> None:
-    with pytest.raises(CaseError, match=rf"b\.yaml: line \d+: .*{told}") as caught:
+    with pytest.raises(CaseError, match=rf"b\.yaml: line \d+: .*{phrase}") as caught:
         readers.read(written(tmp_path / "b.yaml", put(samples()[version - 1], key, value)))
     assert "\n" not in str(caught.value)
 
@@ -82,7 +82,7 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "phrase"),
     [
         ("a: [1, 2\nb: {", r"line \d+: not YAML: .*: correct it"),
         ("# nothing\n", "nothing but comments"),
@@ -94,9 +94,9 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
         ("- 1\n", "keys are needed"),
     ],
 )
-def test_what_is_no_such_yaml_is_told(tmp_path: Path, content: str, told: str) -> None:
+def test_what_is_no_such_yaml_is_told(tmp_path: Path, content: str, phrase: str) -> None:
     (tmp_path / "b.yaml").write_text(content)
-    with pytest.raises(CaseError, match=told):
+    with pytest.raises(CaseError, match=phrase):
         readers.read(tmp_path / "b.yaml")
 
 

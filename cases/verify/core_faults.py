@@ -1,6 +1,6 @@
-"""Core made wrong on purpose, one well-known mistake at a time: what a verification that is worth its name must notice.
+"""Core with one well-known fault at a time, which any verification must detect.
 
-Each mistake is made from outside: in the blade, in the model, in the chain, or in the pencil that core linearises to; core
+Each fault is made from outside: in the blade, in the model, in the chain, or in the pencil that core linearises to; core
 itself knows nothing of them. Those of the pencil take away or turn round ``softening``, what the centrifugal force of a
 displaced point lacks when it is reckoned at its place in the steady state (for a point mass m the matrix ``−Ω² m`` in the
 two directions of the plane of rotation, nothing along the rotor's axis).
@@ -35,14 +35,14 @@ Solve = Callable[[Blade, float, int, int, Effects], Modes]
 
 
 @dataclass(frozen=True)
-class Mistake:
+class CoreFault:
     """One way to be wrong.
 
     Attributes:
         name: short, for a table.
         what: what such a program does, in a sentence.
         wrong: its modes.
-        right: those without the mistake, in the same discretisation.
+        right: those without the fault, in the same discretisation.
         seen_in: blades of the package's cases in which it must be noticed.
         at_rest: whether it changes a blade that does not turn.
     """
@@ -140,7 +140,7 @@ def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) 
 
 
 LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
-"""The paper's discretisation, whose end weight the last mistake gets wrong; its 50 elements are divided as the others."""
+"""The paper's discretisation, whose end weight the last fault gets wrong; its 50 elements are divided as the others."""
 
 
 def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
@@ -159,17 +159,19 @@ def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model:
 
 PLAIN = ("park-cantilever",)
 
-MISTAKES = (
-    Mistake("no geometric stiffness", "the centrifugal tension does not stiffen", no_geometric_stiffness, right, PLAIN),
-    Mistake("softening's sign", "spin softening is added instead of taken away", softening_reversed, right, PLAIN),
-    Mistake(
+CORE_FAULTS = (
+    CoreFault(
+        "no geometric stiffness", "the centrifugal tension does not stiffen", no_geometric_stiffness, right, PLAIN
+    ),
+    CoreFault("softening's sign", "spin softening is added instead of taken away", softening_reversed, right, PLAIN),
+    CoreFault(
         "frozen frame",
         "linearised in a frame that stands still: chordwise is read as flapwise",
         frozen_frame,
         right,
         PLAIN,
     ),
-    Mistake(
+    CoreFault(
         "axis shifted",
         f"reference axis shifted by {OFFSET:g} radii of gyration, without the coupling terms",
         shifted_axis,
@@ -177,8 +179,8 @@ MISTAKES = (
         PLAIN,
         at_rest=True,
     ),
-    Mistake("no Coriolis", "no Coriolis force", no_coriolis, right, ("yoo-shin-chordwise/delta-0",)),
-    Mistake(
+    CoreFault("no Coriolis", "no Coriolis force", no_coriolis, right, ("yoo-shin-chordwise/delta-0",)),
+    CoreFault(
         "whole end mass",
         "lumped mass, the tip's a whole element's instead of half",
         whole_end_mass,
@@ -186,6 +188,6 @@ MISTAKES = (
         PLAIN,
         True,
     ),
-    Mistake("no hub radius", "the root lies on the rotor's axis", no_hub, right, PLAIN),
+    CoreFault("no hub radius", "the root lies on the rotor's axis", no_hub, right, PLAIN),
 )
 """All of them."""

@@ -21,7 +21,7 @@ HEAD = "speed [rad/s], frequency [rad/s], mode\n"
 EXACT = {"chordwise 1": 11.710953, "flapwise 1": 15.400199, "chordwise 2": 70.419355, "flapwise 2": 71.126584}
 
 
-def read(tmp_path: Path, text: str, name: str = "rig") -> user_results.Added:
+def read(tmp_path: Path, text: str, name: str = "rig") -> user_results.UserResults:
     path = tmp_path / "results.csv"
     path.write_text(text, encoding="utf-8")
     return user_results.read(name, path)
@@ -33,9 +33,9 @@ def park(speeds: tuple[float, ...] = (0.0, 10.0)):
     return replace(case, variants=(replace(variant, speeds=np.array(speeds)),))
 
 
-def run(*files: user_results.Added) -> Run:
+def run(*files: user_results.UserResults) -> Run:
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([park()], ["yoo-shin"], executor, added=files)
+        return matrix.run([park()], ["yoo-shin"], executor, user_results=files)
 
 
 def of(run: Run, name: str = "rig") -> list[Cell]:
@@ -140,9 +140,9 @@ BAD = [
 
 @pytest.mark.parametrize(("text", "words"), BAD)
 def test_a_bad_file_is_told_in_one_line(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         read(tmp_path, text)
-    message = str(told.value)
+    message = str(caught.value)
     assert message.startswith(str(tmp_path / "results.csv"))
     assert words in message
     assert "\n" not in message
