@@ -1,1 +1,1 @@
-"""The report of a run: Markdown, figures, HTML, PDF and the pages of codes. A ``Run`` comes in; text and files go out."""
+"""The report of a run: Markdown, figures, HTML, PDF and one page per code. Takes a ``Run``; returns text and files."""

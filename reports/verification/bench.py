@@ -1,4 +1,4 @@
-"""What a frequency costs, as tables; and the command that measures it, ``southwell bench``."""
+"""``southwell bench``: measures the run time of core and the other codes, and renders it as tables."""
 
 from itertools import pairwise
 from math import log
@@ -17,7 +17,7 @@ from ..shared.console import output
 FILE = "bench.json"
 
 SEEN = 2**20
-"""Bytes above which a process's peak tells something."""
+"""Smallest peak memory of a process, in bytes, that is significant."""
 
 ABOUT = f"""One thread a process, medians over rounds in which the codes take turns. The uniform cantilever with {ELEMENTS}
 elements, the {COUNT} lowest modes, from the blade to the modes: one speed ({OMEGA:g} rad/s), and {len(SWEEP)} speeds, the
@@ -60,13 +60,13 @@ def command(*, out: Path = Path("southwell-report")) -> int:
 
 
 def beside(folder: Path) -> str:
-    """The tables of a measurement kept in a report's folder; empty if there is none."""
+    """Return the tables of the measurement in a report's folder; empty if there is none."""
     path = folder / FILE
     return render(measure.read(path)) if path.exists() else ""
 
 
 def render(found: Bench) -> str:
-    """Both tables in Markdown, and what they say of the growth."""
+    """Return both tables in Markdown and one line on how cost and memory grow."""
     core = next(t for t in found.timings if t.code == "core")
     codes = _table([_row(t, core) for t in found.timings])
     growth = _table([_grown(g) for g in found.growth])
@@ -76,7 +76,10 @@ def render(found: Bench) -> str:
 
 
 def exponents(growth: tuple[Growth, ...]) -> str:
-    """How cost and memory grow, as powers of the number of elements; of a few elements a process shows no memory."""
+    """Return how time and memory grow, as powers of the number of elements.
+
+    Meshes whose peak memory is below ``SEEN`` are left out of the growth of memory.
+    """
     first, last = growth[0], growth[-1]
     steps = ", ".join(f"N^{_power(a, b, 'seconds'):.2f} from {a.elements} to {b.elements}" for a, b in pairwise(growth))
     whole = f"N^{_power(first, last, 'seconds'):.2f} from {first.elements} to {last.elements} elements"

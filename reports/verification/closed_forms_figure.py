@@ -1,4 +1,4 @@
-"""Core against mechanisms that are known in closed form, drawn: frequencies above, differences below."""
+"""Figures of core against closed-form solutions of mechanisms: frequencies above, differences below."""
 
 import re
 from pathlib import Path
@@ -22,14 +22,14 @@ PAGE = "closed-forms.md"
 """What ``southwell closed-forms`` writes."""
 
 FINE = 600
-"""Points of a closed form's line."""
+"""Number of points on the curve of a closed form."""
 
 LEAST = 1e-17
-"""Differences of nothing are drawn here."""
+"""Lower limit of the differences drawn, for the log axis."""
 
 
 def beside(folder: Path) -> str:
-    """The page in a report's folder, a heading lower and without its formulas; empty if there is none."""
+    """Return a report's page, with headings one level lower and without formulas; empty if there is none."""
     path = folder / PAGE
     if not path.exists():
         return ""
@@ -38,13 +38,19 @@ def beside(folder: Path) -> str:
 
 
 def solved(form: ClosedForm) -> tuple[Complex, Array]:
-    """Core's eigenvalues and their relative differences (speeds, branches)."""
+    """Return core's eigenvalues and their relative differences, both (speeds, branches)."""
     found = [differences(form, omega) for omega in form.speeds.tolist()]
     return np.array([values for values, _ in found]), np.array([off for _, off in found])
 
 
 def figure(form: ClosedForm, values: Complex, off: Array) -> Figure:
-    """Above, frequencies (and growth rates, where there are any) against speed; below, the differences on a log axis."""
+    """Draw frequencies and growth rates against speed, and below them the differences on a log axis.
+
+    Args:
+        form: the closed-form solution.
+        values: (speeds, branches) core's eigenvalues, NaN where a branch has none.
+        off: (speeds, branches) their relative differences.
+    """
     fine = np.linspace(form.speeds[0], form.speeds[-1], FINE)
     exact = np.array([form.exact(omega) for omega in fine.tolist()])
     with house():

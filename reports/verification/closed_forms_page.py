@@ -1,4 +1,4 @@
-"""The page of mechanisms known in closed form, and the command that writes it, ``southwell closed-forms``."""
+"""``southwell closed-forms``: writes the page of mechanisms that have closed-form solutions."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,7 +18,7 @@ from .closed_forms_figure import PAGE, Array, Complex, figure, solved
 Found = tuple[ClosedForm, Complex, Array]
 
 FOLDER = "closed-forms"
-"""Where the figures go, beside the page."""
+"""Sub-folder of the figures."""
 
 
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
@@ -46,7 +46,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 
 
 def pages() -> dict[str, str]:
-    """The page, and its figures as SVG, by their paths."""
+    """Return the page and its figures as SVG, by path."""
     return _page([(form, *solved(form)) for form in FORMS])
 
 

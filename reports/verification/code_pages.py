@@ -1,6 +1,6 @@
-"""A page for each code: version, what it shares with core, its worst difference on every blade, what it gets wrong.
+"""One page per code: version, what it shares with core, its worst difference on every blade, known defects.
 
-Numbers are those of a run; what it refuses is asked of its adapter; what it gets wrong is shown by running a reproducer.
+Numbers are taken from a run. The adapter reports what it refuses. A reproducer is run to show each defect.
 """
 
 from collections.abc import Sequence
@@ -20,17 +20,17 @@ from ..shared.summary import SYMBOL
 from .report import units
 
 FOLDER = "codes"
-"""Where the pages go, beside the results."""
+"""Sub-folder of the pages."""
 
 ROLES = ("code", "same discretisation")
-"""Of cells that are a code's own answer."""
+"""Roles of cells that hold a code's answer."""
 
 
 def write(run: Run, folder: Path) -> Path:
-    """Write ``codes/NAME.md`` for every code known here, and ``codes/index.md``, into ``folder``; the index's path.
+    """Write ``codes/NAME.md`` for every registered code, and ``codes/index.md``; return the index's path.
 
     Raises:
-        OSError: if something cannot be written.
+        OSError: if a folder or file cannot be written.
     """
     pages = folder / FOLDER
     pages.mkdir(parents=True, exist_ok=True)
@@ -43,12 +43,12 @@ def write(run: Run, folder: Path) -> Path:
 
 
 def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
-    """Codes by name, all by default, with what each says to a rod with each property."""
+    """Return the descriptions of codes, by default all, with their answers to a rod with each property."""
     return describe(registry.names() if names is None else names, [p.having for p in PROPERTIES])
 
 
 def index(run: Run, known: Sequence[Description]) -> str:
-    """All codes: version, what each shares with core, its cells by verdict, its worst difference and where, defects."""
+    """Return the table of all codes: version, sharing with core, cells by verdict, worst difference, defects."""
     rows = []
     for code in known:
         cells = own(run, code.name)
@@ -70,7 +70,7 @@ def index(run: Run, known: Sequence[Description]) -> str:
 
 
 def page(run: Run, code: Description) -> str:
-    """One code's page."""
+    """Return the page of one code."""
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
@@ -95,17 +95,17 @@ def page(run: Run, code: Description) -> str:
 
 
 def own(run: Run, name: str) -> list[Cell]:
-    """The cells of one code."""
+    """Return the cells of one code."""
     return [c for c in run.cells if c.code == name and c.role in ROLES]
 
 
 def defects(name: str) -> list[Defect]:
-    """Known defects of one code."""
+    """Return the known defects of one code."""
     return [d for d in DEFECTS if name in d.codes]
 
 
 def version(run: Run, code: Description) -> str:
-    """The version that the run's numbers are of; else the one installed, or how to install it."""
+    """Return the version used in the run; otherwise the installed one, or how to install the code."""
     ran = run.versions.get(code.name)
     if ran and ran != "not installed":
         return ran
@@ -115,7 +115,7 @@ def version(run: Run, code: Description) -> str:
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
-    """For each blade: the worst verdict, how many cells have which, and its largest difference; empty without cells."""
+    """Return one row per blade: cells by verdict, the largest difference, where it is and why; empty without cells."""
     labels = summary.labels(run.cells)
     rows = []
     for case in dict.fromkeys(c.case for c in cells):
@@ -137,7 +137,7 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
 
 
 def properties(code: Description) -> str:
-    """What the adapter says to a rod with each property."""
+    """Return how the adapter treats a rod with each property."""
     rows = []
     for p, why in zip(PROPERTIES, code.refused, strict=True):
         answer = f"refused: {plain(why)}" if why else "taken"
@@ -148,7 +148,7 @@ def properties(code: Description) -> str:
 
 
 def _defect(defect: Defect) -> dict[str, str]:
-    """What the template says of a defect, with what its reproducer prints now."""
+    """Return a defect for the template, with the current output of its reproducer."""
     try:
         output, says = shown(defect), "prints"
     except RuntimeError as error:

@@ -1,14 +1,14 @@
-"""Seeded faults in words and in a table: what was made faulty, how large its effect is, and who noticed."""
+"""Negative controls as text and as a table: each seeded fault, its size, its effect, and the cells that detect it."""
 
 from ...cases.judge.results import Control, Run
 from ...cases.judge.verdict import percent
 
 SHOWN = 3
-"""Cells that a table names; of the others it says how many."""
+"""Number of cells that a table names; the others are only counted."""
 
 
 def headline(run: Run) -> str:
-    """How many faults are detected, in a sentence; which are missed. Empty for a run without any."""
+    """Return in one sentence how many faults are detected and which are missed; empty without controls."""
     tried = [c for c in run.controls if not c.needs]
     missed = ", ".join(c.control for c in tried if c.missed)
     if not tried:
@@ -21,14 +21,14 @@ def headline(run: Run) -> str:
 
 
 def said(control: Control) -> str:
-    """What became of one: ``✔ detected``, ``○ needs exudyn-tree``."""
+    """Return the outcome of a control: ``✔ detected``, ``✘ missed`` or ``○ needs exudyn-tree``."""
     if control.needs:
         return f"○ needs {control.needs}"
     return "✘ missed" if control.missed else "✔ detected"
 
 
 def overview(run: Run) -> list[dict[str, str]]:
-    """A row a fault: what is faulty, its size, the largest difference it made, and the cells that say so."""
+    """Return one row per fault: what is faulty, its size, the largest difference, and the cells that detect it."""
     return [
         {
             "fault": control.control,

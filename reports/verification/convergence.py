@@ -1,4 +1,4 @@
-"""How frequencies converge: every code's refinements, and what the lumping of mass costs."""
+"""The figure of convergence: every code's refinements."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,19 +15,20 @@ from ..shared.summary import column, columns, labels
 from ..shared.units import Units
 
 FLOOR = 1e-12
-"""Errors below this are rounding, and are drawn here."""
+"""Smallest error drawn; smaller ones are rounding."""
 
 PANELS = 6
-"""Modes shown, from the lowest."""
+"""Number of modes shown, from the lowest."""
 
 REFINED = ("code", "discretisation")
-"""Roles of cells whose codes are refined."""
+"""Roles of the cells whose refinements are drawn."""
 
 
 def convergence(run: Run, case: str, units: Units) -> Figure | None:
-    """Distance from core's converged answer against refinement, a panel a mode, at the case's highest speed.
+    """Draw the distance from core's converged answer against refinement, one panel per mode.
 
-    The number at a line's end is the order observed at its three finest refinements. None if no code was refined.
+    The speed is the highest at which codes were refined. The number at the end of a line is the order observed at its
+    three finest refinements. Returns None if no code was refined.
     """
     rows = [c for c in run.cells if c.case == case and c.reference and c.mode and c.role in REFINED]
     cells = {(c.omega, c.mode, c.code): c for c in rows}
@@ -102,7 +103,7 @@ def _panel(axes: Axes, cells: Sequence[Cell], levels: Sequence[Level], style: di
         if cell.order is not None:
             ends.append((mine[-1].elements, errors[-1], f"{cell.order:.1f}", look.colour))
     low, high = np.log10(axes.get_ylim())
-    points = 1.7 * 72 / (high - low)  # of a decade: panels are about 1.7 inches high
+    points = 1.7 * 72 / (high - low)  # points per decade; panels are about 1.7 inches high
     heights = spread([np.log10(y) * points for _, y, _, _ in ends], 9.0)
     for (x, y, text, colour), h in zip(ends, heights, strict=True):
         shift = h - np.log10(y) * points

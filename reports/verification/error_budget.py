@@ -1,15 +1,15 @@
-"""Where a case's differences come from, as a table: a row a cause, a column a mode."""
+"""The error budget of a case as a table: one row per cause, one column per mode."""
 
 from ...cases.judge.results import Run, Share
 from ...cases.judge.verdict import percent, unsigned
 from ..shared.units import Units
 
 TINY = 1e-9
-"""Changes smaller than this are none."""
+"""Smaller relative changes are shown as 0."""
 
 
 def rows(run: Run, case: str) -> list[dict[str, str]]:
-    """A row a cause: discretisation, model form, rounding; in each field what it alone does to a mode."""
+    """Return one row per cause (discretisation, model form, rounding) with its effect on each mode."""
     mine = [s for s in run.shares if s.case == case]
     modes = list(dict.fromkeys(s.mode for s in mine))
     by = {(s.cause, s.part, s.mode): s for s in mine}
@@ -22,7 +22,7 @@ def rows(run: Run, case: str) -> list[dict[str, str]]:
 
 
 def heading(run: Run, case: str, units: Units) -> str:
-    """At which speed; empty for a case without shares."""
+    """Return the speed of the error budget; empty for a case without one."""
     return next((units.at(s.omega) for s in run.shares if s.case == case), "")
 
 

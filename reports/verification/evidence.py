@@ -1,4 +1,4 @@
-"""What a run's evidence is made of, kind by kind: how many answers, the worst difference of each kind, and where it is."""
+"""The evidence of a run by kind: number of answers, the worst difference of each kind, and where it is."""
 
 from collections.abc import Callable, Iterable
 
@@ -17,17 +17,20 @@ KINDS: dict[str, Callable[[Cell], bool]] = {
     "mechanisms: codes and closed forms with the same equations": lambda c: c.role == "same discretisation",
     "other": lambda c: True,
 }
-"""A cell is of the first kind that takes it; the second and third check the answer, the fourth the implementation only."""
+"""Kinds of evidence; a cell counts as the first that matches.
+
+The second and third kinds check the answer, the fourth only the implementation.
+"""
 
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
-"""What is named before all else, worst first."""
+"""Verdicts reported first, worst first."""
 
 SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
 """Verdicts on a difference from core with the same effects, worst first."""
 
 
 def verdict(run: Run) -> str:
-    """The verdict on the run, a sentence."""
+    """Return the verdict on the run in one sentence."""
     counts = summary.counts(run.cells)
     if not summary.compared(run.cells):
         return "Nothing was compared."
@@ -47,7 +50,7 @@ def verdict(run: Run) -> str:
 
 
 def answer(run: Run) -> str:
-    """The verdict, and how many cells it rests on."""
+    """Return the verdict and the number of cells by verdict."""
     counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
     return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
 
@@ -58,7 +61,7 @@ def _mute(cell: Cell) -> bool:
 
 
 def urgent(run: Run) -> list[str]:
-    """Lines for the worst failure, for failures without a number, and for the largest inconclusive difference."""
+    """Return lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
     sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
     mute = {(c.code, c.case): c.reason for c in run.cells if _mute(c)}
@@ -66,8 +69,10 @@ def urgent(run: Run) -> list[str]:
 
 
 def first(run: Run) -> list[str]:
-    """What a reader looks for first: the answer, and what is urgent; if nothing is, the independent answer that is
-    farthest from core for its target."""
+    """Return the summary of a run: the answer, and the failures and inconclusive differences.
+
+    If there are none, the second line is the independent answer that is farthest from core relative to its target.
+    """
     far = farthest(c for c in run.cells if c.shares == "nothing")
     data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
@@ -76,7 +81,7 @@ def first(run: Run) -> list[str]:
 
 
 def measured(run: Run) -> str:
-    """What measured data show of the model, in a sentence; empty without any."""
+    """Return in one sentence the model errors that measured data show; empty without measured data."""
     cells = [c for c in run.cells if c.verdict == "measured"]
     if not cells:
         return ""
@@ -94,13 +99,17 @@ def _statement(cell: Cell) -> str:
 
 
 def _measured(cells: Iterable[Cell]) -> Cell | None:
-    """The measured point with the largest visible error of the model, or the farthest."""
+    """Return the measured point with the largest visible model error, or otherwise the largest difference."""
     mine = [c for c in cells if c.verdict == "measured"]
     return max(mine, key=lambda c: (visible(c), abs(c.difference or 0.0)), default=None)
 
 
 def rows(run: Run) -> list[dict[str, str]]:
-    """A row a kind: its cells by verdict, the worst difference with the same effects, the largest known one; and where."""
+    """Return one row per kind of evidence.
+
+    A row has the cells by verdict, the worst difference from core with the same effects, and the largest known
+    difference.
+    """
     out = []
     kinds: dict[str, list[Cell]] = {kind: [] for kind in KINDS}
     for cell in run.cells:
@@ -121,7 +130,7 @@ def rows(run: Run) -> list[dict[str, str]]:
 
 
 def farthest(cells: Iterable[Cell]) -> Cell | None:
-    """Of the worst of ``SAME`` there, the one that is largest for its target."""
+    """Return the cell of the worst verdict in ``SAME`` whose difference is the largest relative to its target."""
     cells = list(cells)
     for verdict in SAME:
         if there := [c for c in cells if c.verdict == verdict]:
@@ -143,7 +152,7 @@ def _shown(run: Run, cell: Cell | None) -> str:
 
 
 def where(run: Run, cell: Cell) -> str:
-    """Case, code, mode and speed of a cell."""
+    """Return case, code, mode and speed of a cell as text."""
     mode = summary.labels(run.cells)[cell]
     return f"{cell.case}, {summary.column(cell)}, {mode}, {_units(run, cell).at(cell.omega)}"
 

@@ -1,4 +1,4 @@
-"""Campbell diagram and differences of one blade, from a run's rows alone."""
+"""The Campbell diagram and the differences of one blade, drawn from the rows of a run."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,15 +15,15 @@ from ..shared.summary import allowed, amount, column, columns, counts, labels
 from ..shared.units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
-"""Multiples of the rotor's speed that are worth a ray."""
+"""Orders n per revolution that are drawn as rays."""
 
 
 def campbell(run: Run, case: str, units: Units) -> Figure | None:
-    """Frequencies against rotor speed: core's as lines, every code's as markers, rays of n per revolution.
+    """Draw frequencies against rotor speed: core's as lines, each code's as markers, and rays of n per revolution.
 
-    Core's lines run straight in the squares between its points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). Codes that are
-    given core's discretisation are not shown: theirs is not a converged answer. None if the case has numbers at fewer
-    than two speeds.
+    Core's lines are straight in the squares between the computed points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). Codes
+    that use core's discretisation are omitted, because their answers are not converged. Returns None if the case has
+    numbers at fewer than two speeds.
     """
     cells = [c for c in run.cells if c.case == case and c.role not in ("same discretisation", "measured")]
     data = [c for c in run.cells if c.case == case and c.verdict == "measured"]
@@ -62,7 +62,10 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
 
 
 def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
-    """Core's frequencies with all effects (rad/s) by mode and speed; modes by name if the names last, else by number."""
+    """Return core's frequencies with all effects (rad/s) by mode and speed.
+
+    Modes go by name if the same names occur at every speed, otherwise by number.
+    """
     names = labels(cells)
     full = [c for c in cells if c.full is not None and c.reference == c.full]
     full = full or [c for c in cells if c.full is not None]
@@ -101,7 +104,7 @@ def _rays(axes: Axes, units: Units) -> None:
 
 
 def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], units: Units) -> list[Line2D]:
-    """Hollow markers, nested: the first code's is the largest, so that codes that agree can all be seen."""
+    """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
     style = looks(columns(run.cells))
     handles = [Line2D([], [], color=INK, lw=1.0, label="core, converged")]
     for rank, name in enumerate(shown):
@@ -123,7 +126,7 @@ def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], 
 
 
 def _data(axes: Axes, cells: Sequence[Cell], units: Units) -> list[Line2D]:
-    """Measured points as filled diamonds; the bars are the validation uncertainty, 2 u_val."""
+    """Draw measured points as filled diamonds; the bars are the validation uncertainty, 2 u_val."""
     handles = []
     for name, face in zip(columns(cells), (INK, MUTED, FAINT) * len(cells), strict=False):
         mine = [c for c in cells if column(c) == name]
@@ -150,16 +153,16 @@ FACES: dict[Verdict, str] = {
     "inconclusive": "none",
     "fail": "full",
 }
-"""How a marker is filled; a failure is a cross."""
+"""Fill style of a marker by verdict; a failure is drawn as a cross."""
 
 BELOW = 1e-5
-"""Differences smaller than this part of the smallest target are drawn at the left edge."""
+"""Lower limit of the differences drawn, as a fraction of the smallest target; smaller ones are at the left edge."""
 
 
 def differences(run: Run, case: str, units: Units) -> Figure | None:
-    """Every cell's difference ± uncertainty on a log axis, a row a code, a track a mode; None if there are no numbers.
+    """Draw every cell's difference ± uncertainty on a log axis, one row per code, one track per mode.
 
-    Without measured data, which have no target.
+    Measured data have no target and are omitted. Returns None if there are no numbers.
     """
     cells = [c for c in run.cells if c.case == case and c.difference is not None and c.role != "measured"]
     if not cells:
@@ -213,7 +216,7 @@ def _decades(cells: Sequence[Cell]) -> tuple[float, float]:
 
 
 def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -> None:
-    """The targets as upright lines, a bar and a marker a cell."""
+    """Draw the targets as vertical lines, and a bar and a marker per cell."""
     left = axes.get_xlim()[0]
     d = np.array([abs(c.difference or 0.0) for c in cells])
     u = np.array([c.uncertainty or 0.0 for c in cells])
@@ -229,5 +232,5 @@ def _row(axes: Axes, row: int, cells: Sequence[Cell], tracks: int, look: Look) -
         text = f"target {', '.join(allowed(t) for t in targets)}"
         at = axes.transScale.transform((targets[0], 0.0))[0]
         low, high = axes.transScale.transform([(x, 0.0) for x in axes.get_xlim()])[:, 0]
-        side = "right" if at > low + 0.85 * (high - low) else "center"  # clear of the next heading
+        side = "right" if at > low + 0.85 * (high - low) else "center"  # avoids the next heading
         axes.annotate(text, (targets[0], -0.5), (0, 4), textcoords="offset points", ha=side, size=8)

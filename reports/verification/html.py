@@ -1,4 +1,4 @@
-"""A report as one HTML file that needs nothing else, and as a PDF; both from the Markdown, so that all say the same."""
+"""A report as one self-contained HTML file, and as a PDF; both are rendered from the Markdown."""
 
 import re
 from base64 import b64encode
@@ -21,13 +21,13 @@ from ..shared.markdown import anchor
 from ..shared.summary import SYMBOL
 
 SAFE = "/:;=,()' \n.-+*<>"
-"""Of an SVG's characters those that may stand in a data address inside an attribute as they are."""
+"""Characters of an SVG that need no escape in a data URL inside an attribute."""
 
 CLASSES = {sign: verdict.replace(" ", "-") for verdict, sign in SYMBOL.items()}
-"""Of table cells that begin with a verdict's sign."""
+"""CSS class of table cells that begin with a verdict's sign."""
 
 VERDICT = re.compile(rf"<td[^>]*>((?:[\d.e+-]+<br ?/?>)?([{re.escape(''.join(CLASSES))}]))(?= )")
-"""A cell's beginning: a frequency above it where there is one, then the sign."""
+"""Start of a table cell: an optional frequency on its own line, then the sign of the verdict."""
 
 STYLE = """
 :root { color-scheme: light; --ink: #1a1a1a; --faint: #d8d8d8; --link: #0b57a4; }
@@ -55,26 +55,28 @@ pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size
   .wide { overflow: visible; } img { max-width: 62%; } a { color: inherit; text-decoration: none; }
 }
 """
-"""Of screen and of paper; verdicts have the dashboard's colours, beside signs and words. Closed parts are printed closed,
-by a PDF's maker open."""
+"""Style for screen and paper. Verdicts have the dashboard's colours in addition to signs and words.
+
+A browser prints closed sections closed; the PDF has them open.
+"""
 
 
 POLICY = (
     "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
     f"style-src 'sha256-{b64encode(sha256(STYLE.encode()).digest()).decode()}'"
 )
-"""What a browser may do with the page: show figures that lie in it, and use this style, no other."""
+"""Content security policy of the page: only embedded figures and this style are allowed."""
 
 FOLD = re.compile(r"<details(?: open)?><summary>([^<>]*)</summary>|</details>")
-"""The only block of HTML in a report; everything else that looks like HTML is text."""
+"""The only HTML block in a report; anything else that looks like HTML is text."""
 
 
 class PdfError(RuntimeError):
-    """No PDF can be made: says why, and the remedy."""
+    """No PDF can be made; the message has the reason and the remedy."""
 
 
 def write(report: Path) -> Path:
-    """Write ``report.html`` beside ``report.md``, its figures inside it.
+    """Write ``report.html`` next to ``report.md`` with its figures embedded; return its path.
 
     Raises:
         OSError: if a figure cannot be read or the file cannot be written.
@@ -85,10 +87,10 @@ def write(report: Path) -> Path:
 
 
 def pdf(report: Path) -> Path:
-    """Write ``report.pdf`` beside ``report.md``, everything opened.
+    """Write ``report.pdf`` next to ``report.md`` with all sections open; return its path.
 
     Raises:
-        PdfError: if WeasyPrint, or the system's Pango that it needs, is not there.
+        PdfError: if WeasyPrint, or the system's Pango that it requires, is missing.
     """
     try:
         from weasyprint import HTML  # pyright: ignore[reportMissingImports]
@@ -104,7 +106,7 @@ def pdf(report: Path) -> Path:
 
 
 def render(text: str, folder: Path) -> str:
-    """The Markdown of a report as a whole HTML page; figures are read from ``folder``."""
+    """Render the Markdown of a report as an HTML page; figures are read from ``folder``."""
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     reader.inline.ruler.before("text", "line_break", _line_break)
     reader.block.ruler.before("paragraph", "fold", _fold, {"alt": ["paragraph"]})
@@ -132,7 +134,7 @@ def render(text: str, folder: Path) -> str:
 
 
 def _line_break(state: StateInline, silent: bool) -> bool:
-    """The report's own ``<br>``, in a table's cells; what comes from results has its ``<`` escaped."""
+    """Parse the report's ``<br>`` in table cells; any ``<`` from results is escaped."""
     if not state.src.startswith("<br>", state.pos):
         return False
     if not silent:
@@ -142,7 +144,7 @@ def _line_break(state: StateInline, silent: bool) -> bool:
 
 
 def _fold(state: StateBlock, first: int, last: int, silent: bool) -> bool:
-    """The report's own parts that open and close."""
+    """Parse the collapsible sections of the report."""
     line = state.src[state.bMarks[first] : state.eMarks[first]].rstrip()
     if not FOLD.fullmatch(line):
         return False
@@ -153,7 +155,7 @@ def _fold(state: StateBlock, first: int, last: int, silent: bool) -> bool:
 
 
 def _anchors(tokens: Sequence[Token]) -> None:
-    """An id for each heading, as GitHub has it: one that comes again gets a number."""
+    """Give each heading an id as GitHub does; a repeated heading gets a number."""
     seen: dict[str, int] = {}
     for token, words in pairwise(tokens):
         if token.type == "heading_open":
@@ -163,10 +165,10 @@ def _anchors(tokens: Sequence[Token]) -> None:
 
 
 def _inline(image: Token, folder: Path) -> None:
-    """A figure in the place of its address."""
+    """Embed a figure in place of its address."""
     path = (folder / str(image.attrs["src"])).resolve()
     if path.suffix != ".svg" or not path.is_relative_to(folder.resolve()):
-        image.attrSet("src", "data:,")  # its words are left
+        image.attrSet("src", "data:,")  # the alternative text remains
         return
     svg = read_bytes(path).decode("utf-8")
     svg = re.sub(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", "", svg, flags=re.S)

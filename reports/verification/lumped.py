@@ -1,4 +1,4 @@
-"""The paper's explanation of its differences, shown true or false: lumped mass, the stiffness's frame, or both."""
+"""The effect of the paper's lumped mass and body-fixed beam stiffness on its frequencies, separately and together."""
 
 from dataclasses import dataclass
 
@@ -12,10 +12,10 @@ from ...cases.verify.lumping import CASE, MASSES, OMEGA, STIFFNESSES, variant
 from ..shared.style import COLOURS, FAINT, INK, WIDTH, beside, house, title
 
 PAPER = 50
-"""Elements of the paper's cantilever."""
+"""Number of elements of the paper's cantilever."""
 
 EXACT, FRAME, MASS, BOTH = (variant(mass, stiffness) for mass in MASSES for stiffness in STIFFNESSES)
-"""Neither departure from a convergent discretisation of fourth order, one, the other, both as in the paper."""
+"""The four discretisations: neither change, the body-fixed stiffness, the lumped mass, both as in the paper."""
 
 LOOKS = {
     BOTH: ("both (paper)", INK, "o"),
@@ -27,23 +27,28 @@ LOOKS = {
 
 @dataclass(frozen=True)
 class Taken:
-    """Relative errors of the four combinations: name → (elements,) and (elements, modes)."""
+    """Relative errors of the four discretisations.
+
+    Attributes:
+        elements: (n,) numbers of elements.
+        errors: by name, (n, modes) relative errors.
+    """
 
     elements: np.ndarray
     errors: dict[str, np.ndarray]
 
     def at(self, name: str) -> np.ndarray:
-        """(modes,) errors at the paper's number of elements."""
+        """Return the (modes,) errors at the paper's number of elements."""
         return self.errors[name][self.elements.tolist().index(PAPER)]
 
     @property
     def shares(self) -> np.ndarray:
-        """(modes,) the lumped mass's part of the whole error at the paper's number of elements."""
+        """(modes,) fraction of the whole error due to the lumped mass, at the paper's number of elements."""
         return self.at(MASS) / self.at(BOTH)
 
 
 def taken(run: Run) -> Taken | None:
-    """The errors in a run's rows, against the finest of the exact combination; None if the run has no such rows."""
+    """Return the errors relative to the finest refinement of ``EXACT``; None if the run has no such rows."""
     rows = {name: [v for v in run.levels if v.case == CASE and v.code == name] for name in LOOKS}
     if not all(rows.values()):
         return None
@@ -56,7 +61,7 @@ def taken(run: Run) -> Taken | None:
 
 
 def sentence(found: Taken) -> str:
-    """What the numbers say of the paper's explanation."""
+    """Return in one sentence how much of the paper's error is due to lumping."""
     percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
     return (
         f"Lumping the mass makes up {percent} of the error of chordwise modes 1 to {len(found.shares)} at {PAPER} "
@@ -65,7 +70,7 @@ def sentence(found: Taken) -> str:
 
 
 def lumping(run: Run) -> Figure | None:
-    """Left, the error at the paper's 50 elements taken apart; right, how each part falls with refinement."""
+    """Draw the error at the paper's 50 elements by cause (left), and how each cause converges (right)."""
     found = taken(run)
     if found is None:
         return None
@@ -115,7 +120,7 @@ def _falling(axes: Axes, found: Taken) -> None:
     axes.set_yscale("log")
     ends = []
     for name, (label, colour, marker) in LOOKS.items():
-        shown = slice(None, -2 if name == EXACT else None)  # the exact one is compared with its own finest
+        shown = slice(None, -2 if name == EXACT else None)  # EXACT is compared with its finest refinement
         n, error = found.elements[shown], np.abs(found.errors[name][shown, -1])
         axes.plot(n, error, color=colour, marker=marker, ms=4, mfc="white", lw=1.1)
         order = -np.polyfit(np.log(n), np.log(error), 1)[0]

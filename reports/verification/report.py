@@ -1,4 +1,4 @@
-"""The report of a run as GitHub-flavoured Markdown: verdict first, then a heat table, then case by case."""
+"""The report of a run in GitHub-flavoured Markdown: the verdict, a heat table, then one section per case."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,16 +27,16 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
     "differences": differences,
     "convergence": convergence,
 }
-"""Drawn for each blade; the key ends the file's name."""
+"""Figures of each blade, by the last part of the file name."""
 
 LARGEST: dict[Verdict, str] = {
     "known difference": "Largest known difference",
     "pass": "Largest difference that passes",
 }
-"""What the headline names, worst first."""
+"""Further verdicts that the headline names, worst first."""
 
 SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a"}
-"""Verdicts as the heat table has them, under a legend that has them in full."""
+"""Short names of verdicts in the heat table; its legend explains them."""
 
 LEGEND = ", ".join(f"{sign} {v}{f' ({SHORT[v]})' if v in SHORT else ''}" for v, sign in SYMBOL.items())
 
@@ -45,7 +45,7 @@ def write(run: Run, folder: Path) -> Path:
     """Write ``report.md`` and ``figures/*.svg`` into ``folder``; the same run gives the same bytes.
 
     Raises:
-        OSError: if something cannot be written.
+        OSError: if a folder or file cannot be written.
     """
     figures = folder / "figures"
     figures.mkdir(parents=True, exist_ok=True)
@@ -69,19 +69,19 @@ def write(run: Run, folder: Path) -> Path:
 
 
 def units(run: Run, case: str) -> Units:
-    """The units a case is read in; rad/s if the run says nothing of it."""
+    """Return the units of a case; rad/s if the run does not state them."""
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
 def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "", known: str = "") -> str:
-    """The report's text.
+    """Return the text of the report.
 
     Args:
-        run: its results.
+        run: the results.
         figures: paths of each case's figures, relative to the report.
         cost: the tables of ``bench``.
         condensed: the page of ``condense``.
-        known: that of ``closed-forms``.
+        known: the page of ``closed-forms``.
     """
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
@@ -120,7 +120,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 
 def headline(run: Run) -> list[str]:
-    """The verdict in a few sentences, the worst first; text without markup."""
+    """Return the verdict in a few sentences, the worst first, without markup."""
     lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
@@ -130,7 +130,7 @@ def headline(run: Run) -> list[str]:
 
 
 def marked(run: Run, lines: Sequence[str]) -> list[str]:
-    """Lines of text as Markdown: that the run is incomplete, and the verdict, in bold type."""
+    """Return lines as Markdown, with the verdict and the note on an incomplete run in bold."""
     out = []
     for line in lines:
         bold = next((b for b in (summary.incomplete(run), evidence.verdict(run)) if b and line.startswith(b)), "")
@@ -140,7 +140,7 @@ def marked(run: Run, lines: Sequence[str]) -> list[str]:
 
 
 def unasked(run: Run) -> str:
-    """Codes that answered nowhere, and why, in a line; empty if there are none."""
+    """Return the codes without any answer, with the reasons, in one line; empty if there are none."""
     omitted = []
     for name in _silent(run):
         mine = [c for c in run.cells if broad(c) == name]
@@ -150,16 +150,16 @@ def unasked(run: Run) -> str:
 
 
 def _silent(run: Run) -> list[str]:
-    """Columns without a single answer, if any other has one."""
+    """Return the columns without any answer, unless no column has one."""
     names = columns(run.cells, broad)
     empty = [n for n in names if all(c.verdict in ("not run", "not applicable") for c in run.cells if broad(c) == n)]
     return empty if len(empty) < len(names) else []
 
 
 def heat(run: Run, linked: bool = False) -> str:
-    """Case × code: the verdict that stands for all modes and speeds, and the largest difference behind it.
+    """Return the heat table, case × code: the worst verdict of all modes and speeds, and its largest difference.
 
-    Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases lead to their sections.
+    Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases link to their sections.
     """
     names = [n for n in columns(run.cells, broad) if n not in _silent(run)]
     rows = []
@@ -184,7 +184,7 @@ def _heat(cells: Sequence[Cell]) -> str:
 
 @dataclass(frozen=True)
 class Section:
-    """One blade's part of the report, ready for the template."""
+    """The section of one blade, ready for the template."""
 
     name: str
     setting: Setting | None
@@ -203,7 +203,7 @@ class Section:
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
-    """One blade: its setting, frequencies and differences at the speed in focus and at the others, reasons."""
+    """Return the section of one blade: setting, frequencies, differences by speed, and reasons."""
     cells = [c for c in run.cells if c.case == case]
     setting = next((s for s in run.settings if s.case == case), None)
     unit = units(run, case)
@@ -232,7 +232,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
 
 
 def measured(run: Run, case: str, unit: Units) -> str:
-    """Every measured point of a case, and what it says of the model; empty without any."""
+    """Return the table of a case's measured points and the model errors they show; empty without any."""
     names = summary.labels(run.cells)
     cells = [c for c in run.cells if c.case == case and c.role == "measured"]
     rows = [
@@ -251,7 +251,7 @@ def measured(run: Run, case: str, unit: Units) -> str:
 
 
 def verdicts(cells: Sequence[Cell]) -> str:
-    """One case's cells by verdict, and the largest difference of each of those that have one."""
+    """Return the number of cells by verdict, with the largest difference of each verdict."""
     parts = []
     for verdict, n in summary.counts(cells).items():
         if n:
@@ -261,10 +261,10 @@ def verdicts(cells: Sequence[Cell]) -> str:
 
 
 def comparison(cells: Sequence[Cell], unit: Units) -> str:
-    """Modes × columns at one speed: core's frequency, and each column's difference ± uncertainty with its sign.
+    """Return the table modes × columns at one speed: core's frequency, and each column's difference ± uncertainty.
 
-    The source's own discretisation shows its frequency too. A code that lacks effects is compared with core lacking
-    them, whose modes may come in another order: rows are modes by name.
+    Published tables and the source's discretisation also show their frequencies. Rows are modes by name: a code that
+    lacks effects is compared with core without them, and its modes may come in another order.
     """
     names = summary.labels(cells)
     full = {names[c]: c.full for c in sorted(cells, key=lambda c: c.reference != c.full) if c.full is not None}
@@ -289,7 +289,7 @@ def _entry(cell: Cell, unit: Units) -> str:
 
 
 def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
-    """A row for every cell that does not plainly pass; neighbours that differ in nothing but speed share one."""
+    """Return one row per cell that needs a reason; neighbours that differ only in speed share one."""
     names = summary.labels(cells)
     grave = [
         c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)

@@ -1,4 +1,4 @@
-"""A run's matrix, its negative controls and a blade's frequencies as tables for the terminal."""
+"""Tables for the terminal: a run's matrix, its negative controls, and the frequencies of a blade."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -26,19 +26,19 @@ COLOUR: dict[Verdict, str] = {
     "not applicable": "dim",
     "not run": "dim",
 }
-"""Beside sign and number, never instead of them."""
+"""Colour of each verdict, in addition to sign and number."""
 
 NARROW = 10
-"""Columns that the matrix gives a code at least."""
+"""Smallest width of a code's column in the matrix, characters."""
 
 BETWEEN = 2
 """Characters between two columns."""
 
 
 def matrix(run: Run, width: int) -> Iterator[Table]:
-    """Case × code: sign and largest difference; the worst verdict of all modes and speeds.
+    """Yield the matrix, case × code: the worst verdict of all modes and speeds, and the largest difference.
 
-    In as many tables beneath each other as the ``width`` in characters wants.
+    The columns are split into several tables if they exceed ``width`` characters.
     """
     names = columns(run.cells, broad)
     cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
@@ -61,13 +61,13 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
 
 
 def legend() -> str:
-    """What the fields of ``matrix`` say."""
+    """Return the legend of ``matrix``."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
     return f"largest difference from core in % (as 2e-14: relative; 1.4 of 2: held to a wider target); {signs}"
 
 
 def controls(run: Run) -> Table:
-    """What became of seeded faults: a line each."""
+    """Return the table of negative controls, one row per seeded fault."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     for head in ("seeded fault", "in", "outcome", "largest difference", "noticed by"):
         out.add_column(head, overflow="fold")
@@ -88,12 +88,12 @@ def _field(cells: Sequence[Cell]) -> str:
 
 
 def _wide(cell: Cell) -> str:
-    """The target, where it is wider than is usual."""
+    """Return the target if it is wider than usual, else an empty string."""
     return f" of {100 * cell.target:g}" if summary.wide(cell) else ""
 
 
 def _short(size: float, target: float) -> str:
-    """A relative number in ``NARROW`` characters: in percent, or as it is where the target is tiny."""
+    """Return a relative number in short: in percent, or as a plain number if the target is tiny."""
     value = abs(size) if target < summary.TINY else 100 * abs(size)
     if 0 < value < 1e-4 and target >= summary.TINY:
         return "<1e-4"
@@ -102,16 +102,16 @@ def _short(size: float, target: float) -> str:
 
 
 RELATIVE = "± relative"
-"""Head of the column of uncertainties."""
+"""Heading of the column of uncertainties."""
 
 DIGITS = 7
-"""Of a frequency, at most."""
+"""Largest number of digits of a frequency."""
 
 
 def frequencies(rows: Sequence[Named], title: str, units: Units, width: int) -> Iterator[Table]:
-    """Modes × speeds, rows by name, in the order of the first speed, and the largest uncertainty of each.
+    """Yield tables modes × speeds with each mode's largest uncertainty; rows in the order of the first speed.
 
-    As many tables as the ``width`` in characters requires.
+    The speeds are split into several tables if they exceed ``width`` characters.
     """
     speeds = list(dict.fromkeys(r.omega for r in rows))
     first = max(len(name) for name in (units.frequency_label, *(r.name for r in rows)))

@@ -1,4 +1,4 @@
-"""The rotating beams of Epps and Chandra beside their models: a part of the page of measured rotors."""
+"""The rotating beams of Epps and Chandra compared with their models: a part of the page of measured rotors."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,7 +16,7 @@ FIGURE = "validation-beams.svg"
 
 
 def parts(beams: Mapping[str, Sequence[Point]]) -> list[str]:
-    """Paragraphs of the page; ``beams`` are the points of each kind of beam."""
+    """Return paragraphs of the page; ``beams`` has the points of each kind of beam."""
     out = [_HEAD, f"![Campbell diagrams]({FIGURE})"]
     for name, points in beams.items():
         of_beam = rotating_beams.data()[name]
@@ -31,7 +31,7 @@ def parts(beams: Mapping[str, Sequence[Point]]) -> list[str]:
 
 
 def figure(beams: Mapping[str, Sequence[Point]]) -> Figure:
-    """A panel for each beam: measured points, and core's frequencies, whose squares are joined by straight lines in Ω²."""
+    """Draw one panel per beam: measured points, and core's frequencies joined by straight lines in Ω² and ω²."""
     panels = [
         (f"{name}, {sweep:g}°" if len(d["sweep"]) > 1 else name, [p for p in points if _of_sweep(p, sweep)])
         for name, points in beams.items()
@@ -65,7 +65,7 @@ def figure(beams: Mapping[str, Sequence[Point]]) -> Figure:
 
 
 def _of_sweep(point: Point, sweep: float) -> bool:
-    """Whether a point is of the beam so swept; a point of a beam that is never swept has no angle."""
+    """Whether a point belongs to the beam with this sweep; beams without sweep have no angle."""
     return "°" not in point.line or point.line.endswith(f" {sweep:g}°")
 
 

@@ -1,4 +1,4 @@
-"""The page of a measured rotor beside its model, and the command that writes it, ``southwell validate``."""
+"""``southwell validate``: writes the page that compares measured rotors with their models."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -53,7 +53,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 
 
 def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequence[Point]]) -> dict[str, str]:
-    """The page and its figures, by file name; ``beams`` are the points of each kind of rotating beam."""
+    """Return the page and its figures by file name; ``beams`` has the points of each kind of rotating beam."""
     parts = [_HEAD, _SANDIA, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, every(points)]
     parts += validation_beams.parts(beams)
     figures = {FIGURE: svg(figure(model, points)), validation_beams.FIGURE: svg(validation_beams.figure(beams))}
@@ -61,12 +61,12 @@ def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequenc
 
 
 def summary(points: Sequence[Point]) -> list[dict[str, str]]:
-    """One row per measured line of the Sandia rotor."""
+    """Return one row per measured line of the Sandia rotor."""
     return by_line(points, {line["name"]: plain(line["title"]) for line in comparison.data()["lines"]})
 
 
 def figure(model: Simulated, points: Sequence[Point]) -> Figure:
-    """Measured points and the model's frequencies over the rotor's speed."""
+    """Draw measured points and the model's frequencies against rotor speed."""
     with house():
         fig = Figure(figsize=(WIDTH, 5.2), layout="constrained")
         axes = fig.add_subplot()
