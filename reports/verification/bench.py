@@ -60,13 +60,13 @@ def command(*, out: Path = Path("southwell-report")) -> int:
 
 
 def beside(folder: Path) -> str:
-    """Return the tables of the measurement in a report's folder; empty if there is none."""
+    """The tables of the measurement in a report's folder; empty if there is none."""
     path = folder / FILE
     return render(measure.read(path)) if path.exists() else ""
 
 
 def render(found: Bench) -> str:
-    """Return both tables in Markdown and one line on how cost and memory grow."""
+    """Both tables in Markdown and one line on how cost and memory grow."""
     core = next(t for t in found.timings if t.code == "core")
     codes = _table([_row(t, core) for t in found.timings])
     growth = _table([_grown(g) for g in found.growth])
@@ -76,7 +76,7 @@ def render(found: Bench) -> str:
 
 
 def exponents(growth: tuple[Growth, ...]) -> str:
-    """Return how time and memory grow, as powers of the number of elements.
+    """How time and memory grow, as powers of the number of elements.
 
     Meshes whose peak memory is below ``SEEN`` are left out of the growth of memory.
     """

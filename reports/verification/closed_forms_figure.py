@@ -29,7 +29,7 @@ LEAST = 1e-17
 
 
 def beside(folder: Path) -> str:
-    """Return a report's page, with headings one level lower and without formulas; empty if there is none."""
+    """A report's page, with headings one level lower and without formulas; empty if there is none."""
     path = folder / PAGE
     if not path.exists():
         return ""
@@ -38,7 +38,7 @@ def beside(folder: Path) -> str:
 
 
 def solved(form: ClosedForm) -> tuple[Complex, Array]:
-    """Return core's eigenvalues and their relative differences, both (speeds, branches)."""
+    """Core's eigenvalues and their relative differences, both (speeds, branches)."""
     found = [differences(form, omega) for omega in form.speeds.tolist()]
     return np.array([values for values, _ in found]), np.array([off for _, off in found])
 

@@ -46,7 +46,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 
 
 def pages() -> dict[str, str]:
-    """Return the page and its figures as SVG, by path."""
+    """The page and its figures as SVG, by path."""
     return _page([(form, *solved(form)) for form in FORMS])
 
 

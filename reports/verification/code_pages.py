@@ -43,12 +43,12 @@ def write(run: Run, folder: Path) -> Path:
 
 
 def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
-    """Return the descriptions of codes, by default all, with their answers to a rod with each property."""
+    """The descriptions of codes, by default all, with their answers to a rod with each property."""
     return describe(registry.names() if names is None else names, [p.having for p in PROPERTIES])
 
 
 def index(run: Run, known: Sequence[Description]) -> str:
-    """Return the table of all codes: version, sharing with core, cells by verdict, worst difference, defects."""
+    """The table of all codes: version, sharing with core, cells by verdict, worst difference, defects."""
     rows = []
     for code in known:
         cells = own(run, code.name)
@@ -70,7 +70,7 @@ def index(run: Run, known: Sequence[Description]) -> str:
 
 
 def page(run: Run, code: Description) -> str:
-    """Return the page of one code."""
+    """The page of one code."""
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
@@ -95,17 +95,17 @@ def page(run: Run, code: Description) -> str:
 
 
 def own(run: Run, name: str) -> list[Cell]:
-    """Return the cells of one code."""
+    """The cells of one code."""
     return [c for c in run.cells if c.code == name and c.role in ROLES]
 
 
 def defects(name: str) -> list[Defect]:
-    """Return the known defects of one code."""
+    """The known defects of one code."""
     return [d for d in DEFECTS if name in d.codes]
 
 
 def version(run: Run, code: Description) -> str:
-    """Return the version used in the run; otherwise the installed one, or how to install the code."""
+    """The version used in the run; otherwise the installed one, or how to install the code."""
     ran = run.versions.get(code.name)
     if ran and ran != "not installed":
         return ran
@@ -115,7 +115,7 @@ def version(run: Run, code: Description) -> str:
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
-    """Return one row per blade: cells by verdict, the largest difference, where it is and why; empty without cells."""
+    """One row per blade: cells by verdict, the largest difference, where it is and why; empty without cells."""
     labels = summary.labels(run.cells)
     rows = []
     for case in dict.fromkeys(c.case for c in cells):
@@ -137,7 +137,7 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
 
 
 def properties(code: Description) -> str:
-    """Return how the adapter treats a rod with each property."""
+    """How the adapter treats a rod with each property."""
     rows = []
     for p, why in zip(PROPERTIES, code.refused, strict=True):
         answer = f"refused: {plain(why)}" if why else "taken"
@@ -148,7 +148,7 @@ def properties(code: Description) -> str:
 
 
 def _defect(defect: Defect) -> dict[str, str]:
-    """Return a defect for the template, with the current output of its reproducer."""
+    """A defect for the template, with the current output of its reproducer."""
     try:
         output, says = shown(defect), "prints"
     except RuntimeError as error:

@@ -8,7 +8,7 @@ SHOWN = 3
 
 
 def headline(run: Run) -> str:
-    """Return in one sentence how many faults are detected and which are missed; empty without controls."""
+    """One sentence on how many faults are detected and which are missed; empty without controls."""
     tried = [c for c in run.controls if not c.needs]
     missed = ", ".join(c.control for c in tried if c.missed)
     if not tried:
@@ -21,14 +21,14 @@ def headline(run: Run) -> str:
 
 
 def said(control: Control) -> str:
-    """Return the outcome of a control: ``✔ detected``, ``✘ missed`` or ``○ needs exudyn-tree``."""
+    """The outcome of a control: ``✔ detected``, ``✘ missed`` or ``○ needs exudyn-tree``."""
     if control.needs:
         return f"○ needs {control.needs}"
     return "✘ missed" if control.missed else "✔ detected"
 
 
 def overview(run: Run) -> list[dict[str, str]]:
-    """Return one row per fault: what is faulty, its size, the largest difference, and the cells that detect it."""
+    """One row per fault: what is faulty, its size, the largest difference, and the cells that detect it."""
     return [
         {
             "fault": control.control,

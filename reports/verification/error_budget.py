@@ -9,7 +9,7 @@ TINY = 1e-9
 
 
 def rows(run: Run, case: str) -> list[dict[str, str]]:
-    """Return one row per cause (discretisation, model form, rounding) with its effect on each mode."""
+    """One row per cause (discretisation, model form, rounding) with its effect on each mode."""
     mine = [s for s in run.shares if s.case == case]
     modes = list(dict.fromkeys(s.mode for s in mine))
     by = {(s.cause, s.part, s.mode): s for s in mine}
@@ -22,7 +22,7 @@ def rows(run: Run, case: str) -> list[dict[str, str]]:
 
 
 def heading(run: Run, case: str, units: Units) -> str:
-    """Return the speed of the error budget; empty for a case without one."""
+    """The speed of the error budget; empty for a case without one."""
     return next((units.at(s.omega) for s in run.shares if s.case == case), "")
 
 

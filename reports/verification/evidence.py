@@ -30,7 +30,7 @@ SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
 
 
 def verdict(run: Run) -> str:
-    """Return the verdict on the run in one sentence."""
+    """The verdict on the run in one sentence."""
     counts = summary.counts(run.cells)
     if not summary.compared(run.cells):
         return "Nothing was compared."
@@ -50,7 +50,7 @@ def verdict(run: Run) -> str:
 
 
 def answer(run: Run) -> str:
-    """Return the verdict and the number of cells by verdict."""
+    """The verdict and the number of cells by verdict."""
     counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
     return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
 
@@ -61,7 +61,7 @@ def _mute(cell: Cell) -> bool:
 
 
 def urgent(run: Run) -> list[str]:
-    """Return lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
+    """Lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
     sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
     mute = {(c.code, c.case): c.reason for c in run.cells if _mute(c)}
@@ -69,7 +69,7 @@ def urgent(run: Run) -> list[str]:
 
 
 def first(run: Run) -> list[str]:
-    """Return the summary of a run: the answer, and the failures and inconclusive differences.
+    """The summary of a run: the answer, and the failures and inconclusive differences.
 
     If there are none, the second line is the independent answer that is farthest from core relative to its target.
     """
@@ -81,7 +81,7 @@ def first(run: Run) -> list[str]:
 
 
 def measured(run: Run) -> str:
-    """Return in one sentence the model errors that measured data show; empty without measured data."""
+    """One sentence on the model errors that measured data show; empty without measured data."""
     cells = [c for c in run.cells if c.verdict == "measured"]
     if not cells:
         return ""
@@ -99,13 +99,13 @@ def _statement(cell: Cell) -> str:
 
 
 def _measured(cells: Iterable[Cell]) -> Cell | None:
-    """Return the measured point with the largest visible model error, or otherwise the largest difference."""
+    """The measured point with the largest visible model error, or otherwise the largest difference."""
     mine = [c for c in cells if c.verdict == "measured"]
     return max(mine, key=lambda c: (visible(c), abs(c.difference or 0.0)), default=None)
 
 
 def rows(run: Run) -> list[dict[str, str]]:
-    """Return one row per kind of evidence.
+    """One row per kind of evidence.
 
     A row has the cells by verdict, the worst difference from core with the same effects, and the largest known
     difference.
@@ -130,7 +130,7 @@ def rows(run: Run) -> list[dict[str, str]]:
 
 
 def farthest(cells: Iterable[Cell]) -> Cell | None:
-    """Return the cell of the worst verdict in ``SAME`` whose difference is the largest relative to its target."""
+    """The cell of the worst verdict in ``SAME`` whose difference is the largest relative to its target."""
     cells = list(cells)
     for verdict in SAME:
         if there := [c for c in cells if c.verdict == verdict]:
@@ -152,7 +152,7 @@ def _shown(run: Run, cell: Cell | None) -> str:
 
 
 def where(run: Run, cell: Cell) -> str:
-    """Return case, code, mode and speed of a cell as text."""
+    """Case, code, mode and speed of a cell as text."""
     mode = summary.labels(run.cells)[cell]
     return f"{cell.case}, {summary.column(cell)}, {mode}, {_units(run, cell).at(cell.omega)}"
 

@@ -62,7 +62,7 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
 
 
 def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
-    """Return core's frequencies with all effects (rad/s) by mode and speed.
+    """Core's frequencies with all effects (rad/s) by mode and speed.
 
     Modes go by name if the same names occur at every speed, otherwise by number.
     """

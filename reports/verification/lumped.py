@@ -38,7 +38,7 @@ class Taken:
     errors: dict[str, np.ndarray]
 
     def at(self, name: str) -> np.ndarray:
-        """Return the (modes,) errors at the paper's number of elements."""
+        """The (modes,) errors at the paper's number of elements."""
         return self.errors[name][self.elements.tolist().index(PAPER)]
 
     @property
@@ -48,7 +48,7 @@ class Taken:
 
 
 def taken(run: Run) -> Taken | None:
-    """Return the errors relative to the finest refinement of ``EXACT``; None if the run has no such rows."""
+    """The errors relative to the finest refinement of ``EXACT``; None if the run has no such rows."""
     rows = {name: [v for v in run.levels if v.case == CASE and v.code == name] for name in LOOKS}
     if not all(rows.values()):
         return None
@@ -61,7 +61,7 @@ def taken(run: Run) -> Taken | None:
 
 
 def sentence(found: Taken) -> str:
-    """Return in one sentence how much of the paper's error is due to lumping."""
+    """One sentence: how much of the paper's error is due to lumping."""
     percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
     return (
         f"Lumping the mass makes up {percent} of the error of chordwise modes 1 to {len(found.shares)} at {PAPER} "

@@ -69,12 +69,12 @@ def write(run: Run, folder: Path) -> Path:
 
 
 def units(run: Run, case: str) -> Units:
-    """Return the units of a case; rad/s if the run does not state them."""
+    """The units of a case; rad/s if the run does not state them."""
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
 def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "", known: str = "") -> str:
-    """Return the text of the report.
+    """The text of the report.
 
     Args:
         run: the results.
@@ -120,7 +120,7 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 
 def headline(run: Run) -> list[str]:
-    """Return the verdict in a few sentences, the worst first, without markup."""
+    """The verdict in a few sentences, the worst first, without markup."""
     lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
@@ -130,7 +130,7 @@ def headline(run: Run) -> list[str]:
 
 
 def marked(run: Run, lines: Sequence[str]) -> list[str]:
-    """Return lines as Markdown, with the verdict and the note on an incomplete run in bold."""
+    """Lines as Markdown, with the verdict and the note on an incomplete run in bold."""
     out = []
     for line in lines:
         bold = next((b for b in (summary.incomplete(run), evidence.verdict(run)) if b and line.startswith(b)), "")
@@ -140,7 +140,7 @@ def marked(run: Run, lines: Sequence[str]) -> list[str]:
 
 
 def unasked(run: Run) -> str:
-    """Return the codes without any answer, with the reasons, in one line; empty if there are none."""
+    """The codes without any answer, with the reasons, in one line; empty if there are none."""
     omitted = []
     for name in _silent(run):
         mine = [c for c in run.cells if broad(c) == name]
@@ -150,14 +150,14 @@ def unasked(run: Run) -> str:
 
 
 def _silent(run: Run) -> list[str]:
-    """Return the columns without any answer, unless no column has one."""
+    """The columns without any answer, unless no column has one."""
     names = columns(run.cells, broad)
     empty = [n for n in names if all(c.verdict in ("not run", "not applicable") for c in run.cells if broad(c) == n)]
     return empty if len(empty) < len(names) else []
 
 
 def heat(run: Run, linked: bool = False) -> str:
-    """Return the heat table, case × code: the worst verdict of all modes and speeds, and its largest difference.
+    """The heat table, case × code: the worst verdict of all modes and speeds, and its largest difference.
 
     Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases link to their sections.
     """
@@ -203,7 +203,7 @@ class Section:
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
-    """Return the section of one blade: setting, frequencies, differences by speed, and reasons."""
+    """The section of one blade: setting, frequencies, differences by speed, and reasons."""
     cells = [c for c in run.cells if c.case == case]
     setting = next((s for s in run.settings if s.case == case), None)
     unit = units(run, case)
@@ -232,7 +232,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
 
 
 def measured(run: Run, case: str, unit: Units) -> str:
-    """Return the table of a case's measured points and the model errors they show; empty without any."""
+    """The table of a case's measured points and the model errors they show; empty without any."""
     names = summary.labels(run.cells)
     cells = [c for c in run.cells if c.case == case and c.role == "measured"]
     rows = [
@@ -251,7 +251,7 @@ def measured(run: Run, case: str, unit: Units) -> str:
 
 
 def verdicts(cells: Sequence[Cell]) -> str:
-    """Return the number of cells by verdict, with the largest difference of each verdict."""
+    """The number of cells by verdict, with the largest difference of each verdict."""
     parts = []
     for verdict, n in summary.counts(cells).items():
         if n:
@@ -261,7 +261,7 @@ def verdicts(cells: Sequence[Cell]) -> str:
 
 
 def comparison(cells: Sequence[Cell], unit: Units) -> str:
-    """Return the table modes × columns at one speed: core's frequency, and each column's difference ± uncertainty.
+    """The table modes × columns at one speed: core's frequency, and each column's difference ± uncertainty.
 
     Published tables and the source's discretisation also show their frequencies. Rows are modes by name: a code that
     lacks effects is compared with core without them, and its modes may come in another order.
@@ -289,7 +289,7 @@ def _entry(cell: Cell, unit: Units) -> str:
 
 
 def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
-    """Return one row per cell that needs a reason; neighbours that differ only in speed share one."""
+    """One row per cell that needs a reason; neighbours that differ only in speed share one."""
     names = summary.labels(cells)
     grave = [
         c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)

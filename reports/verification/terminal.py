@@ -36,7 +36,7 @@ BETWEEN = 2
 
 
 def matrix(run: Run, width: int) -> Iterator[Table]:
-    """Yield the matrix, case × code: the worst verdict of all modes and speeds, and the largest difference.
+    """The matrix, case × code: the worst verdict of all modes and speeds, and the largest difference.
 
     The columns are split into several tables if they exceed ``width`` characters.
     """
@@ -61,13 +61,13 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
 
 
 def legend() -> str:
-    """Return the legend of ``matrix``."""
+    """The legend of ``matrix``."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
     return f"largest difference from core in % (as 2e-14: relative; 1.4 of 2: held to a wider target); {signs}"
 
 
 def controls(run: Run) -> Table:
-    """Return the table of negative controls, one row per seeded fault."""
+    """The table of negative controls, one row per seeded fault."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     for head in ("seeded fault", "in", "outcome", "largest difference", "noticed by"):
         out.add_column(head, overflow="fold")
@@ -88,12 +88,12 @@ def _field(cells: Sequence[Cell]) -> str:
 
 
 def _wide(cell: Cell) -> str:
-    """Return the target if it is wider than usual, else an empty string."""
+    """The target if it is wider than usual, else an empty string."""
     return f" of {100 * cell.target:g}" if summary.wide(cell) else ""
 
 
 def _short(size: float, target: float) -> str:
-    """Return a relative number in short: in percent, or as a plain number if the target is tiny."""
+    """A relative number in short: in percent, or as a plain number if the target is tiny."""
     value = abs(size) if target < summary.TINY else 100 * abs(size)
     if 0 < value < 1e-4 and target >= summary.TINY:
         return "<1e-4"
@@ -109,7 +109,7 @@ DIGITS = 7
 
 
 def frequencies(rows: Sequence[Named], title: str, units: Units, width: int) -> Iterator[Table]:
-    """Yield tables modes × speeds with each mode's largest uncertainty; rows in the order of the first speed.
+    """Tables modes × speeds with each mode's largest uncertainty; rows in the order of the first speed.
 
     The speeds are split into several tables if they exceed ``width`` characters.
     """

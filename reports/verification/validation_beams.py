@@ -16,7 +16,7 @@ FIGURE = "validation-beams.svg"
 
 
 def parts(beams: Mapping[str, Sequence[Point]]) -> list[str]:
-    """Return paragraphs of the page; ``beams`` has the points of each kind of beam."""
+    """Paragraphs of the page; ``beams`` has the points of each kind of beam."""
     out = [_HEAD, f"![Campbell diagrams]({FIGURE})"]
     for name, points in beams.items():
         of_beam = rotating_beams.data()[name]

@@ -53,7 +53,7 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 
 
 def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequence[Point]]) -> dict[str, str]:
-    """Return the page and its figures by file name; ``beams`` has the points of each kind of rotating beam."""
+    """The page and its figures by file name; ``beams`` has the points of each kind of rotating beam."""
     parts = [_HEAD, _SANDIA, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, every(points)]
     parts += validation_beams.parts(beams)
     figures = {FIGURE: svg(figure(model, points)), validation_beams.FIGURE: svg(validation_beams.figure(beams))}
@@ -61,7 +61,7 @@ def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequenc
 
 
 def summary(points: Sequence[Point]) -> list[dict[str, str]]:
-    """Return one row per measured line of the Sandia rotor."""
+    """One row per measured line of the Sandia rotor."""
     return by_line(points, {line["name"]: plain(line["title"]) for line in comparison.data()["lines"]})
 
 

@@ -8,13 +8,13 @@ from ..shared.markdown import table
 
 
 def every(points: Sequence[Point]) -> str:
-    """Return the table of all points of a rotor, in a collapsible section."""
+    """The table of all points of a rotor, in a collapsible section."""
     rows = [{"line": p.line, "rpm": f"{p.rpm:.1f}", **numbers(p), "": statement(p.validation)} for p in points]
     return f"<details><summary>Every point</summary>\n\n{table(rows)}\n\n</details>"
 
 
 def numbers(p: Point) -> dict[str, str]:
-    """Return a point's S, D, E and uncertainties, in Hz."""
+    """A point's S, D, E and uncertainties, in Hz."""
     v = p.validation
     return {
         "S": f"{v.simulated:.3f}",
@@ -28,7 +28,7 @@ def numbers(p: Point) -> dict[str, str]:
 
 
 def by_line(points: Sequence[Point], titles: Mapping[str, str]) -> list[dict[str, str]]:
-    """Return one row per measured line, with its title if it has one."""
+    """One row per measured line, with its title if it has one."""
     rows = []
     for line in dict.fromkeys(p.line for p in points):
         mine = [p for p in points if p.line == line]

@@ -9,12 +9,12 @@ from ..shared import summary
 
 
 def shared(cells: Sequence[Cell]) -> str:
-    """Return what a column shares with core: ``nothing``, ``mechanical model``, ``discretisation``; empty for core."""
+    """What a column shares with core: ``nothing``, ``mechanical model``, ``discretisation``; empty for core."""
     return ", ".join(dict.fromkeys(c.shares for c in cells if c.shares))
 
 
 def table(run: Run) -> list[dict[str, str]]:
-    """Return one row per blade: groups that agree and are required, their members, and witnesses that do not count."""
+    """One row per blade: groups that agree and are required, their members, and witnesses that do not count."""
     rows = []
     for case in summary.cases(run):
         found = witnesses(run, case)
@@ -47,12 +47,12 @@ def _required(groups: int, lacking: str) -> str:
 
 
 def _names(found: Sequence[Witness]) -> str:
-    """Return the names, with the target if it is wider than the paper's."""
+    """The names, with the target if it is wider than the paper's."""
     return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in found)
 
 
 def origins(run: Run) -> list[dict[str, str]]:
-    """Return one row per column with its declared engine, theory, rotation terms, sections and eigensolver."""
+    """One row per column with its declared engine, theory, rotation terms, sections and eigensolver."""
     rows: dict[str, dict[str, str]] = {}
     for o in run.origins:
         rows[o.code] = {
@@ -67,7 +67,7 @@ def origins(run: Run) -> list[dict[str, str]]:
 
 
 def headline(run: Run) -> str:
-    """Return the smallest number of independent groups that confirm a blade; empty without declared origins."""
+    """The smallest number of independent groups that confirm a blade; empty without declared origins."""
     counted = {
         case: groups(witnesses(run, case))
         for case in summary.cases(run)
@@ -83,7 +83,7 @@ def headline(run: Run) -> str:
 
 
 def missing(run: Run) -> list[str]:
-    """Return one line per blade that fewer groups confirm than its case requires."""
+    """One line per blade that fewer groups confirm than its case requires."""
     return [
         f"{s.case}: {s.groups} of {s.required} required independent groups agree: install or add codes, or lower --witnesses"
         for s in short(run)
