@@ -9,7 +9,13 @@ from .tables import Sheet
 
 
 def sheet(found: Sequence[Changed], against: str, units: Units) -> Sheet:
-    """One row per mode and speed: both frequencies and the relative change; ``against`` names the other blade."""
+    """The table: one row per mode and speed with both frequencies and the relative change.
+
+    Args:
+        found: the changes.
+        against: name of the other blade.
+        units: units of the table.
+    """
     rows = tuple(
         (
             row.name,

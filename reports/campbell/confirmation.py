@@ -10,7 +10,7 @@ from .tables import TOO_NEAR, Sheet
 
 
 def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
-    """One row per line and speed: frequency ± u, and the codes that confirm it."""
+    """The table: one row per mode and speed with the frequency ± u and the codes that confirm it."""
     rows = tuple(
         (
             diagram.label_at(row.track, row.omega),

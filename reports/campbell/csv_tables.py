@@ -1,4 +1,4 @@
-"""A Campbell diagram's numbers as CSV, in SI units."""
+"""Writes a Campbell diagram as CSV, in SI units."""
 
 import csv
 from collections.abc import Iterable, Sequence
@@ -13,7 +13,9 @@ from ...core.participation import FAMILIES
 
 
 def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
-    """``campbell.csv``: a row a mode and speed; ``resonances.csv``, ``margins.csv``, ``encounters.csv``. SI units.
+    """Write ``campbell.csv`` (one row per mode and speed), ``resonances.csv``, ``margins.csv`` and ``encounters.csv``.
+
+    All numbers are in SI units. Returns the paths.
 
     Raises:
         OSError: if a file cannot be written.

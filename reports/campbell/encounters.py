@@ -1,4 +1,4 @@
-"""Where modes meet, close up: a panel for each veering and crossing, which the whole diagram is too small to show."""
+"""Close-ups of a Campbell diagram: one panel per veering and crossing."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,16 +16,16 @@ from .marks import blend, gap
 ACROSS = 3
 
 WIDE = 0.96
-"""Part of the figure's width that the panels share."""
+"""Fraction of the figure's width that the panels take."""
 
 MOST = 9
-"""Panels in a figure; the table has them all."""
+"""Largest number of panels; the table has all encounters."""
 
 
 def draw(diagram: Campbell, units: Units, heading: str) -> Figure | None:
-    """A panel for each encounter, the first ``MOST`` by speed; None if there is none.
+    """Draw one panel per encounter, the first ``MOST`` by speed; None if there are no encounters.
 
-    Lines have the colours of what moves, as in the diagram; dots are the speeds that were solved.
+    Colours are those of the motion, as in the diagram; dots are solved speeds.
     """
     met = diagram.encounters[:MOST]
     if not met:
@@ -90,7 +90,7 @@ def _panel(axes: Axes, diagram: Campbell, e: Encounter, units: Units) -> None:
 
 
 def _window(diagram: Campbell, e: Encounter) -> tuple[float, float]:
-    """Speeds to show: as far as the modes take to pass each other, and of a crossing until they are well apart."""
+    """The range of speeds shown (rad/s): the width of a veering, or one step of the speeds around a crossing."""
     speeds = diagram.wanted.speeds
     past = max(e.window[1] - e.omega, e.omega - e.window[0])
     half = 0.75 * past if e.kind == "veering" else float(np.diff(speeds).max())

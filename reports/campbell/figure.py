@@ -1,4 +1,4 @@
-"""The Campbell diagram as a figure: modes coloured by what moves in them, n per revolution behind, trouble in red."""
+"""The Campbell diagram as a figure: modes coloured by motion, rays of n per revolution, violated margins in red."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -19,26 +19,25 @@ from . import points
 from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
 
 PURE = 0.85
-"""From this share on a stretch of line has its family's dashes, below it is solid and blended."""
+"""Smallest energy fraction at which a line has its family's dashes; below it, a solid line of blended colours."""
 
 SQUEEZED = 0.5
-"""Of the height: what n per revolution reaches gets a scale of its own where it would have less than this."""
+"""Fraction of the height: if the rays would take less than this, the modes they reach get a separate scale."""
 
 LOWER, GAP = 0.6, 0.04
-"""Of the height, for that scale, and between the two."""
+"""Fractions of the height: the separate lower scale, and the gap above it."""
 
 LETTER = 0.066
-"""Width of a letter of the labels at the lines' ends, inches."""
+"""Width of a letter of the labels at the line ends, inches."""
 
 
 def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[UserResults] = ()) -> Figure:
-    """The diagram.
+    """Draw the diagram.
 
-    Lines are the modes; each stretch has the colour of what moves in it there, so that a veering shows as two lines that trade
-    colours. The operating range is shaded. Where a mode is nearer to n per revolution than the margin within that range, it
-    is underlaid in red; the same deserves a look in the table of margins. Where n per revolution reaches only the lowest of
-    many modes, those have a scale of their own, and the rest lies above it on a coarser one. Points of
-    ``user_results``, such as a test rig's, lie over the lines.
+    Lines are modes, coloured by their motion at each speed; in a veering, two lines exchange colours. The operating
+    range is shaded. A mode that violates the margin to n per revolution within it is underlaid in red. If the rays reach
+    only the lowest of many modes, these have a separate scale and the higher modes are above it on a coarser one. Points
+    of ``user_results``, such as those of a test rig, are drawn over the lines.
     """
     with house():
         low, height = 0.95, 5.9
@@ -82,7 +81,7 @@ def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[U
 
 
 def lines(axes: Axes, diagram: Campbell, units: Units) -> Axes:
-    """The modes, n per revolution and the operating range on given axes, on one scale; the axes."""
+    """Draw modes, rays of n per revolution and the operating range on given axes, on one scale; return the axes."""
     top = 1.06 * float(np.nanmax(diagram.tracks.frequencies)) * units.frequencies
     _panel(axes, diagram, units, (0.0, top))
     rays(axes, diagram, units)
@@ -92,7 +91,7 @@ def lines(axes: Axes, diagram: Campbell, units: Units) -> Axes:
 
 
 def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
-    """Of frequencies, from below: one, or two where the rays stay in the lower part of what there is."""
+    """The ranges of frequency, from below: two if the rays stay in the lower part of the frequencies, else one."""
     tracks, wanted = diagram.tracks, diagram.wanted
     top = 1.06 * float(np.nanmax(tracks.frequencies))
     ray = max(wanted.per_rev, default=0) * wanted.speeds[-1]
@@ -102,12 +101,12 @@ def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
     above = np.sort(np.nanmin(tracks.frequencies, axis=0))
     if not len(reached) or split > SQUEEZED * top or not (above > split).any():
         return [(0.0, top * units.frequencies)]
-    top = highest.max() + 0.18 * (highest.max() - split)  # room for what is written there
+    top = highest.max() + 0.18 * (highest.max() - split)  # room for the labels
     return [(0.0, split * units.frequencies), (split * units.frequencies, float(top) * units.frequencies)]
 
 
 def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, float]) -> None:
-    """The modes within limits of frequency, labelled at their right ends."""
+    """Draw the modes within the given limits of frequency, labelled at their right ends."""
     speeds = np.array(diagram.wanted.speeds) * units.speeds
     axes.set_xlim(speeds[0], speeds[-1])
     axes.set_ylim(*limits)
@@ -134,7 +133,7 @@ def _below(diagram: Campbell, units: Units) -> str:
 
 
 def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[float, str, str]]:
-    """One track, and the label at its end if it lasts to the right edge."""
+    """Draw one track; return the label at its end, or nothing if the track ends earlier."""
     tracks = diagram.tracks
     k = np.flatnonzero(tracks.place[:, t] >= 0)
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
@@ -163,13 +162,13 @@ def _label(diagram: Campbell, t: int, units: Units) -> str:
 
 
 def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Between the points solved, straight in the squares (Southwell)."""
+    """Interpolate between the solved points, linearly in the squares (Southwell)."""
     x = np.unique(np.concatenate([omega, np.linspace(omega[0], omega[-1], 241)]))
     return x, np.sqrt(np.interp(x**2, omega**2, frequency**2))
 
 
 def _stretches(shares: np.ndarray) -> list[tuple[int, int, str]]:
-    """First and last point of stretches that are one motion, with its name, and of those between, without."""
+    """(first point, last point, family) of each stretch of a line; the family is empty where motions are mixed."""
     kind = np.where(shares.max(1) >= PURE, shares.argmax(1), -1)
     breaks = [0, *(np.flatnonzero(np.diff(kind)) + 1).tolist(), len(kind) - 1]
     return [(a, b, FAMILIES[kind[a]] if kind[a] >= 0 else "") for a, b in pairwise(breaks) if b > a]

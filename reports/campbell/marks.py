@@ -1,4 +1,4 @@
-"""What lies around the modes of a Campbell diagram: the operating range, n per revolution, marks, the legend, the palette."""
+"""Marks of a Campbell diagram: the operating range, rays of n per revolution, resonances, the legend, and colours."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ from ..shared.style import INK, MUTED
 from ..shared.units import Units
 
 FAMILY_COLOURS = {"flap": "#0072B2", "edge": "#D55E00", "torsion": "#009E73", "axial": "#CC79A7", MIXED: "#6b6b6b"}
-"""Of Okabe and Ito; a mixed mode's line is blended from its shares."""
+"""Colours by Okabe and Ito; a mixed mode has a blend of them."""
 
 DASHES = {"flap": "-", "edge": (0, (7, 1.6)), "torsion": (0, (2, 1.2)), "axial": (0, (6, 1.5, 1.5, 1.5)), MIXED: "-"}
 
@@ -23,7 +23,7 @@ RED, BAND, RAY = "#C1121F", "#EDF2F7", "#C9C9C9"
 
 
 def blend(share: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
-    """The colour of shares (4,): each family's, weighted by the square of its share so that a pure mode looks pure."""
+    """The colour (RGB) of energy fractions (4,): families weighted by their squares, so that a pure mode looks pure."""
     weight = np.square(np.nan_to_num(np.asarray(share, float)))
     colours = np.array([to_rgb(FAMILY_COLOURS[f]) for f in FAMILIES])
     red, green, blue = weight @ colours / max(float(weight.sum()), 1e-12)
@@ -38,7 +38,7 @@ def band(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 
 def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """Say at the top what the shade is."""
+    """Label the operating range at the top."""
     if diagram.wanted.operating:
         low, high = (o * units.speeds for o in diagram.wanted.operating)
         box = {"facecolor": BAND, "edgecolor": "none", "pad": 1.0}
@@ -58,7 +58,7 @@ def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 
 def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """n per revolution, labelled where a ray leaves the diagram at the top; else on the ray, clear of the modes."""
+    """Draw rays of n per revolution, labelled at the top edge or, if they do not reach it, away from the modes."""
     (left, right), top = axes.get_xlim(), axes.get_ylim()[1]
     slope = units.frequencies / units.speeds
     for n in diagram.wanted.per_rev:
@@ -84,7 +84,7 @@ def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 
 def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, units: Units) -> float:
-    """A speed, as far right as can be, at which a label on a ray is clear of the modes and not in the operating range."""
+    """The highest speed at which a label on a ray is clear of the modes and outside the operating range."""
     tracks, wanted = diagram.tracks, diagram.wanted
     high = wanted.operating[1] * units.speeds if wanted.operating else left
     places = left + (right - left) * np.arange(0.97, 0.4, -0.02)
@@ -93,7 +93,7 @@ def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, uni
     modes = np.stack([np.interp(places / units.speeds, tracks.omega, f) for f in tracks.frequencies.T])
     ray = n * places * units.frequencies / units.speeds
     distance = np.nanmin(np.abs(modes * units.frequencies - ray), axis=0) / top
-    for e in diagram.encounters:  # and of what is written at a veering
+    for e in diagram.encounters:  # also avoid the labels of veerings
         over = ray / top - e.frequency * units.frequencies / top
         near = np.abs(places - e.omega * units.speeds) < 0.09 * (right - left)
         distance[near & (over > 0) & (over < 0.17) & (e.kind == "veering")] = 0.0
@@ -102,7 +102,7 @@ def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, uni
 
 
 def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:
-    """Underlay the stretches nearer to n per revolution than the margin, within the operating range."""
+    """Underlay the stretches within the operating range that are nearer to n per revolution than the margin."""
     wanted = diagram.wanted
     if not wanted.operating:
         return
@@ -118,7 +118,7 @@ def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Uni
 
 
 def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """Resonances as circles, filled within the operating range; crossings, veerings and doubts by their signs."""
+    """Draw resonances (filled circles within the operating range), crossings, veerings and unclear tracks."""
     wanted = diagram.wanted
     for r in diagram.resonances:
         inside = wanted.operating is not None and r.apart == 0.0
@@ -158,14 +158,14 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 
 def gap(e: Encounter, units: Units, digits: int = 3) -> str:
-    """The gap of two modes that meet; where it drowns in their uncertainty, what it is less than."""
+    """The gap of two modes that meet; if it is below their uncertainty, an upper bound."""
     if not e.gap_uncertainty < 0.5 * e.gap:
         return f"< {(e.gap + e.gap_uncertainty) * units.frequencies:.{digits}g}"
     return certain(e.gap * units.frequencies, e.gap_uncertainty / e.gap, digits)
 
 
 def legend(diagram: Campbell) -> list[Line2D]:
-    """What is in the diagram."""
+    """The legend's entries for what is in the diagram."""
     present = {diagram.names[t].split()[0] for t in range(diagram.tracks.count)}
     present |= {diagram.last[t].split()[0] for t in range(diagram.tracks.count)}
     out: list[Line2D] = [

@@ -1,4 +1,4 @@
-"""What ``southwell campbell`` leaves behind: figures as SVG and PNG, numbers as CSV, and a page that holds it all."""
+"""Writes the output of ``southwell campbell``: figures as SVG and PNG, tables as CSV, and a page with all of them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,10 +31,16 @@ def write(
     extra: Sequence[tables.Sheet] = (),
     user_results: Sequence[UserResults] = (),
 ) -> tuple[Path, ...]:
-    """Figures (SVG and PNG), CSV, and a Markdown page that holds everything.
+    """Write figures (SVG and PNG), CSV tables, and a Markdown page with all of them; return the paths.
 
-    ``about`` says where the blade is from; ``extra`` are tables beyond those of every diagram; points of ``user_results`` are
-    drawn over the lines.
+    Args:
+        diagram: the Campbell diagram.
+        folder: output folder.
+        units: units of the figures and tables.
+        command: the command that reproduces the page.
+        about: origin of the blade, one fact per line.
+        extra: further tables.
+        user_results: results that are drawn as points over the lines.
 
     Raises:
         OSError: if a file cannot be written.
@@ -56,7 +62,10 @@ def write(
 
 
 def shapes_at(diagram: Campbell) -> int:
-    """Number of the speed at which shapes are shown: the last, or the asked-for one nearest the operating range's end."""
+    """The index of the speed at which shapes are shown.
+
+    It is the requested speed nearest to the upper end of the operating range, or otherwise to the highest speed.
+    """
     wanted, omega = diagram.wanted, diagram.tracks.omega
     target = wanted.operating[1] if wanted.operating else omega[-1]
     asked = np.flatnonzero(diagram.tracks.asked)

@@ -1,4 +1,4 @@
-"""Frequencies from elsewhere over the lines of a Campbell diagram: a test rig's, or another program's."""
+"""User results on a Campbell diagram: frequencies of a test rig or of another program."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from ..shared.units import Units
 
 
 def draw(axes: Axes, user_results: Sequence[UserResults], blade: str, units: Units) -> None:
-    """The points of each file, with bars of two standard uncertainties where they are measured."""
+    """Draw the points of each file; measured points have bars of two standard uncertainties."""
     for k, one in enumerate(user_results):
         mine = _of(one, blade)
         bars = [COVERAGE * (r.value.uncertainty or 0.0) * r.value.value * units.frequencies for r in mine]
@@ -32,7 +32,7 @@ def draw(axes: Axes, user_results: Sequence[UserResults], blade: str, units: Uni
 
 
 def legend(user_results: Sequence[UserResults], blade: str) -> list[Line2D]:
-    """An entry for each file with points of this blade."""
+    """A legend entry for each file with points of this blade."""
     return [
         Line2D(
             [],
@@ -50,7 +50,7 @@ def legend(user_results: Sequence[UserResults], blade: str) -> list[Line2D]:
 
 
 def outside(user_results: Sequence[UserResults], diagram: Campbell, top: float) -> str:
-    """How many points lie beyond the diagram's speeds, or above ``top`` (rad/s), in words; empty if none does."""
+    """How many points lie outside the diagram's speeds or above ``top`` (rad/s), as text; empty if none do."""
     low, high = diagram.wanted.speeds[0], diagram.wanted.speeds[-1]
     every = [r for one in user_results for r in _of(one, diagram.blade.name)]
     n = sum(r.omega < low - r.slack or r.omega > high + r.slack or r.value.value > top for r in every)

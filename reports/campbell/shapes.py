@@ -1,4 +1,4 @@
-"""Mode shapes: small multiples, a table of polynomial coefficients, and CSV."""
+"""Mode shapes of a Campbell diagram: figures, polynomial coefficients, and CSV."""
 
 import csv
 from collections.abc import Sequence
@@ -28,17 +28,16 @@ Complex = NDArray[np.complex128]
 ACROSS = 3
 
 FINE = np.linspace(0.0, 1.0, 141)
-"""Where lines are drawn: between the common stations by cubic splines."""
+"""Fractions of span at which lines are drawn, by cubic splines through the common stations."""
 
 LAGGING = 0.02
-"""A part of the motion a quarter period late is drawn if it is this large."""
+"""Smallest imaginary part of a shape that is drawn."""
 
 
 def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
-    """The tracks at speed number ``k`` in the order of frequency, and their shapes (m, 21, 4) in the blade's axes.
+    """The tracks at speed number ``k`` by frequency, and their shapes, complex (m, 21, 4), in the blade's axes.
 
-    Each is scaled so that the largest displacement of any point is 1 m, at the phase at which the part that moves farthest is
-    real and, where it moves farthest, positive.
+    Each shape is scaled so that the largest displacement component of any point is 1 m, real and positive.
     """
     tracks = diagram.tracks
     there = np.flatnonzero(tracks.place[k] >= 0)
@@ -52,10 +51,10 @@ def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
 
 
 def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
-    """A panel a mode: flap, edge and torsion along the span, at speed number ``k``.
+    """Draw one panel per mode: flap, edge and torsion along the span, at speed number ``k``.
 
-    Torsion is drawn as what it moves, the turning times the blade's radius of gyration: the square of each line, weighted with
-    mass, is its share of the kinetic energy. Dotted: the part of a motion that lags by a quarter period.
+    Torsion is shown as rotation times the blade's radius of gyration: the square of each line, weighted with mass, is
+    its fraction of the kinetic energy. Dotted lines are the part of a motion that lags by a quarter period.
     """
     order, shapes = scaled(diagram, k)
     arm = gyration(diagram.blade)
@@ -131,7 +130,7 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
 
 
 def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
-    """ElastoDyn's coefficients, of the principal blade and, to compare, of the blade as it is."""
+    """The table of ElastoDyn's coefficients: of the principal blade, and for comparison of the unchanged blade."""
     rows = []
     for kind, group in (("for ElastoDyn", found), ("of the blade as it is", other)):
         for p in group:
@@ -151,7 +150,9 @@ def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units
 
 
 def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
-    """``shapes.csv``: a row a mode and station; displacements in m (largest 1), turning in rad, in the blade's axes.
+    """Write ``shapes.csv``: one row per mode and station, in the blade's axes; return its path.
+
+    Displacements are in m (largest 1), rotations in rad.
 
     Raises:
         OSError: if the file cannot be written.

@@ -1,4 +1,4 @@
-"""The figure of a blade along its span: mass, stiffness, twist, centres, and the reference axis."""
+"""The figure of a blade's properties along the span: mass, stiffness, twist, centres, and the reference axis."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ Lines = list[tuple[str, Array]]
 
 
 def draw(blade: Blade) -> Figure:
-    """Six panels over the arc length: one quantity each, rigid stiffness said and not drawn."""
+    """Draw six panels over the arc length, one quantity each; rigid stiffness is labelled, not drawn."""
     found = sections(blade)
     y, z = (blade.curve[:, k] for k in (1, 2))
     stiffness: Lines = [("flap EI", found.EI_flap), ("edge EI", found.EI_edge), ("torsion GJ", found.GJ)]
@@ -71,7 +71,7 @@ def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
 
 
 def write(blade: Blade, folder: Path) -> list[Path]:
-    """Write ``span.svg`` and ``span.png``; the same blade gives the same bytes."""
+    """Write ``span.svg`` and ``span.png`` and return their paths; the same blade gives the same bytes."""
     figure = draw(blade)
     paths = [folder / "span.svg", folder / "span.png"]
     with house():

@@ -21,7 +21,7 @@ from .marks import gap
 TOO_NEAR = "✘"
 
 STYLES = {"flap": "blue", "edge": "dark_orange3", "torsion": "green4", "axial": "magenta", MIXED: "purple"}
-"""Of a mode's name on the console."""
+"""Colours of mode names on the console."""
 
 _MODE = re.compile(rf"\b({'|'.join(STYLES)}) \d+′*")
 
@@ -31,10 +31,10 @@ class Sheet:
     """A table.
 
     Attributes:
-        title: over it.
-        head: of its columns.
-        rows: as printed; a field that begins with ``TOO_NEAR`` is one to look at.
-        note: how to read it; empty if it needs none.
+        title: heading above the table.
+        head: headings of the columns.
+        rows: fields as printed; one that begins with ``TOO_NEAR`` is highlighted.
+        note: explanation below the table; may be empty.
     """
 
     title: str
@@ -44,7 +44,7 @@ class Sheet:
 
 
 def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
-    """All tables that have something to say."""
+    """All tables that have rows."""
     every = (_modes, _margins, _resonances, _encounters, _doubts)
     return tuple(s for s in (make(diagram, units) for make in every) if s.rows)
 
@@ -81,7 +81,7 @@ def _at(units: Units, omega: float) -> str:
 
 
 def _rise(rise: float, doubt: float) -> str:
-    """A change in percent, two decimals at most; ``doubt`` is that of the ratio, relative."""
+    """A change in percent with at most two decimals; ``doubt`` is the relative uncertainty of the ratio."""
     if not np.isfinite(rise):
         return "–"
     sure = 100 * (1.0 + rise) * doubt
@@ -92,7 +92,7 @@ def _rise(rise: float, doubt: float) -> str:
 
 
 def _southwell(fit: Southwell, sure: float) -> tuple[str, str]:
-    """φ with the digits that the frequencies leave it, four at most, and the residual where it exceeds their uncertainty."""
+    """Φ with at most four of the digits that are certain, and the residual if it exceeds the uncertainty."""
     size = abs(fit.coefficient)
     text = certain(fit.coefficient, fit.uncertainty / size if size else np.inf, 4)
     least = max(sure, 1e-6)
@@ -177,7 +177,7 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
 
 
 def _narrower(e: Encounter, units: Units) -> str:
-    """What the gap of a crossing, if it has one, is narrower than."""
+    """An upper bound of the gap of a crossing, or ``none``."""
     most = (e.gap + e.gap_uncertainty) * units.frequencies
     return "?" if not np.isfinite(most) else f"< {most:.3g}" if most >= 1e-9 else "none"
 
@@ -200,7 +200,7 @@ def _doubts(diagram: Campbell, units: Units) -> Sheet:
 
 
 def terminal(sheet: Sheet) -> Table:
-    """For the console; what is too near is red."""
+    """The table for the console, with violated margins in red."""
     out = Table(
         box=box.SIMPLE_HEAD,
         title=escape(sheet.title),
@@ -225,7 +225,7 @@ def _styled(field: str) -> str:
 
 
 def markdown(sheet: Sheet) -> str:
-    """A heading, the table, and how to read it; what is too near is bold."""
+    """The heading, the table and the note in Markdown, with violated margins in bold."""
     rows = [[f"**{field}**" if field.startswith(TOO_NEAR) else field for field in row] for row in sheet.rows]
     table = tabulate(rows, [h.replace("|", "\\|") for h in sheet.head], tablefmt="pipe", disable_numparse=True)
     note = f"\n\n{sheet.note}" if sheet.note else ""
@@ -233,7 +233,7 @@ def markdown(sheet: Sheet) -> str:
 
 
 def notes(diagram: Campbell, units: Units) -> list[str]:
-    """Large steady strains, and an accuracy that was not reached."""
+    """Remarks on large steady strains and on an accuracy that was not reached."""
     tracks, wanted = diagram.tracks, diagram.wanted
     rows = [
         Named(
@@ -258,7 +258,7 @@ def margins_kept(diagram: Campbell) -> bool:
 
 
 def verdict(diagram: Campbell, units: Units) -> str:
-    """The answer in one line."""
+    """The verdict on the margins in one line."""
     wanted = diagram.wanted
     if wanted.operating is None:
         return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so none is judged."

@@ -1,4 +1,4 @@
-"""Fig. 3 of Park et al. (2010) and the table of variations, for the stand-ins of its blade."""
+"""Fig. 3 of Park et al. (2010) and the table of variations, for the substitutes of its unpublished blade."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -19,17 +19,17 @@ WHAT = {
     "surrogate": "surrogate: WindPACT with EI × 1.30, not the paper's blade",
     "surrogate-untwisted": "the same surrogate without twist",
 }
-"""What the blades of ``park-blade`` are."""
+"""Descriptions of the blades of ``park-blade``."""
 
 
 def label(variation: Variation) -> str:
-    """A blade in words."""
+    """The description of a blade."""
     name = variation.diagram.blade.name.partition("/")[2] or variation.diagram.blade.name
     return WHAT.get(name, name)
 
 
 def figure(variations: Sequence[Variation]) -> Figure:
-    """A row a blade: the lowest frequencies along rotor speed, and their change; crosses are what the paper states."""
+    """Draw one row per blade: the lowest frequencies against rotor speed, and their change; crosses: the paper."""
     with house():
         low, row = 0.62, 2.75
         height = low + 0.35 + row * len(variations)
@@ -74,7 +74,7 @@ def figure(variations: Sequence[Variation]) -> Figure:
 
 
 def sheet(variations: Sequence[Variation]) -> Sheet:
-    """Changes at the paper's speeds: converged, and with the paper's 20 lumped elements in brackets."""
+    """The table of changes at the paper's speeds: converged, and in brackets with the paper's 20 lumped elements."""
     rows = []
     for v in variations:
         names = [v.diagram.label(t) for t in range(v.diagram.tracks.count)]
