@@ -1,32 +1,32 @@
-"""What a row of results may hold, for files that come from elsewhere: a gate, a report and a dashboard show and count it."""
+"""Validation of result rows read from files, before a gate, a report or a dashboard uses them."""
 
 import math
 from collections.abc import Iterator
 from typing import Any
 
 LONGEST = 300
-"""Characters of a name, a version or a title: what stands in a table's head or begins a line."""
+"""Maximum number of characters of a name, a version or a title."""
 
 MOST_MODES = 10_000
 
 UNANSWERED = ("not run", "not applicable", "inconclusive", "fail")
-"""Verdicts that a cell without an answer may have."""
+"""Verdicts allowed for a cell without an answer."""
 
 CAUSES = ("discretisation", "model form", "rounding")
 
 LINES = frozenset({"case", "code", "family", "version", "role", "shares", "control", "area", "mode", "cause", "part"})
-"""Fields that hold one line."""
+"""Fields limited to one line."""
 
 
 class RowError(ValueError):
-    """A row that no run writes; names the field."""
+    """An invalid row; the message names the field."""
 
 
 def check(row: Any) -> None:
-    """Refuse a row of results (a dataclass or a Struct) that no run writes.
+    """Validate a row of results (a dataclass or a Struct).
 
     Raises:
-        RowError: naming the field.
+        RowError: if a field is invalid; the message names the field.
     """
     for name in type(row).__annotations__:
         value = getattr(row, name)

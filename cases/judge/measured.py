@@ -1,8 +1,8 @@
-"""A simulation against a measurement: the comparison error and what it says of the model (ASME V&V 20-2009, sec. 1-5).
+"""Validation against a measurement: comparison error and validation uncertainty (ASME V&V 20-2009, sec. 1-5).
 
-``E = S − D`` holds the model's error δ, and errors of the numerical solution, of the inputs and of the data that are known
-only by their standard uncertainties: ``u_val² = u_num² + u_input² + u_D²``. So δ lies within ``E ± k u_val``. A measurement
-is no code: nothing here contradicts anything.
+``E = S − D`` contains the model error δ and the errors of the numerical solution, of the inputs and of the data. Only
+the standard uncertainties of the latter are known: ``u_val² = u_num² + u_input² + u_D²``. Therefore δ lies within
+``E ± k u_val``. A measurement is not a code: it neither confirms nor contradicts one.
 """
 
 from dataclasses import dataclass
@@ -12,17 +12,17 @@ from .results import Cell
 from .verdict import percent, unsigned
 
 COVERAGE = 2.0
-"""k: about 95 % where the errors are normally distributed."""
+"""Coverage factor k: about 95 % for normally distributed errors."""
 
 
 @dataclass(frozen=True)
 class Validation:
-    """One frequency, simulated and measured; all in one unit.
+    """One simulated and measured frequency; all values in the same unit.
 
     Attributes:
         simulated: S.
         measured: D.
-        numerical, inputs, data: standard uncertainties u_num, u_input and u_D, not negative.
+        numerical, inputs, data: standard uncertainties u_num, u_input and u_D; non-negative.
     """
 
     simulated: float
@@ -47,34 +47,34 @@ class Validation:
 
     @property
     def uncertainty(self) -> float:
-        """u_val, of the comparison error."""
+        """u_val, the standard uncertainty of the comparison error."""
         return hypot(self.numerical, self.inputs, self.data)
 
     @property
     def relative(self) -> tuple[float, float]:
-        """D/S − 1 and its uncertainty k u_val/S: the data against the simulation, as codes are against core."""
+        """D/S − 1 and its uncertainty k u_val/S: the data relative to the simulation, as codes are to core."""
         return self.measured / self.simulated - 1.0, COVERAGE * self.uncertainty / self.simulated
 
     @property
     def visible(self) -> float:
-        """The least size that the model's error has: what of E exceeds k u_val, 0 if nothing does."""
+        """Lower bound on the size of the model error: the part of |E| above k u_val, or 0."""
         return max(abs(self.error) - COVERAGE * self.uncertainty, 0.0)
 
 
 def statement(v: Validation) -> str:
-    """What the comparison says of the model, relative to the measured value."""
+    """The conclusion about the model error, relative to the measured value."""
     if v.visible > 0.0:
         return f"model error visible (at least {least(v.visible / v.measured)})"
     return f"model error not visible at u_val = {100 * v.uncertainty / v.measured:.1f} %"
 
 
 def least(size: float) -> str:
-    """A visible error in percent, to a tenth, or to two digits where it is less."""
+    """Format a visible error in percent: one decimal, or two significant digits below 0.1 %."""
     return f"{100 * size:.1f} %" if size >= 1e-3 else f"{100 * size:.2g} %"
 
 
 def explained(v: Validation) -> str:
-    """The statement with its numbers: E and every uncertainty relative to the measured value."""
+    """The statement with E and every uncertainty, relative to the measured value."""
     parts = {"u_num": v.numerical, "u_input": v.inputs, "u_D": v.data}
     sizes = ", ".join(f"{name} {unsigned(value / v.measured) if value else '0'}" for name, value in parts.items())
     u = f"u_val = {unsigned(v.uncertainty / v.measured)}" if v.visible > 0.0 else "u_val"
@@ -82,7 +82,7 @@ def explained(v: Validation) -> str:
 
 
 def visible(cell: Cell) -> float:
-    """The least size of the model's error that a measured point shows, relative to the measured value; 0 if none is visible."""
+    """Lower bound on the model error at a measured point, relative to the measured value; 0 if none is visible."""
     if cell.difference is None or cell.uncertainty is None or not cell.frequency or not cell.reference:
         return 0.0
     return max(abs(cell.difference) - cell.uncertainty, 0.0) * cell.reference / cell.frequency

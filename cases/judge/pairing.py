@@ -1,8 +1,9 @@
-"""Which mode of one code is which mode of another: by shape weighted with mass, never by number.
+"""Pairing of the modes of two codes by mass-weighted shape, never by number.
 
-The modal assurance criterion (Allemang and Brown, 1982), with the blade's mass as the metric so that metres and radians
-add up: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass per length for the three
-displacements and the rotation about x, times a quadrature weight. Shapes are complex: a gyroscopic lag counts.
+The modal assurance criterion (Allemang and Brown, 1982) uses the blade's mass as the metric, so that displacements and
+rotations can be added: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass per length
+for the three displacements and the rotation about x, times a quadrature weight. Shapes are complex: gyroscopic phase
+differences affect the MAC.
 """
 
 from collections import Counter
@@ -22,16 +23,16 @@ from ...core.participation import DOMINANT_FRACTION
 Array = NDArray[np.float64]
 
 MOTIONS = ("axial", "chordwise", "flapwise", "torsion")
-"""What the four columns of a shape are, in a blade that lies along x: motion along x, y, z, and rotation about x."""
+"""The four columns of a shape for a blade along x: motion along x, y, z, and rotation about x."""
 
 LEAST_MAC = 0.8
-"""Below this two shapes are not the same mode (customary; at 0.8 the angle between them is 27°)."""
+"""Below this MAC two shapes are not the same mode (customary value; at 0.8 the angle between them is 27°)."""
 
 RIVAL_MAC = 0.5
-"""A second candidate at least this similar makes a pairing ambiguous, and is mentioned."""
+"""A second candidate with at least this MAC makes a pairing ambiguous and is noted."""
 
 DEGENERATE = 2e-3
-"""Relative gap of frequencies below which codes may turn two shapes into each other."""
+"""Relative frequency gap below which codes may return different linear combinations of two shapes."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +40,9 @@ class Pair:
     """The partner of one mode.
 
     Attributes:
-        mode: index among the other code's modes; None if there is none.
+        mode: index among the other code's modes; None if there is no partner.
         mac: of the two shapes, or of the two subspaces (cos² of the largest principal angle).
-        note: anything a reader should know: compared as a subspace, ambiguous, why there is no partner.
+        note: remarks: compared as a subspace, ambiguous, or why there is no partner.
         ambiguous: whether the other code has a mode of nearly the same shape at another frequency.
     """
 
@@ -52,7 +53,7 @@ class Pair:
 
 
 def weights(blade: Blade) -> Array:
-    """``W``: (21, 4, 4) mass at the common stations, kg, kg m and kg m², in blade axes; tip mass included."""
+    """Metric ``W`` (21, 4, 4): mass at the common stations, kg, kg m and kg m², in blade axes, with the tip mass."""
     s = STATIONS * blade.length
     angle = twist_at(blade, s) + blade.pitch
     mass = mass_at(blade, s) * np.asarray(simpson(np.eye(len(s)), x=s, axis=1))[:, None, None]
@@ -66,7 +67,7 @@ def weights(blade: Blade) -> Array:
 
 
 def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
-    """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape moves no mass."""
+    """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape has no modal mass."""
     cross = np.einsum("msi,sij,ksj->mk", a.conj(), weight, b, optimize=True)
     norms = np.outer(_norm(a, weight), _norm(b, weight))
     return np.divide(np.abs(cross) ** 2, norms, out=np.zeros_like(norms), where=norms > 0)
@@ -77,7 +78,7 @@ def _norm(shapes: NDArray[np.complex128], weight: Array) -> Array:
 
 
 def shares(modes: Modes, weight: Array) -> Array:
-    """Shares (m, 4) of each mode's modal mass that move along x, y, z and about x; each row adds up to 1."""
+    """Fractions (m, 4) of each mode's modal mass in motion along x, y, z and about x; each row sums to 1."""
     parts = np.einsum("msi,sij,msj->mi", modes.shapes.conj(), weight, modes.shapes, optimize=True).real
     total = parts.sum(1, keepdims=True)
     return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
@@ -100,7 +101,7 @@ def numbered(families: Iterable[str]) -> list[str]:
 
 
 def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:
-    """Indices of ascending frequencies, neighbours closer than ``gap`` (relative) together."""
+    """Indices of ascending frequencies, grouped so that neighbours closer than ``gap`` (relative) are together."""
     out: list[list[int]] = []
     for k, f in enumerate(frequencies):
         if out and f - frequencies[k - 1] <= gap * f:
@@ -111,9 +112,9 @@ def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:
 
 
 def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
-    """The same modes, with shapes of equal frequency turned to move along one axis each where they can.
+    """The same modes, with shapes of equal frequency combined so that each moves along one axis where possible.
 
-    Any basis of a degenerate eigenspace is as good as another; the one that diagonalises the flapwise share can be named.
+    The basis of a degenerate eigenspace is arbitrary; the modes that diagonalise the flapwise mass can be named.
     """
     shapes = modes.shapes.copy()
     for group in groups(modes.frequencies, gap):
@@ -128,9 +129,9 @@ def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
 def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array, least: float = LEAST_MAC) -> list[Pair]:
     """Partners in ``other`` of the reference's modes ``wanted``.
 
-    All modes of both take part in one assignment that makes the sum of MACs largest. Where a partner found so is too
-    unlike and the reference's mode has close neighbours in frequency, the group is compared as a subspace, and its
-    members are matched in the order of frequency. ``least``: the MAC below which two shapes are not partners.
+    One assignment over all modes of both maximises the sum of MACs. If the MAC of a pair is below ``least`` and the
+    reference's mode has close neighbours in frequency, the group is compared as a subspace and its members are matched
+    in order of frequency. ``least`` is the MAC below which two shapes are not partners.
     """
     table = mac(reference.shapes, other.shapes, weight)
     rows, columns = linear_sum_assignment(-table)
@@ -171,9 +172,9 @@ def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
 
 
 def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:
-    """cos² of the largest principal angle between the spans of as many shapes each (Björck and Golub, 1973).
+    """cos² of the largest principal angle between two subspaces of equal dimension (Björck and Golub, 1973).
 
-    Shapes that do not span so many dimensions are like nothing: 0.
+    0 if the shapes are linearly dependent.
     """
     values, vectors = np.linalg.eigh(weight)
     root = np.sqrt(values.clip(0.0))[:, :, None] * vectors.swapaxes(1, 2)  # rootᵀ root = W

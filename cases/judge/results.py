@@ -1,9 +1,10 @@
 """The results of a run: one row per cell, all of it written to ``results.jsonl``.
 
-That file has one JSON object a line, told apart by ``kind``. The first line is the plan: every case and code of the run. The
-last one is the completion record: how many lines of each kind precede it. A file without either, or without the cells that
-its plan asks for, is *unfinished*, and no command takes it for a result. Between them are the settings of the cases, cells,
-refinements' answers, negative controls, error budgets, origins, and one line about the run itself.
+The file has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
+the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
+without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
+settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, and one line about the
+run itself.
 """
 
 from collections import Counter
@@ -29,33 +30,34 @@ class Cell:
     """One code's answer for one mode at one speed, against the reference.
 
     A cell without an answer (not run, not applicable) has ``mode`` 0 and no numbers. ``difference`` is
-    ``frequency/reference − 1``; ``uncertainty`` is relative, of that difference: discretisation of both sides, and
-    half a unit of the last digit for a printed table. Frequencies are in rad/s.
+    ``frequency/reference − 1``; ``uncertainty`` is the relative uncertainty of that difference: discretisation of both
+    sides, and half a unit of the last digit for a printed table. Frequencies are in rad/s.
 
     Attributes:
-        case: the case's name; of a case with several blades, the blade's after a slash.
+        case: name of the case; if it has several blades, followed by a slash and the blade's name.
         omega: rotor speed, rad/s.
-        mode: 1, 2, 3 … within the reference's modes at this speed.
+        mode: number of the mode within the reference's modes at this speed, from 1.
         family: chordwise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
-        code: the code's short name.
-        version: of the code.
+        code: short name of the code.
+        version: version of the code.
         role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),
-            ``same discretisation`` (held to 1e-8), ``table`` (printed numbers), ``measured`` (no code: see ``measured``).
+            ``same discretisation`` (target 1e-8), ``table`` (printed numbers), ``measured`` (not a code: see
+            ``measured``).
         frequency: the code's best answer (extrapolated where refinement allows), rad/s.
         reference: core's converged answer with the same physical effects, rad/s.
         difference: relative.
         uncertainty: relative.
-        target: relative; |difference| + uncertainty must not exceed it.
+        target: relative; upper limit of |difference| + uncertainty.
         verdict: see ``cases.verdict``.
-        reason: why, where the verdict is not a plain pass; names and quantifies the cause of a known difference.
-        full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks some).
+        reason: reason for any verdict other than a plain pass; names and quantifies the cause of a known difference.
+        full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks effects).
         shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``everything`` (core
-            by its other method); empty for core itself.
-        elements: the finest refinement used.
-        order: observed order of convergence, where there is one.
+            with its other method); empty for core itself.
+        elements: number of elements of the finest refinement used.
+        order: observed order of convergence, if available.
         mac: mass-weighted MAC of the pairing.
         seconds: wall time of the finest solution.
-        ordinal: of the mode within its family, where the run has no rows for the others at this speed.
+        ordinal: number of the mode within its family, given if the run has no rows for the others at this speed.
     """
 
     case: str
@@ -83,7 +85,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Level:
-    """One frequency at one refinement, for convergence figures: paired to ``mode`` of the reference."""
+    """One frequency at one refinement, paired with ``mode`` of the reference; for convergence figures."""
 
     case: str
     omega: float
@@ -95,18 +97,18 @@ class Level:
 
 @dataclass(frozen=True)
 class Control:
-    """What became of one seeded fault, run through the whole pipeline; see ``cases.faults``.
+    """Result of a negative control: one seeded fault run through the whole pipeline; see ``cases.faults``.
 
     Attributes:
-        control: the fault's name.
-        area: what is faulty: core, an adapter, pairing, …
-        what: what such a program does.
-        size: of its effect, in words.
+        control: name of the fault.
+        area: the faulty component: core, an adapter, pairing, …
+        what: what a program with this fault does.
+        size: size of its effect, in words.
         case: the trial's blade, as in ``Cell``; empty for faults in history and gate.
         omega: the trial's highest rotor speed, rad/s.
-        caught: the cells (or lines of the gate) that are bad with the fault and not without it; none: nobody notices.
-        change: the largest difference among those cells, relative.
-        needs: codes that the trial needs and that are not installed; it was not run then.
+        caught: cells (or lines of the gate) that are bad with the fault and not without it; empty if not detected.
+        change: largest difference among those cells, relative.
+        needs: required codes that are not installed; if any, the trial was not run.
     """
 
     control: str
@@ -121,22 +123,22 @@ class Control:
 
     @property
     def missed(self) -> bool:
-        """Whether it was run and nobody noticed."""
+        """Whether the control was run and not detected."""
         return not self.caught and not self.needs
 
 
 @dataclass(frozen=True)
 class Share:
-    """What one cause does to one of core's frequencies: a part of the differences that a reader sees.
+    """Effect of one cause on one of core's frequencies: one entry of the error budget.
 
     Attributes:
         case: as in ``Cell``.
         omega: rotor speed, rad/s.
-        mode: by name: ``flapwise 2``.
+        mode: name of the mode: ``flapwise 2``.
         cause: discretisation, model form, or rounding.
-        part: which: ``lumped mass, 50 elements``.
-        change: relative; None where no mode is like it.
-        bound: whether ``change`` is the most that it can be, of either sign.
+        part: the specific cause: ``lumped mass, 50 elements``.
+        change: relative; None if no mode corresponds.
+        bound: whether ``change`` is an upper bound of either sign.
     """
 
     case: str
@@ -150,7 +152,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where the answers of one column for one blade come from; see ``references.interface.Independence``."""
+    """Origin of the answers of one column for one blade; see ``references.interface.Independence``."""
 
     case: str
     code: str
@@ -163,18 +165,18 @@ class Origin:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a report says of a case's blade, so that old results can be shown without the case's file.
+    """Description of a case's blade in a report, so that old results can be shown without the case's file.
 
     Attributes:
         case: as in ``Cell``.
-        title: one line.
-        description: what the case shows, and what in it is assumed.
-        source: where its data come from.
-        unit: what its speeds are given in: ``rad_s``, ``rpm`` or ``gamma``.
+        title: title, one line.
+        description: purpose and assumptions of the case.
+        source: source of the data.
+        unit: unit of its speeds: ``rad_s``, ``rpm`` or ``gamma``.
         facts: name → value with unit, in words.
-        groups: how many independent groups must agree with core; 0 where the run does not ask for any.
-        lacking: why the case asks for none.
-        target: the case's, relative; None where there is not one.
+        groups: number of independent groups that must agree with core; 0 if the run requires none.
+        lacking: why the case requires none.
+        target: target of the case, relative; None if it has none.
     """
 
     case: str
@@ -190,14 +192,14 @@ class Setting:
 
 @dataclass(frozen=True)
 class Planned:
-    """A column of one case that a run was to have.
+    """A planned column of one case.
 
     Attributes:
         case: as in ``Cell``.
-        code: likewise.
-        speeds: number of speeds at which cells are due.
-        modes: number of cells due at each of them; a code without an answer there has one cell, of mode 0, that says why.
-            Zero where only some modes are known, as in a printed table.
+        code: as in ``Cell``.
+        speeds: number of speeds at which cells are required.
+        modes: number of cells required at each speed; a code without an answer has one cell, of mode 0, with the reason.
+            Zero if only some modes are known, as in a printed table.
     """
 
     case: str
@@ -208,19 +210,19 @@ class Planned:
 
 @dataclass(frozen=True)
 class Run:
-    """Everything a report needs.
+    """Results of a run: everything a report needs.
 
     Attributes:
         cells: all rows.
-        levels: every refinement's answer.
+        levels: the answers of every refinement.
         versions: package or code → version.
-        command: what was typed, to reproduce.
-        settings: of each case's blade.
+        command: command line that reproduces the run.
+        settings: description of each case's blade.
         controls: results of the seeded faults.
-        shares: where differences come from.
-        origins: where the answers of each column come from.
-        plan: every column that the run was to have.
-        unfinished: what is missing, in a sentence; empty if the run is complete.
+        shares: error budget.
+        origins: origin of the answers of each column.
+        plan: every planned column.
+        unfinished: one sentence on what is missing; empty if the run is complete.
     """
 
     cells: tuple[Cell, ...]
@@ -243,17 +245,17 @@ KINDS: dict[str, type] = {
     "share": Share,
     "origin": Origin,
 }
-"""What a line of each kind is, in the order of the file."""
+"""Kind of line → its type, in the order of the file."""
 
 ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS}
-"""The field of ``Run`` that holds the lines of each kind."""
+"""Kind of line → the field of ``Run`` that holds such lines."""
 
 
 def write(path: Path, run: Run) -> None:
-    """Write a complete run, in place of what is there.
+    """Write a complete run, replacing any existing file.
 
     Raises:
-        OSError: if it cannot be written; what was there before is unchanged.
+        OSError: if the file cannot be written; an existing file is then unchanged.
         ValueError: if the run is unfinished.
     """
     if what := run.unfinished or gaps(run):
@@ -270,7 +272,7 @@ def _lines(run: Run) -> Iterator[dict[str, Any]]:
 
 
 def gaps(run: Run) -> str:
-    """What the plan asks for and the cells do not have, in a sentence; empty if nothing."""
+    """One sentence on planned cells that are missing; empty if there are none."""
     there: dict[tuple[str, str], dict[float, list[int]]] = {}
     for cell in run.cells:
         there.setdefault((cell.case, cell.code), {}).setdefault(cell.omega, []).append(cell.mode)
@@ -288,11 +290,11 @@ def _done(planned: Planned, modes: dict[float, list[int]]) -> bool:
 
 
 def read(path: Path) -> Run:
-    """The run in a results file, rows in the file's order. It is unfinished unless the file says that it is complete.
+    """Read a run from a results file, rows in file order. Without a completion record the run is unfinished.
 
     Raises:
         OSError: if the file cannot be read.
-        ValueError: naming file and line, if a whole line is not what this version writes.
+        ValueError: if a complete line is not in the format of this version; the message names file and line.
     """
     rows: dict[str, list[Any]] = {kind: [] for kind in KINDS}
     about: dict[str, Any] = {}
@@ -325,7 +327,7 @@ def read(path: Path) -> Run:
 
 
 def _unfinished(kinds: list[str], torn: bytes, end: Any) -> str:
-    """Why the lines of a file, by kind, are not a whole run; empty if they are."""
+    """Why the lines of a file, by kind, are not a complete run; empty if they are."""
     count = Counter(kinds)
     if kinds[:1] != ["plan"] or count["plan"] > 1:
         return "the file does not begin with the plan of its run"

@@ -1,13 +1,14 @@
-"""How far a computed frequency may be from what ever finer discretisation would give.
+"""Discretisation uncertainty of a computed frequency.
 
-Three refinements show the observed order of convergence; Richardson extrapolation and Roache's grid convergence index
-(GCI) follow from it. What is reported is the extrapolated value, so the index is that of the extrapolated value: three
-refinements give two of them, and their change, taken to shrink with one order at least, is the index of the second. Where
-the observed order is not the theoretical one, that cannot be relied on: the index is then that of the finest refinement,
-with the larger safety factor. Sources: Roache, *Verification and Validation in Computational Science and Engineering* (1998);
-Celik et al., J. Fluids Eng. 130 (2008) 078001, for the order at unequal refinement ratios; Oberkampf and Roy,
-*Verification and Validation in Scientific Computing* (2010), §8.6, for when to use which safety factor; Eça and
-Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the order of convergence means nothing.
+Three refinements give the observed order of convergence, and from it the Richardson extrapolation and Roache's grid
+convergence index (GCI). The extrapolated value is reported, so the index is that of the extrapolated value: three
+refinements give two extrapolated values, and the index of the second follows from their change, assumed to shrink with
+at least first order. If the observed order is not the theoretical one, extrapolation is unreliable: the index is then
+that of the finest refinement, with the larger safety factor. Sources: Roache, *Verification and Validation in
+Computational Science and Engineering* (1998); Celik et al., J. Fluids Eng. 130 (2008) 078001, for the order at unequal
+refinement ratios; Oberkampf and Roy, *Verification and Validation in Scientific Computing* (2010), §8.6, for the choice
+of the safety factor; Eça and Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the order of
+convergence is meaningless.
 """
 
 from collections.abc import Sequence
@@ -17,13 +18,13 @@ import numpy as np
 from scipy.optimize import root_scalar
 
 ROUNDING = 1e-12
-"""Nothing computed in double precision is claimed to be better, relative."""
+"""Smallest relative uncertainty claimed for a result in double precision."""
 
 NOISE = 1e-8
-"""Where three refinements agree to this, relative, what remains is rounding, and its order of convergence says nothing."""
+"""If three refinements agree to this (relative), the rest is rounding and its order of convergence is meaningless."""
 
 QUIET = 1e-5
-"""Up to this spread, relative, a sequence that does not converge monotonely is given its spread instead of a refusal."""
+"""Up to this relative spread, the uncertainty of a sequence without monotone convergence is based on the spread."""
 
 NEAR_THEORY = 0.1
 """Relative distance from the theoretical order within which a sequence counts as asymptotic (Oberkampf and Roy)."""
@@ -34,13 +35,13 @@ FIRM, WARY = 1.25, 3.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """The best value of a frequency and how sure it is.
+    """The best estimate of a frequency and its uncertainty.
 
     Attributes:
-        value: rad/s; extrapolated where the refinements allow it, else the finest.
-        uncertainty: relative; None where it is refused.
-        order: observed order of convergence, where there is one.
-        note: why the uncertainty is refused, or large.
+        value: rad/s; extrapolated if the refinements allow it, otherwise the finest.
+        uncertainty: relative; None if it cannot be estimated.
+        order: observed order of convergence, if available.
+        note: why the uncertainty is missing or large.
     """
 
     value: float
@@ -50,12 +51,12 @@ class Estimate:
 
 
 def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order: int) -> Estimate:
-    """The estimate from frequencies at increasing numbers of elements (or terms); the three finest are used.
+    """Estimate a frequency from its values at increasing numbers of elements (or terms); the three finest are used.
 
     Args:
-        elements: ascending.
-        frequencies: rad/s, one for each.
-        order: the theoretical order of convergence; 0 for spectral, where the last change is the uncertainty.
+        elements: numbers of elements, ascending.
+        frequencies: rad/s, one per number of elements.
+        order: theoretical order of convergence; 0 for spectral convergence: the last change is the uncertainty.
     """
     n, f = np.asarray(elements, float)[-3:], np.asarray(frequencies, float)[-3:]
     if not f.any():
@@ -88,7 +89,7 @@ def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:
     """Order p of a monotone sequence of three values, ``v = v∞ + C n⁻ᵖ``, at any three ascending ``elements``.
 
     The root of ``(n₁⁻ᵖ − n₂⁻ᵖ) / (n₂⁻ᵖ − n₃⁻ᵖ) = (v₂ − v₁) / (v₃ − v₂)``, which grows with p (equivalent to Celik et
-    al., eq. 5). Negative where the changes grow; ±20 at the ends of what is searched.
+    al., eq. 5). Negative if the changes grow; ±20 are the limits of the search.
     """
     n1, n2, n3 = (float(n) for n in elements)
     ratio = (values[1] - values[0]) / (values[2] - values[1])
@@ -105,12 +106,12 @@ def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:
 
 
 def widened(estimate: Estimate, more: float) -> Estimate:
-    """The estimate with what a solver itself says of its answer, as of its rounding, added to the uncertainty (relative)."""
+    """The estimate with ``more``, an uncertainty that the solver reports (such as rounding), added; relative."""
     return estimate if estimate.uncertainty is None else replace(estimate, uncertainty=estimate.uncertainty + more)
 
 
 def from_bracket(frequency: float, uncertainty: float) -> Estimate:
-    """The estimate of a code that brackets its own answer; ``uncertainty`` is relative."""
+    """The estimate of a code that gives an error bound for its answer; ``uncertainty`` is relative."""
     return Estimate(frequency, _at_least(uncertainty))
 
 

@@ -1,19 +1,19 @@
-"""What a difference means: the table of verdicts, as pure functions of numbers.
+"""Verdicts on differences, as pure functions of numbers.
 
 ============================ ===================================================================================
 pass                         ``|d| + u ≤ target``
-fail                         ``|d| − u > target``, or a code gave no answer to a question it accepts
-inconclusive                 neither: refine
-known difference             the cause is named, its size is computed, what remains is within the target, and
+fail                         ``|d| − u > target``, or a code gave no answer to a case that it accepts
+inconclusive                 neither pass nor fail: refine
+known difference             the cause is named, its size is computed, the remainder is within the target, and
                              refinement leads to the reference
-estimate                     a code that brackets its own answer, and a bracket too wide to tell: never evidence
-measured                     no code but a measurement: ``E = S − D`` against u_val, see ``measured``; never evidence
+estimate                     the code's own error bound is too wide for a verdict; never evidence
+measured                     a measurement, not a code: ``E = S − D`` against u_val, see ``measured``; never evidence
 not applicable               declared by the code, with the reason
 not run                      not installed
 ============================ ===================================================================================
 
-``d`` is the relative difference of two paired modes and ``u`` its numerical uncertainty. A code is compared with core
-lacking the same effects, so that like is compared with like. Only ``pass`` counts as agreement.
+``d`` is the relative difference of two paired modes and ``u`` its numerical uncertainty. A code that lacks effects is
+compared with core without the same effects. Only ``pass`` counts as agreement.
 """
 
 from collections.abc import Sequence
@@ -22,14 +22,14 @@ from dataclasses import dataclass
 from .results import Verdict
 
 Judgement = tuple[Verdict, str]
-"""The verdict, and its reason where it is not a plain pass."""
+"""The verdict, and the reason for any verdict other than a plain pass."""
 
 
 @dataclass(frozen=True)
 class Effect:
-    """What leaving one physical effect out does to one of core's frequencies: ``change`` is ``without/with − 1``.
+    """Change of one of core's frequencies without one physical effect: ``change`` is ``without/with − 1``.
 
-    None where core has no such mode with, or without.
+    None if core has no corresponding mode with or without the effect.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Effect:
 
 
 def judge(difference: float, uncertainty: float | None, target: float) -> Judgement:
-    """The verdict on a relative difference; ``uncertainty`` None means that it is not known."""
+    """The verdict on a relative difference; ``uncertainty`` is None if unknown."""
     if uncertainty is None:
         return "inconclusive", "uncertainty not known"
     if abs(difference) + uncertainty <= target:
@@ -51,12 +51,13 @@ def judge(difference: float, uncertainty: float | None, target: float) -> Judgem
 def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
     """The verdict on a code that agrees with core when both lack the same effects.
 
-    The remainder has passed ``judge`` already; the cause is what the code declares to lack. A cause without a size is none.
+    The remainder has already passed ``judge``; the cause is the effects that the code declares missing. A cause of
+    unknown size does not explain a difference.
 
     Args:
-        shift: what lacking them changes, all together, relative; None where core has no such mode with all effects.
+        shift: relative change due to all missing effects together; None if core has no such mode with all effects.
         target: largest shift that still counts as agreement with all effects.
-        effects: each of them alone.
+        effects: change due to each missing effect alone.
     """
     if shift is None:
         names = ", ".join(f"no {e.name}" for e in effects)
@@ -75,13 +76,13 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
 
 
 def bracketed(difference: float, uncertainty: float | None, target: float) -> Judgement:
-    """The verdict on a code that declares that it brackets its own answer.
+    """The verdict on a code that gives an error bound for its answer.
 
-    Refining does not narrow a bracket: what neither passes nor lies outside is an estimate, and no evidence.
+    Refinement does not reduce the bound: an answer that neither passes nor lies outside it is an estimate, not evidence.
 
     Args:
         difference: of the code's answer from the reference, relative to the reference.
-        uncertainty: half the bracket's width, relative to the code's answer.
+        uncertainty: half width of the bound, relative to the code's answer.
         target: relative.
     """
     verdict, reason = judge(difference, uncertainty, target)
@@ -101,15 +102,18 @@ def discretised(
     what: str,
     size: float | None = None,
 ) -> Judgement:
-    """The verdict on an answer of one given discretisation, whose error is known if it meets three conditions.
+    """The verdict on an answer from a given discretisation.
+
+    The difference is known if core with the same discretisation agrees and its refinements lead to the reference.
 
     Args:
         difference: of the answer from the converged reference, relative.
         uncertainty: of that difference.
         target: relative.
-        remainder: difference of the answer from core's with the same discretisation; 0 if it is core's own answer.
-        limit: difference from the reference of what core's refinements of that discretisation lead to; None if unknown.
-        what: the discretisation's name.
+        remainder: difference of the answer from core's with the same discretisation; 0 if it is core's answer.
+        limit: difference between the limit of core's refinements of that discretisation and the reference; None if
+            unknown.
+        what: name of the discretisation.
         size: its error: core's answer with it against the reference; ``difference`` if omitted.
     """
     verdict, reason = judge(difference, uncertainty, target)
@@ -129,11 +133,11 @@ def _small(effect: Effect, shift: float) -> bool:
 
 
 def percent(value: float) -> str:
-    """A relative number in percent with its sign: ``−1.23 %``, ``+0.044 %``."""
+    """Format a relative number in percent with its sign: ``−1.23 %``, ``+0.044 %``."""
     return f"{'−' if value < 0 else '+'}{unsigned(value)}"
 
 
 def unsigned(value: float) -> str:
-    """The size of a relative number in percent, to two digits at least: ``12.35 %``, ``0.044 %``."""
+    """Format the size of a relative number in percent, with at least two digits: ``12.35 %``, ``0.044 %``."""
     size = 100 * abs(value)
     return f"{size:.2f} %" if size >= 1 else f"{size:#.2g} %"

@@ -1,16 +1,16 @@
-"""Who confirms a case's answers, counted by groups of independent origin.
+"""Independent confirmation of a case's answers, counted by groups of independent origin.
 
-A witness is a column that answered: a code, a closed form, a printed series. It counts if it agrees with core in every mode
-and at every speed that it answers; one whose difference is only explained, or whose own bracket is too wide, is none. Nor is
-a measurement.
+A witness is a column with answers: a code, a closed form or a printed series. It counts if it agrees with core in every
+mode and at every speed that it answers. A witness whose difference is only explained, or whose own error bound is too
+wide, does not count; neither does a measurement.
 
-Witnesses with the same engine, theory or rotation terms may be wrong together, so they are one *group*, also when only a
-third witness links them. Who takes core's discretisation or frames confirms that core solves its model, not that the model
-is right, and is in no group; nor is who declares no origin (``references.interface.Independence``), nor a table that can be
-held only to a wider target than the case's.
+Witnesses with the same engine, theory or rotation terms may share an error, so they form one *group*, even if only a
+third witness links them. A code with core's discretisation or frames confirms that core solves its model, not that the
+model is right, and belongs to no group. The same applies to a code that declares no origin
+(``references.interface.Independence``), and to a table that supports only a wider target than the case's.
 
-Independent witnesses have two targets: the case's own (0.1 %, the paper's), and ``FINE`` for what their refinements
-extrapolate to.
+Independent witnesses have two targets: that of the case (0.1 %, the paper's), and ``FINE`` for the extrapolated values
+of their refinements.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,13 +22,13 @@ from .results import Cell, Origin, Run
 from .verdict import judge
 
 FINE = 1e-4
-"""Relative: what independent models should agree to after extrapolation."""
+"""Relative difference within which independent models should agree after extrapolation."""
 
 Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
 Standing = Literal["agrees", "explained", "open", "disagrees"]
 
 MATTERS = ("engine", "theory", "rotation")
-"""Of two origins that are the same in any of these, only one counts."""
+"""Two origins that are the same in any of these fields count once."""
 
 
 @dataclass(frozen=True)
@@ -36,15 +36,15 @@ class Witness:
     """One witness of one blade's frequencies.
 
     Attributes:
-        name: the code's, or the printed series'.
-        kind: a foreign code, a closed form of this package, a printed series (``coarse`` if held to a wider target than the
-            case's), whoever has something of core's, or whoever does not say what it has.
+        name: name of the code or the printed series.
+        kind: a foreign code, a closed form of this package, a printed series (``coarse`` if its target is wider than the
+            case's), a code that shares something with core, or one that does not declare what it shares.
         standing: at the case's target.
-        fine: at ``FINE``; None where that is no question (core's model, printed digits too few to tell).
-        answers: how many numbers it gave.
+        fine: at ``FINE``; None if not applicable (core's model, too few printed digits).
+        answers: number of frequencies it gave.
         largest: largest |difference| from core with the same effects, relative.
-        target: the largest that its numbers are held to, relative.
-        origin: as declared.
+        target: largest target of its numbers, relative.
+        origin: as declared; None if undeclared.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Witness:
 
 
 def witnesses(run: Run, case: str) -> list[Witness]:
-    """All that took part in one blade, in the order of the run; core's own discretisation is none."""
+    """All witnesses for one blade, in the order of the run, without core's own discretisation."""
     origins = {o.code: o for o in run.origins if o.case == case}
     columns: dict[str, list[Cell]] = {}
     for cell in run.cells:
@@ -100,7 +100,7 @@ def _key(origin: Origin) -> tuple[str, ...]:
 
 
 def _standing(cell: Cell, target: float) -> Standing:
-    """Like with like: a code that lacks effects is held to core without them. No answer where one was due is no agreement."""
+    """Standing of one cell against core with the same effects; a missing answer where one is due is a disagreement."""
     if cell.difference is None:
         return "disagrees" if cell.verdict == "fail" else "open"
     verdict, _ = judge(cell.difference, cell.uncertainty, target)
@@ -118,7 +118,7 @@ def _worst(standings: Iterable[Standing]) -> Standing:
 
 
 def groups(found: Iterable[Witness]) -> list[tuple[Witness, ...]]:
-    """Witnesses that agree and have nothing of core's, those that share what matters together: each group counts once."""
+    """Witnesses that agree and share nothing with core, grouped by common origin; each group counts once."""
     counted = [w for w in found if w.kind in ("code", "closed form", "printed source") and w.standing == "agrees"]
     out: list[list[Witness]] = []
     for witness in counted:
@@ -142,11 +142,11 @@ class Short:
 
 
 def short(run: Run) -> list[Short]:
-    """Blades whose answers fewer groups confirm than required."""
+    """Blades confirmed by fewer groups than required."""
     found = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
     return [Short(s.case, there, s.groups) for s, there in found if there < s.groups]
 
 
 def engines(group: Sequence[Witness]) -> str:
-    """What a group is called: its engines."""
+    """Name of a group: its engines."""
     return ", ".join(dict.fromkeys(w.origin.engine for w in group if w.origin))
