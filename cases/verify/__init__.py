@@ -1,4 +1,4 @@
-"""The matrix run: every blade of every case through every code.
+"""The matrix run: every blade of every case solved by every code.
 
 Cases come in; a ``Run`` of cells goes out. ``matrix`` plans and runs the columns, ``cells`` turns answers into rows.
 """

@@ -1,4 +1,4 @@
-"""From a solver's refinements and core's reference to rows: the difference, how sure it is, and what it means."""
+"""Rows from a solver's refinements and core's reference: the difference, its uncertainty and the verdict."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ FAILED: dict[str, Verdict] = {
     "unknown": "fail",
     "internal": "fail",
 }
-"""What a code's failure means for its cell: whoever takes part and gives no answer has failed."""
+"""Verdict of a cell by the kind of failure: a code that takes part and gives no answer has failed."""
 
 
 Rows = tuple[list[Cell], list[Level]]
@@ -34,7 +34,7 @@ Rows = tuple[list[Cell], list[Level]]
 
 @dataclass(frozen=True)
 class Head:
-    """What all cells of one column have in common; see ``results.Cell``."""
+    """Fields common to all cells of one column; see ``results.Cell``."""
 
     case: str
     code: str
@@ -43,11 +43,11 @@ class Head:
     target: float
     shares: str = ""
     motions: tuple[str, ...] = MOTIONS
-    """What the code declares that its shapes have."""
+    """Motions that the code declares its shapes contain."""
 
 
 def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
-    """The cell of a code that has no answer at a speed."""
+    """The cell of a code without an answer at one speed."""
     return Cell(
         case=head.case,
         omega=omega,
@@ -70,7 +70,7 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
 def refined(
     head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, bracket: bool = False
 ) -> Rows:
-    """A code's cells at one speed, one for each mode the case compares, and every refinement's frequencies."""
+    """Cells of a code at one speed, one for each mode that the case compares, and the frequencies of every refinement."""
     if not refinements.answers or (refinements.failure and refinements.failure.kind == "nonsense"):
         return [failed(head, omega, refinements.failure)], []
     refined_modes = follow(refinements.answers, reference.core.wanted, order, bracket)
@@ -90,11 +90,11 @@ def refined(
 
 
 def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
-    """Relative uncertainty (m,) that rounding leaves in core's frequencies ``mine``.
+    """Relative uncertainty (m,) of core's frequencies ``mine`` due to rounding.
 
-    From core's answers ``again`` to the same equations but for common factors, so that only rounding tells them apart. The
-    largest change of any mode counts for all: what is rounded off the steady state moves them together. What core itself
-    says of its noise counts if it is more.
+    It is estimated from core's answers ``again`` to the same equations scaled by common factors, which differ by rounding
+    only. The largest change of any mode is used for all modes, as rounding in the steady state affects them together.
+    The uncertainty that core reports is used if it is larger.
     """
     found = [other for other in (mine, *again) if not isinstance(other, Failure)]
     if isinstance(mine, Failure) or len(found) <= len(again) or len({len(m.frequencies) for m in found}) > 1:
@@ -107,10 +107,10 @@ def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
 def same(
     head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer, noise: Array | None = None
 ) -> Rows:
-    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements.
+    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with the same number of elements.
 
-    ``noise``: (m,) what rounding leaves of core's frequencies, relative. The other code, whose equations are as sensitive, is
-    taken to have as much, or what it says itself.
+    ``noise``: (m,) relative uncertainty of core's frequencies due to rounding. The other code's equations are equally
+    sensitive, so it is assumed to have the same uncertainty, or the one that it reports.
     """
     if isinstance(theirs, Failure):
         return [failed(head, omega, theirs)], []
@@ -134,7 +134,7 @@ def same(
 
 
 def printed(head: Head, omega: float, i: int, reference: Reference, value: Estimate, note: str) -> Cell:
-    """The cell of a printed number for the ``i``-th mode the case compares."""
+    """The cell of a printed number for the ``i``-th mode that the case compares."""
     refined_modes = RefinedMode(value, Pair(i, 1.0, note), ())
     return _judged(_row(head, omega, i, reference, None, refined_modes.partner), reference, i, refined_modes, "")
 
@@ -145,7 +145,7 @@ class Datum:
 
     Attributes:
         value: D, rad/s.
-        data, inputs: relative standard uncertainties, of the datum and of the simulation by its inputs.
+        data, inputs: relative standard uncertainties of the datum, and of the simulation due to its inputs.
     """
 
     value: float
@@ -154,10 +154,10 @@ class Datum:
 
 
 def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datum) -> Cell:
-    """The cell of a measured frequency of the ``i``-th mode the case compares: never evidence, whatever it shows.
+    """The cell of a measured frequency of the ``i``-th mode that the case compares; never evidence.
 
-    The numerical uncertainty of core's answer is a bound, and is taken for the standard uncertainty. Where it is not known,
-    no statement is made.
+    The numerical uncertainty of core's answer is a bound and is used as the standard uncertainty. If it is unknown, no
+    statement is made.
     """
     cell = replace(
         empty(head, omega, "measured", ""),
@@ -186,7 +186,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
 
 @dataclass(frozen=True)
 class Coarse:
-    """Core's answer for one mode with an author's discretisation, and what its refinements lead to; both rad/s."""
+    """Core's answer for one mode with an author's discretisation, and the limit of its refinements; both rad/s."""
 
     frequency: float
     limit: float
@@ -195,8 +195,8 @@ class Coarse:
 def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     """The cell of a printed number whose author's discretisation, named ``what``, is known.
 
-    Where the number is not within the target of the converged answer, its difference is known if core so discretised agrees
-    with it, and the refinements of that discretisation lead to the converged answer.
+    If the number is not within the target of the converged answer, its difference is known if core with that
+    discretisation agrees with it and the refinements of that discretisation lead to the converged answer.
     """
     if cell.verdict == "pass" or not coarse or not cell.frequency or not cell.reference or cell.difference is None:
         return cell
@@ -215,11 +215,11 @@ def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
 
 
 def given(head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, what: str) -> Rows:
-    """Cells of one given discretisation of core's: its coarsest answer, explained by what refining it does.
+    """Cells of core with a given discretisation: its coarsest answer, explained by its refinements.
 
     Args:
-        what: names the discretisation, for the reason.
-        refinements: core's, the discretisation in question first, then ever finer ones of its kind.
+        what: name of the discretisation, for the reason.
+        refinements: core's answers: the given discretisation first, then finer ones of the same kind.
     """
     if not refinements.answers:
         return [failed(head, omega, refinements.failure)], []
@@ -241,13 +241,13 @@ def given(head: Head, omega: float, reference: Reference, refinements: Refinemen
 
 
 def failed(head: Head, omega: float, failure: Failure | None) -> Cell:
-    """The cell of a code that gave no answer."""
+    """The cell of a code that failed."""
     failure = failure or Failure("nonsense", "no answer and no reason")
     return empty(head, omega, FAILED[failure.kind], failure.reason)
 
 
 def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes | None, partner: Pair) -> Cell:
-    """A cell with everything but numbers; as it is, that of a mode without a partner."""
+    """A cell without numbers, valid as the cell of a mode without a partner."""
     return replace(
         empty(head, omega, "fail", partner.note),
         mode=i + 1,
@@ -260,7 +260,7 @@ def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes |
 
 
 def _known(reference: Reference, i: int, target: float) -> Judgement:
-    """What the effects that the reference lacks do to its ``i``-th mode."""
+    """The verdict on the change of the ``i``-th mode due to the effects that the reference lacks."""
     full, base = reference.full[i], reference.core.modes[i].estimate
     shift = base.value / full - 1.0 if full and base else None
     verdict, reason = known(shift, target, reference.effects[i])
@@ -270,9 +270,9 @@ def _known(reference: Reference, i: int, target: float) -> Judgement:
 
 
 def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
-    """Why a code cannot have a mode: it declares ``motions``, and that which carries most of this mode is not among them.
+    """Why a code cannot have a mode: the dominant motion of the mode is not among the declared ``motions``.
 
-    What its shapes are is never asked: a column that an adapter has lost by mistake is empty, too.
+    The shapes themselves are not inspected: a column that is empty because of an adapter fault looks the same.
     """
     wanted = reference.core.wanted
     motion = MOTIONS[int(shares(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
@@ -307,7 +307,7 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: s
 
 
 def _unless_ambiguous(judged: Judgement, partner: Pair) -> Judgement:
-    """No agreement where the code has another mode of nearly the same shape elsewhere: which of them is its answer?"""
+    """No agreement if the code has another mode of nearly the same shape at a different frequency."""
     return ("inconclusive", "") if partner.ambiguous and judged[0] in ("pass", "known difference") else judged
 
 

@@ -1,6 +1,6 @@
-"""The columns of the matrix: one for each code, for the source's own discretisation, and for each printed table.
+"""The columns of the matrix: one for each code, for the discretisation of the source, and for each printed table.
 
-A column's work is a picklable function of the speeds and of core's references there, and gives the column's rows.
+The work of a column is a picklable function of the speeds and core's references; it returns the rows of the column.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,16 +28,16 @@ from .reference import Reference, felt
 from .refinement import Refining, Wanted, solve
 
 SAME = 1e-8
-"""Target for two codes given the very same discretisation."""
+"""Target for two codes with the same discretisation."""
 
 OTHER_METHOD = "core, velocity transformation"
-"""The column of core's other method, which the chain solver's numbers are checked with."""
+"""The column of core's other method, which checks the chain solver."""
 
 ELEMENTS = (20, 50)
-"""Of that column, whose cost is their cube: the second, where the first are too few for a stable state of either method."""
+"""Numbers of elements of that column, whose cost is cubic; the second is used if neither method is stable with the first."""
 
 References = Sequence[tuple[float, Reference]]
-"""Rotor speeds, rad/s, and core's references there."""
+"""Rotor speeds, rad/s, and core's references at these speeds."""
 
 Rows = tuple[list[Cell], list[Level]]
 
@@ -48,12 +48,12 @@ class Column:
 
     Attributes:
         name: as shown while it is being solved.
-        model: the effects that its references keep.
-        head: what its cells have in common.
-        work: rows from core's references.
-        origin: where its answers come from, as declared; None if nothing is.
-        due: where it owes cells: at every speed for every mode, at the highest speed, or only where it has numbers.
-        adapter: digest of the source of the code that answers; empty if it is this package's.
+        model: effects that its references keep.
+        head: fields common to its cells.
+        work: function that returns its rows from core's references.
+        origin: declared origin of its answers; None if undeclared.
+        due: where cells are required: at every speed for every mode, at the highest speed, or only where it has numbers.
+        adapter: digest of the source of the code; empty for a code of this package.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Column:
     adapter: str = ""
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
-        """Rows at all speeds; without a reference there is nothing to compare with."""
+        """Rows at all speeds that have a reference."""
         pairs = list(zip(speeds, core, strict=True))
         without = [
             empty(self.head, omega, "inconclusive", f"core with the same effects: {r.reason}")
@@ -77,10 +77,10 @@ class Column:
 
 
 def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: Limits) -> list[Column]:
-    """All columns of one blade; ``limits`` of each solution by a foreign code.
+    """All columns of one blade; ``limits`` apply to each solution by a foreign code.
 
-    ``refused`` of each code is its answer to this blade; a code that was not shown it is asked when it is to solve it.
-    Codes that take mechanisms only have none, unless there are no others.
+    ``refused`` of each code is its answer to this blade; a code that has not been asked yet is asked when it is to solve
+    the blade. Codes that accept only mechanisms have no column, unless there are no other codes.
     """
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
     out = []
@@ -133,19 +133,19 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
 
 
 def _origin(code: Description, blade: Blade) -> Independence | None:
-    """What a code declares; frames that core gives it are no matter where the sections' axes are those of the blade."""
+    """The declared independence of a code; frames from core do not count if the section axes are those of the blade."""
     declared = code.independence
     plain = straight(blade) and not (blade.twist.any() or blade.precone or blade.pitch)
     return replace(declared, sections="blade") if declared and declared.theory != CORE and plain else declared
 
 
 def failing(head: Head, failure: Failure, speeds: Iterable[float]) -> Rows:
-    """A cell at every speed for a code, or a column of ours, that has no answer at any."""
+    """A cell at every speed for a code, or a column of this package, without any answer."""
     return [failed(head, omega, failure) for omega in speeds], []
 
 
 def failing_work(head: Head, failure: Failure) -> Callable[[Any], Rows]:
-    """The work of a code that failed before it was asked anything."""
+    """The work of a code that failed before its first question."""
     return partial(_failing, head, failure)
 
 
@@ -192,7 +192,7 @@ def _same(head: Head, name: str, blade: Blade, elements: int, model: Effects, li
 
 
 def _other_method(head: Head, blade: Blade, core: References) -> Rows:
-    """At the highest speed only: what differs at lower speeds differs there."""
+    """Rows of core's other method, at the highest speed only: a difference at lower speeds also appears there."""
     if not core:
         return [], []
     omega, reference = max(core, key=lambda pair: pair[0])
@@ -206,7 +206,7 @@ def _other_method(head: Head, blade: Blade, core: References) -> Rows:
 
 
 def _wanted(core: References) -> Callable[[float, Sequence[Modes]], Wanted]:
-    """What a solver is asked for: core's modes, whatever it answered."""
+    """The modes requested from a solver: core's modes, whatever the solver answered."""
     by_speed = {omega: r.core.wanted for omega, r in core}
     return lambda omega, _: by_speed[omega]
 

@@ -1,7 +1,7 @@
-"""What well-known faults do to a blade's frequencies, so that a miss can be recognised.
+"""Effect of well-known faults on a blade's frequencies, used to identify the cause of a difference.
 
-Each of ``core_faults.CORE_FAULTS`` is solved in core alone. Whether the harness notices such faults is another question, which
-``faults`` answers with the real matrix.
+Each of ``core_faults.CORE_FAULTS`` is solved in core alone. Whether the matrix run detects such faults is tested in
+``faults``.
 """
 
 from dataclasses import dataclass
@@ -19,16 +19,16 @@ from .core_faults import CORE_FAULTS, Solve
 from .core_solver import START, qualifying
 
 ELEMENTS = START
-"""With and without a fault: their error is much the same, and all but cancels in what the fault changes."""
+"""Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
 
 NEAR = 5e-2
-"""Relative distance within which core's converged answer and this coarser one are the same mode of a family: lumped mass is
-2 % off, modes of a family are farther apart."""
+"""Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error of
+lumped mass is 2 %, and modes of a family are farther apart."""
 
 
 @dataclass(frozen=True)
 class Changed:
-    """One mode with and without a fault: its name, and frequencies in rad/s; ``wrong`` None where none is like it."""
+    """Name and frequencies (rad/s) of one mode with and without a fault; ``wrong`` is None if no mode corresponds."""
 
     name: str
     right: float
@@ -36,13 +36,13 @@ class Changed:
 
     @property
     def change(self) -> float | None:
-        """Relative difference of wrong from right."""
+        """Relative difference of ``wrong`` from ``right``."""
         return None if self.wrong is None else self.wrong / self.right - 1.0
 
 
 @dataclass(frozen=True)
 class Wrong:
-    """What one fault does to a blade's compared modes at one speed; none if it leaves no steady state."""
+    """Effect of one fault on a blade's compared modes at one speed; empty if there is no steady state."""
 
     fault: str
     omega: float
@@ -50,7 +50,7 @@ class Wrong:
 
 
 def solve(variant: Variant, compare: Compare) -> list[Wrong]:
-    """Every fault in one blade at every speed."""
+    """Solve one blade with every fault at every speed."""
     out = []
     for omega in variant.speeds.tolist():
         known: dict[Solve, Modes | None] = {}
@@ -65,7 +65,7 @@ def solve(variant: Variant, compare: Compare) -> list[Wrong]:
 
 
 def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes | None:
-    """None where there is no answer: what is wrong may have no steady state, be singular, or give no finite number."""
+    """None without an answer: a faulty model may have no steady state, be singular, or give non-finite numbers."""
     try:
         with np.errstate(invalid="ignore"):
             return solve(blade, omega, ELEMENTS, 2 * compare.modes + 2, ALL_EFFECTS)
@@ -74,7 +74,7 @@ def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes
 
 
 def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[Changed, ...]:
-    """The modes of ``right`` that a case compares, named, and those of ``wrong`` most like them."""
+    """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
     wanted, family = qualifying(right, weight, compare), families(right, weight)

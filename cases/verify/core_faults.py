@@ -1,9 +1,9 @@
 """Core with one well-known fault at a time, which any verification must detect.
 
-Each fault is made from outside: in the blade, in the model, in the chain, or in the pencil that core linearises to; core
-itself knows nothing of them. Those of the pencil take away or turn round ``softening``, what the centrifugal force of a
-displaced point lacks when it is reckoned at its place in the steady state (for a point mass m the matrix ``−Ω² m`` in the
-two directions of the plane of rotation, nothing along the rotor's axis).
+Each fault is introduced from outside: in the blade, the effects, the chain, or the linearised pencil; core contains no
+code for them. The faults in the pencil remove or reverse ``softening``: the change of the centrifugal force with the
+displacement of a point from its steady position (for a point mass m the matrix ``−Ω² m`` in the two directions of the
+plane of rotation, zero along the rotor's axis).
 """
 
 from collections.abc import Callable
@@ -25,26 +25,26 @@ from ...core.element.measures import Measure
 from ...core.modes import Modes
 
 OFFSET = 0.25
-"""How far the reference axis is shifted, as a part of the radius of gyration √(EI_z/EA) in the middle of the span."""
+"""Shift of the reference axis, as a fraction of the radius of gyration √(EI_z/EA) at midspan."""
 
 STILL = np.zeros(3)
 """No gravity."""
 
 Solve = Callable[[Blade, float, int, int, Effects], Modes]
-"""Modes of a blade at a speed (rad/s), with so many elements, so many of them, with a model's effects."""
+"""``(blade, omega, elements, count, effects)`` → modes; ``omega`` in rad/s."""
 
 
 @dataclass(frozen=True)
 class CoreFault:
-    """One way to be wrong.
+    """One fault.
 
     Attributes:
-        name: short, for a table.
-        what: what such a program does, in a sentence.
-        wrong: its modes.
-        right: those without the fault, in the same discretisation.
-        seen_in: blades of the package's cases in which it must be noticed.
-        at_rest: whether it changes a blade that does not turn.
+        name: short name, for a table.
+        what: one sentence on what a program with this fault does.
+        wrong: computes the modes with the fault.
+        right: computes the modes without the fault, with the same discretisation.
+        seen_in: blades of the package's cases in which it must be detected.
+        at_rest: whether it changes a blade at rest.
     """
 
     name: str
@@ -56,12 +56,12 @@ class CoreFault:
 
 
 def right(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """Core as it is."""
+    """Core without a fault."""
     return solve.mesh_modes(blade, omega, elements, count, effects=model)
 
 
 def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """The steady internal forces do not stiffen."""
+    """The steady internal forces do not contribute to the stiffness."""
     return right(blade, omega, elements, count, replace(model, geometric=False))
 
 
@@ -76,11 +76,11 @@ def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Effects
 
 
 def shifted(blade: Blade) -> Blade:
-    """Sections about an axis ``OFFSET`` beside their own along y, with Steiner's terms but not the couplings they come with.
+    """Sections about an axis shifted by ``OFFSET`` along y, with the parallel-axis terms but without the couplings.
 
-    About an axis shifted by e, EI_z grows by EA e², GJ by GA_y e² and the moments of inertia by m e², and stretch couples with
-    bending by EA e, motion with turning by m e; leaving out the couplings alone makes the section stiffer than it is. Rigid
-    shear has no such term in torsion here.
+    About an axis shifted by e, EI_z grows by EA e², GJ by GA_y e² and the moments of inertia by m e²; stretch couples
+    with bending by EA e, and translation with rotation by m e. Omitting only the couplings makes the section too stiff.
+    Rigid shear has no such term in torsion here.
     """
     middle = stiffness_at(blade, blade.length / 2)[0]
     square = OFFSET**2 * middle[BEND_Z, BEND_Z] / middle[AXIAL, AXIAL]
@@ -94,22 +94,22 @@ def shifted(blade: Blade) -> Blade:
 
 
 def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """See ``shifted``."""
+    """The reference axis is shifted; see ``shifted``."""
     return right(shifted(blade), omega, elements, count, model)
 
 
 def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """The sign of spin softening is wrong: what should soften stiffens."""
+    """Spin softening has the wrong sign and stiffens."""
     return _altered(blade, omega, elements, count, model, softening=-1.0)
 
 
 def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """Linearised in absolute coordinates of a frame that stands still: neither spin softening nor Coriolis terms."""
+    """Linearised in absolute coordinates of a fixed frame: neither spin softening nor Coriolis terms."""
     return _altered(blade, omega, elements, count, replace(model, coriolis=False), softening=0.0)
 
 
 def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effects, softening: float) -> Modes:
-    """Core with its spin softening multiplied by a factor."""
+    """Core with its spin softening multiplied by ``softening``."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
     state = solution.balance(body, omega, STILL, model)
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
@@ -122,8 +122,9 @@ def softened(body: Chain, state: Steady, omega: float, factor: float) -> ChainPe
 
 
 def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
-    """The part of the stiffness that the displaced mass' centrifugal force is: of a model without geometric stiffness, the
-    stiffness at speed less that at rest, about the same shape.
+    """The part of the stiffness due to the centrifugal force of the displaced mass.
+
+    It is the stiffness at speed minus that at rest, about the same shape, of a model without geometric stiffness.
     """
     bare = Effects(geometric=False)
     turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).remainder for speed in (omega, 0.0))
@@ -140,7 +141,7 @@ def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) 
 
 
 LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
-"""The paper's discretisation, whose end weight the last fault gets wrong; its 50 elements are divided as the others."""
+"""The paper's discretisation; the last fault has the wrong mass at its end node. Its 50 elements are refined as others."""
 
 
 def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
@@ -150,7 +151,7 @@ def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects
 
 
 def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
-    """Every node has an element's mass, the tip too, which should have half of one."""
+    """Every node has the mass of one element, including the tip, which should have half of it."""
     body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, *LUMPED)
     lumps = body.lumps.copy()
     lumps[-1] += lumps[-1] - blade.tip_mass
@@ -190,4 +191,4 @@ CORE_FAULTS = (
     ),
     CoreFault("no hub radius", "the root lies on the rotor's axis", no_hub, right, PLAIN),
 )
-"""All of them."""
+"""All faults."""

@@ -1,4 +1,4 @@
-"""Core as one more solver: its answers in the form of a foreign code's, refined until they can serve as reference."""
+"""Core as a solver: answers in the same form as a foreign code's, refined until they can serve as reference."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -21,28 +21,28 @@ from ..judge.uncertainty import widened
 from .refinement import RefinedMode, Refining, Wanted, follow, solve
 
 SURE = 5e-5
-"""Core is refined until its own uncertainty, relative, is no more than this: a quarter of what a code is allowed."""
+"""Core is refined until its relative uncertainty is at most this: a quarter of the limit for a code."""
 
 START, MOST, CAP = 15, 100, 960
-"""Core's coarsest reference discretisation, the most it begins with for a table of many stations, and the finest; elements."""
+"""Numbers of elements of core's reference: the coarsest, the largest to start with for many stations, and the finest."""
 
 JUMP = 1e-4
-"""Length of an interval, of the blade's, in which properties jump rather than vary."""
+"""Intervals shorter than this fraction of the blade's length are steps of the properties."""
 
 MARGIN = 4
-"""Modes solved beyond the highest one wanted, so that each has a chance of its partner."""
+"""Number of modes solved above the highest one wanted, so that each can find its partner."""
 
 DEEPER = 3
-"""How many times further up to look, once, where too few modes of those solved qualify."""
+"""Factor on the number of modes for the one retry when too few modes qualify."""
 
 
 Solver = Callable[..., Modes]
-"""A method of core's: ``solve.modes`` or ``velocity_transformation.modes``."""
+"""A method of core: ``solve.modes`` or ``velocity_transformation.modes``."""
 
 
 @dataclass(frozen=True)
 class Converged:
-    """Core's modes at one speed: which of them a case compares, their estimates and families, in the same order."""
+    """Core's modes at one speed, with the compared modes, their estimates and families in the same order."""
 
     wanted: Wanted
     modes: tuple[RefinedMode, ...]
@@ -50,7 +50,7 @@ class Converged:
 
     @property
     def count(self) -> int:
-        """How many modes another solver should be asked for."""
+        """Number of modes to request from another solver."""
         return max(self.wanted.indices) + 1 + MARGIN
 
 
@@ -62,7 +62,7 @@ def answers(
     effects: Effects = ALL_EFFECTS,
     by: Solver | None = None,
 ) -> list[Answer]:
-    """Core's answers to ``runs``, by one of its methods; a speed without a stable steady state is a failure that says so."""
+    """Core's answers to ``runs`` by one of its methods; a speed without a stable steady state gives a failure."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         try:
@@ -75,7 +75,7 @@ def answers(
 
 
 def rescaled(blade: Blade, factor: float) -> Blade:
-    """The blade with masses and stiffnesses ``factor`` times as large: the same frequencies, rounded otherwise."""
+    """The blade with masses and stiffnesses multiplied by ``factor``: same frequencies, different rounding."""
     return replace(
         blade,
         mass=factor * blade.mass,
@@ -86,9 +86,10 @@ def rescaled(blade: Blade, factor: float) -> Blade:
 
 
 def refining(blade: Blade) -> Refining:
-    """How core is refined: from elements no longer than the shortest interval between stations, kinks being at stations.
+    """Refinement of core, starting from elements no longer than the shortest interval between stations.
 
-    Not those that make a step of a table whose properties jump: elements integrate across them.
+    Properties have kinks at stations. Intervals that represent a step of the properties do not count: elements integrate
+    across them.
     """
     intervals = np.diff(blade.stations) / blade.length
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))
@@ -97,7 +98,7 @@ def refining(blade: Blade) -> Refining:
 
 
 def as_given(source: Discretisation) -> Refining:
-    """How a source's own discretisation is refined: its number of elements first, then ever finer ones of its kind."""
+    """Refinement of the discretisation of a source: its number of elements first, then finer ones of the same kind."""
     n = source.elements
     return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
 
@@ -144,7 +145,7 @@ def _converged(
 
 
 def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
-    """Without the bias of rigid strains."""
+    """Remove the bias of rigid strains."""
     if one.estimate is None:
         return one
     known = widened(one.estimate, unsure)

@@ -1,9 +1,9 @@
-"""Where differences come from: discretisation, model form, rounding, each switched on in core alone to show its share.
+"""Error budget: effect of discretisation, model form and rounding on frequencies, each switched on in core alone.
 
-A difference between two answers has four sources: the discretisation of each, the digits a table prints, what a model leaves
-out, and faults. Here the first three are told mode by mode, so that a reader can say what is left for the fourth. Every
-share is the relative change of a frequency of core's with one thing altered, against core with all effects and a fine
-division of its own:
+A difference between two answers has four sources: discretisation, the digits that a table prints, effects missing from
+a model, and faults. The first three are reported for each mode; the remainder is due to faults. Each entry is the
+relative change of one of core's frequencies when one thing is altered, against core with all effects and its own fine
+discretisation:
 
 * discretisation, at the source's number of elements or ``ELEMENTS``: mass lumped at the nodes, stiffness linear in one end's
   frame, both, neither; and the largest uncertainty of the codes after refinement;
@@ -11,7 +11,7 @@ division of its own:
   on where a blade has none and off where it has;
 * rounding: half a unit of the last digit of a printed number.
 
-One switch at a time: effects this small add up, but for products of them.
+Only one thing is altered at a time: effects this small add up, except for their products.
 """
 
 from collections.abc import Iterator, Sequence
@@ -33,10 +33,10 @@ from .controls import changed
 from .published_tables import about
 
 ELEMENTS = 50
-"""Of the discretisations compared, where the source names no number: the paper's."""
+"""Number of elements of the compared discretisations if the source gives none: the paper's."""
 
 FINE = 100
-"""Elements of the answer they are compared with; its own error is below 1e-6 for the modes compared."""
+"""Number of elements of the answer they are compared with; its error is below 1e-6 for the modes compared."""
 
 SHEAR = 5 / 6 / (2 * (1 + 0.3))
 """GA/EA of a solid rectangular isotropic section: shear factor 5/6 (Reissner 1945), Poisson's ratio 0.3."""
@@ -47,21 +47,21 @@ WAYS: dict[str, tuple[Mass, Measure]] = {
     "both": ("half_end", "body_fixed"),
     "neither": ("consistent", "corotational"),
 }
-"""Ways to discretise."""
+"""Discretisations."""
 
 EFFECTS = {
     "no prestretch": Effects(prestretch=False),
     "no Coriolis": Effects(coriolis=False),
     "no rotary inertia": Effects(rotary_inertia=False),
 }
-"""Effects left out, one at a time."""
+"""Omitted effects, one at a time."""
 
 Altered = tuple[str, str, Modes | None]
-"""Cause, part, and core's modes with it."""
+"""Cause, part, and core's modes with that part altered."""
 
 
 def solve(case: Case, variant: Variant) -> list[Share]:
-    """The shares in one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
+    """Error budget of one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
     blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
     printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
     printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
@@ -96,7 +96,7 @@ def _solved(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
 ) -> Modes | None:
-    """None where there is no answer: what is left out may have held the blade."""
+    """None without an answer: a blade without the omitted stiffness may be unconstrained."""
     try:
         with np.errstate(invalid="ignore"):
             return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=model)
@@ -105,7 +105,7 @@ def _solved(
 
 
 def _with_other_strains(blade: Blade) -> Iterator[tuple[str, Blade]]:
-    """The blade without stretch, and with its shear switched the other way, where it is either rigid or not."""
+    """The blade without stretch, and with its shear switched between rigid and flexible."""
     shear = [SHEAR_Y, SHEAR_Z]
     rigid = np.isinf(blade.stiffness[:, shear, shear])
     axial = blade.stiffness[:, AXIAL, AXIAL]
@@ -138,7 +138,7 @@ def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[S
             ("rounding", "printed digits", "table"),
         ):
             sizes = [c.uncertainty or 0.0 for c in known if c.role == role]
-            if role == "code":  # a code's own bracket is no discretisation error
+            if role == "code":  # an error bound given by a code is not a discretisation error
                 sizes = [c.uncertainty or 0.0 for c in known if c.role == role and c.order is not None]
             if sizes:
                 out.append(Share(case, omega, name, cause, part, max(sizes), bound=True))
@@ -146,7 +146,7 @@ def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[S
 
 
 def _name(cell: Cell, cells: Sequence[Cell]) -> str:
-    """``flapwise 2``: the ordinal among all modes that the case compares at that speed with all effects."""
+    """``flapwise 2``: family and ordinal among all modes that the case compares at that speed with all effects."""
     whole = [c for c in cells if c.reference == c.full] or cells
     lower = {c.mode for c in whole if (c.omega, c.family) == (cell.omega, cell.family) and 0 < c.mode <= cell.mode}
     return f"{cell.family} {len(lower)}"

@@ -1,8 +1,8 @@
-"""What determines an answer, as one number: the same question to the same code in the same version has the same digest.
+"""Digests of tasks: the same question to the same version of the same code has the same digest.
 
-A task of the matrix is a pure function of its arguments. Its digest covers the function's name, the arguments by value (every
-bit of every array), the sources of this package, the versions of the libraries below it, and the source of the code that is
-asked. It does not depend on the process, the folder or the number of workers.
+A task of the matrix is a pure function of its arguments. Its digest covers the function's name, the arguments by value
+(every bit of every array), the sources of this package, the versions of the libraries it uses, and the source of the
+code that answers. It does not depend on the process, the folder or the number of workers.
 """
 
 import sys
@@ -24,19 +24,19 @@ import numpy as np
 from ...references.protocol.registry import locate
 
 FLOORS = ("core", "references", "cases")
-"""Parts of this package that make answers; the rest shows them."""
+"""Parts of this package that compute answers; the others present them."""
 
 LIBRARIES = ("numpy", "scipy", "numba")
 
 TIME = "seconds"
-"""The field that says how long an answer took, and determines nothing."""
+"""The field with the time an answer took; not part of a digest."""
 
 
 def digest(task: Callable[..., Any], *arguments: Any) -> str:
     """The digest of a task: 64 hexadecimal digits.
 
     Raises:
-        TypeError: if it holds something without a value of its own, such as a lambda or an open file.
+        TypeError: if an argument has no value to digest, such as a lambda or an open file.
     """
     made = sha256(package().encode())
     for part in _parts((task, arguments)):
@@ -46,7 +46,7 @@ def digest(task: Callable[..., Any], *arguments: Any) -> str:
 
 
 def _parts(value: Any) -> Iterator[bytes]:
-    """The value as a sequence of byte strings, each container by its type and length, so that unlike values differ."""
+    """The value as a sequence of byte strings; containers include type and length, so that different values differ."""
     kind = type(value)
     if value is None or kind in (bool, int, float, complex):
         yield kind.__name__.encode()
@@ -95,7 +95,7 @@ def _name(kind: type) -> str:
 
 
 def _state(value: Any) -> tuple[Any, ...]:
-    """What pickle would rebuild an object from."""
+    """The state from which pickle would rebuild an object."""
     reduced = value.__reduce_ex__(2)
     if isinstance(reduced, str):
         raise TypeError(f"{_name(type(value))}: cannot be told from another by its value")
@@ -104,7 +104,7 @@ def _state(value: Any) -> tuple[Any, ...]:
 
 @lru_cache
 def package() -> str:
-    """The digest of this package's sources and data, and of the versions of Python and the libraries below it."""
+    """The digest of this package's sources and data, and of the versions of Python and the libraries it uses."""
     root = Path(__file__).parents[2]
     made = sha256(repr([python_version(), *((name, version(name)) for name in LIBRARIES)]).encode())
     for floor in FLOORS:
@@ -114,9 +114,9 @@ def package() -> str:
 
 
 def adapter(name: str) -> str:
-    """The digest of a code's source, found without importing it: its module and those beside it, or its whole package.
+    """The digest of a code's source, found without importing it: the modules of its folder, or its whole package.
 
-    Empty for codes of this package, whose sources are in ``package``, and where there is no source.
+    Empty for codes of this package, whose sources are covered by ``package``, and for codes without source.
 
     Raises:
         UnknownCodeError: if no such code is known.

@@ -1,8 +1,9 @@
-"""The journal of a run, ``results.partial.jsonl``: what is being run, and every answer as it comes, so that none is lost.
+"""The journal of a run, ``results.partial.jsonl``: the plan, and every answer as soon as it is computed.
 
-A killed run leaves its journal. The next run in the same folder takes from it every answer to a question that is the same by
-``identity.digest``, and asks only the rest. The journal is removed when the run's results and report are written: a folder that
-has one has no finished run. One line is one JSON object, appended in one write; a line that was cut short is cut off.
+A killed run leaves its journal. The next run in the same folder reuses every answer to a question with the same
+``identity.digest`` and computes only the rest. The journal is removed when the run's results and report are written: a
+folder with a journal contains no finished run. Each line is one JSON object, appended in one write; a truncated line is
+removed.
 """
 
 import os
@@ -25,17 +26,18 @@ from .identity import digest
 NAME = "results.partial.jsonl"
 
 WORDS = {"run": {"plan", "settings", "versions", "command"}, "answer": {"key", "value"}, "kept": {"key"}}
-"""What a line of each kind has: a run that was begun, an answer, an earlier answer that the run begun last takes up."""
+"""Fields of each kind of line: a started run, an answer, an earlier answer reused by the latest run."""
 
 
 class JournalError(OSError):
-    """The disk does not take an answer. The run stops: what cannot be kept is not asked for."""
+    """An answer could not be written to disk; the run stops."""
 
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """While this lasts, no other run writes in the folder. The system's lock on the folder itself: it leaves no file behind,
-    and ends with the process, however that ends.
+    """Context manager that prevents other runs from writing to the folder.
+
+    It uses the system's lock on the folder itself, which leaves no file behind and is released when the process ends.
 
     Raises:
         CaseError: if another process has the lock.
@@ -55,19 +57,19 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 class Journal:
-    """An open journal. Every method that writes raises ``JournalError`` if the disk does not take the whole line."""
+    """An open journal. Every method that writes raises ``JournalError`` if the complete line cannot be written."""
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / NAME
         self.file = self.path.open("ab", buffering=0)
         self.lines, self.size = _lines(self.path)
-        self.file.truncate(self.size)  # a line that was cut short
+        self.file.truncate(self.size)  # remove a truncated line
         self.answers: dict[str, Any] = {line["key"]: line["value"] for line in self.lines if line["kind"] == "answer"}
         self.current: set[str] = set()
         self.lock = Lock()
 
     def begin(self, run: Run) -> None:
-        """Say what is being run: plan, settings, versions and command. Answers from here on are of this run."""
+        """Write plan, settings, versions and command of a run. Later answers belong to this run."""
         started = _about(run)
         before = [line for line in self.lines if line["kind"] == "run"]
         if before and msgspec.json.encode(before[-1]) == msgspec.json.encode(started):
@@ -76,10 +78,10 @@ class Journal:
             self._append(started)
 
     def get(self, key: str) -> Any:
-        """A stored answer.
+        """Return a stored answer.
 
         Raises:
-            KeyError: if there is none.
+            KeyError: if it is not stored.
             ValueError: if it cannot be read.
         """
         found = stored.decode(self.answers[key])
@@ -113,12 +115,12 @@ class Journal:
         self.file.close()
 
     def remove(self) -> None:
-        """The run's results and report are written: there is nothing more to continue."""
+        """Remove the journal, after the run's results and report are written."""
         self.path.unlink()
 
 
 def _lines(path: Path) -> tuple[list[dict[str, Any]], int]:
-    """The lines of a journal, without those that cannot be read, and where the last whole line ends."""
+    """The readable lines of a journal, and the offset of the end of the last complete line."""
     content = path.read_bytes()
     size = content.rfind(b"\n") + 1
     found = []
@@ -136,7 +138,7 @@ def _about(run: Run) -> dict[str, Any]:
 
 
 def _current(lines: list[dict[str, Any]]) -> list[str]:
-    """Keys of the answers that belong to the run that was begun last, in the journal's order."""
+    """Keys of the answers that belong to the latest run, in the journal's order."""
     keys: list[str] = []
     for line in lines:
         if line["kind"] == "run":
@@ -147,11 +149,11 @@ def _current(lines: list[dict[str, Any]]) -> list[str]:
 
 
 def read(path: Path) -> Run:
-    """The unfinished run in a journal: the rows that are there, in the order of the plan.
+    """Read the unfinished run in a journal: the rows available so far, in the order of the plan.
 
     Raises:
         OSError: if the file cannot be read.
-        ValueError: naming the file, if it is not a journal of this version.
+        ValueError: if it is not a journal of this version; the message names the file.
     """
     lines, _ = _lines(path)
     try:
@@ -178,12 +180,12 @@ def read(path: Path) -> Run:
 
 
 def _pair(value: Any) -> bool:
-    """Whether a stored answer is a column's: two lists, of cells and of levels."""
+    """Whether a stored answer belongs to a column: two lists, of cells and of levels."""
     return isinstance(value, list) and value[:1] == ["tuple"] and [v[:1] for v in value[1:]] == [["list"], ["list"]]
 
 
 class Remembering(Executor):
-    """An executor that asks a journal before it runs a task, and tells it what came out before anybody else knows."""
+    """An executor that looks up each task in a journal, and stores a result before its future completes."""
 
     def __init__(self, executor: Executor, journal: Journal) -> None:
         self.executor, self.journal = executor, journal
@@ -195,12 +197,12 @@ class Remembering(Executor):
             found: Future[Any] = Future()
             found.set_result(self.journal.get(key))
             return found
-        except (KeyError, ValueError):  # not there, or damaged
+        except (KeyError, ValueError):  # missing or damaged
             return _Outer(self.executor.submit(fn, *args, **kwargs), lambda value: self.journal.put(key, value))
 
 
 class _Outer(Future[Any]):
-    """A task's future that is done when its result is stored."""
+    """Future of a task that completes when its result is stored."""
 
     def __init__(self, inner: Future[Any], store: Callable[[Any], None]) -> None:
         super().__init__()
@@ -222,7 +224,7 @@ class _Outer(Future[Any]):
         if error is None:
             try:
                 self.store(inner.result())
-            except Exception as failed:  # no space left, or an answer of a kind that is not known
+            except Exception as failed:  # no space left, or an answer of unknown type
                 error = failed
         if error is None:
             self.set_result(inner.result())

@@ -1,8 +1,9 @@
-"""Is it the lumped mass? The paper's explanation of its differences, taken apart with core's own switches.
+"""Effect of lumped mass: a test of the paper's explanation of its differences.
 
-Park et al. (2010), below Table 1, put their differences of 0.1 % from Yoo and Shin down to a lumped against a consistent
-mass. Their discretisation departs from a convergent one of fourth order in two ways, not one: the mass is lumped at the
-nodes, and the beam's stiffness is linear in the frame of one end (the parent body's). Each is switched on alone here.
+Park et al. (2010), below Table 1, attribute their differences of 0.1 % from Yoo and Shin to a lumped instead of a
+consistent mass. Their discretisation differs from a convergent one of fourth order in two ways: the mass is lumped at
+the nodes, and the beam's stiffness is linear in the frame of one end (the parent body's). Here each is switched on
+alone.
 """
 
 from itertools import product
@@ -17,29 +18,29 @@ from ..judge.pairing import MOTIONS, aligned, families, weights
 from ..judge.results import Level
 
 CASE, OMEGA = "park-cantilever", 10.0
-"""The paper's first example: Table 1 is at 10 rad/s."""
+"""Speed of the paper's first example, rad/s (Table 1)."""
 
 MASSES, STIFFNESSES = get_args(Mass), get_args(Measure)
 
 ELEMENTS = (10, 20, 50, 100, 200)
-"""The paper has 50."""
+"""Numbers of elements; the paper uses 50."""
 
 COUNT = 3
-"""Chordwise modes, as many as Table 1 prints."""
+"""Number of chordwise modes, as in Table 1."""
 
 POINT_MASSES = Effects(rotary_inertia=False)
-"""The paper's sections have mass, but no moments of inertia."""
+"""The paper's sections have mass but no moments of inertia."""
 
 
 def variant(mass: Mass, stiffness: Measure) -> str:
-    """What the rows of one combination are called."""
+    """Name of the rows of one combination."""
     return f"core, {mass} mass, {stiffness} stiffness"
 
 
 def lumping(blade: Blade) -> tuple[Level, ...]:
-    """The blade's lowest chordwise frequencies at ``OMEGA`` by every combination of mass and stiffness, refined.
+    """The blade's lowest chordwise frequencies at ``OMEGA`` for every combination of mass and stiffness, refined.
 
-    The combination of consistent mass and corotational stiffness, at its finest, is the exact answer to compare with.
+    The finest answer with consistent mass and corotational stiffness is the exact value to compare with.
     """
     weight = weights(blade)
     rows = []

@@ -1,4 +1,4 @@
-"""The run: every blade of every case through every code, on any executor, rows delivered as they come.
+"""The run: every blade of every case solved by every code, on any executor; rows are delivered as they are computed.
 
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
@@ -32,14 +32,14 @@ from .user_results import UserResults, check
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is, and what it just delivered.
+    """Progress of a run and its latest rows.
 
     Attributes:
         done: tasks finished.
-        total: tasks in all; known from the start.
-        running: what is being solved now: ``park-cantilever × pinocchio``.
+        total: total number of tasks, known from the start.
+        running: tasks in progress: ``park-cantilever × pinocchio``.
         cells: rows just delivered.
-        levels: refinements' answers just delivered.
+        levels: answers of refinements just delivered.
     """
 
     done: int
@@ -51,7 +51,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Task:
-    """One thing to solve of one blade: core's references (no column), or a column; and what differences are made of."""
+    """One task for one blade: core's references (no column), a column, or the error budget."""
 
     variant: Variant | Turning
     columns: tuple[Column, ...]
@@ -76,22 +76,22 @@ def run(
     parts: bool = True,
     on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
 ) -> Run:
-    """Every blade of ``cases`` through every one of ``codes``, judged.
+    """Solve every blade of ``cases`` with every one of ``codes`` and judge the results.
 
     Args:
         cases: as read.
         codes: names or import paths, see ``references.protocol.registry``, or descriptions.
         executor: where tasks run: threads, processes, another machine's.
-        on_progress: told when the run starts and whenever a task ends; an exception from it stops the run.
-        seconds: that one solution by a foreign code may take; as each case says by default.
-        memory: bytes that it may take.
-        added: results without a code, each a column more.
-        parts: whether to say what core's differences are made of.
-        on_plan: told every column, before anything is solved.
+        on_progress: called when the run starts and whenever a task ends; an exception from it stops the run.
+        seconds: time limit for one solution by a foreign code, s; by default the limit of each case.
+        memory: memory limit for one solution, bytes.
+        added: results without a code; each adds a column.
+        parts: whether to compute the error budget of core.
+        on_plan: called with every column before the first task starts.
 
     Raises:
-        CaseError: if core itself cannot solve a case, results are added that are not of these cases, or a name is given twice.
-        UnknownCodeError: if a code is not known.
+        CaseError: if core cannot solve a case, added results do not belong to these cases, or a name occurs twice.
+        UnknownCodeError: if a code is unknown.
     """
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
     known = _known(codes, [v.blade for v in blades])
@@ -154,7 +154,7 @@ def _planned(task: _Task, column: Column) -> Planned:
 
 
 def _known(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
-    """Descriptions of codes that have been shown every blade of the run."""
+    """Descriptions of the codes, which have been asked about every blade of the run."""
     ready = {
         c.asked: c
         for c in codes
@@ -166,7 +166,7 @@ def _known(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[
 
 
 def _answer(future: Future[Any]) -> Any:
-    """What a task gave, or that it failed by an error of ours: that costs its cells, and no others."""
+    """The result of a task, or a failure if this package raised an error; only the cells of that task are lost."""
     try:
         return future.result()
     except (CaseError, BrokenExecutor, JournalError):
@@ -187,7 +187,7 @@ def _tasks(
     limits: Limits,
     user_results: Sequence[UserResults],
 ) -> list[_Task]:
-    """One for each blade of a case, or for its mechanism."""
+    """Tasks for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         (turning,) = case.variants
         made = _dated(mechanism_columns.columns(case, codes, limits), codes)
@@ -203,13 +203,13 @@ def _tasks(
 
 
 def _dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
-    """The columns with the digests of their codes' sources."""
+    """The columns with the digests of the sources of their codes."""
     sources = {one.name: "" if one.failure else adapter(one.asked) for one in codes}
     return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)
 
 
 def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:
-    """What core's differences are made of, and how sure the numbers are that they are seen in."""
+    """The error budget of core, with the uncertainties of the compared numbers."""
     return parts + error_budget.uncertain(task.variant.name, parts, _cells(task, rows))
 
 
@@ -218,7 +218,7 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
 
 
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:
-    """What the numbers were made with: Python, the packages core needs, each code, and files of results."""
+    """Versions of Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
     files = {one.name: f"{'measured,' if one.measured else 'results'} in {Path(one.path).name}" for one in user_results}
     theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}

@@ -1,4 +1,4 @@
-"""A mechanism as a case: turned at several speeds, given to every code that takes mechanisms, held to core's answer."""
+"""A mechanism as a case: solved at several rotor speeds by every code that accepts mechanisms, compared with core."""
 
 from dataclasses import dataclass
 
@@ -19,13 +19,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Turning:
-    """The mechanism of a case and its speeds: what a blade's variant is to a case of blades.
+    """The mechanism of a case and its speeds; the counterpart of a blade's variant.
 
     Attributes:
-        name: the case's.
-        described: as read.
+        name: name of the case.
+        described: mechanism as read.
         speeds: (k,) rad/s, ascending.
-        count: modes to compare.
+        count: number of modes to compare.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Turning:
 
 @dataclass(frozen=True)
 class MechanismCase:
-    """A mechanism's file with everything a case needs; ``variants`` has the one mechanism."""
+    """A mechanism's file with everything a case needs; ``variants`` contains the one mechanism."""
 
     described: Described
     target: float
@@ -53,10 +53,10 @@ class MechanismCase:
 
 
 def case(described: Described) -> MechanismCase:
-    """A mechanism that says at which speeds and how closely it is compared.
+    """The case of a mechanism that specifies its speeds and the target of the comparison.
 
     Raises:
-        CaseError: if it does not.
+        CaseError: if it does not specify them.
     """
     text, path = described.text, described.path
     if text.speeds is None or text.compare is None:
@@ -78,7 +78,7 @@ def case(described: Described) -> MechanismCase:
 
 
 def setting(case: MechanismCase) -> Setting:
-    """What a report says of the case."""
+    """Description of the case in a report."""
     (variant,), text = case.variants, case.described.text
     rpm = text.speeds is not None and text.speeds.rpm is not UNSET
     speeds = variant.speeds * (30 / np.pi if rpm else 1.0)

@@ -1,7 +1,7 @@
-"""The columns of a mechanism's case: codes that take mechanisms, and closed forms, against core at every speed.
+"""The columns of a mechanism's case: codes that accept mechanisms, and closed forms, against core at every speed.
 
-A mechanism has no discretisation to refine: codes solve the very same equations, so the target is that of rounding, and
-damping ratios must agree as well as frequencies.
+A mechanism has no discretisation to refine: codes solve the same equations, so the target is at rounding level, and
+damping ratios must agree as closely as frequencies.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -62,7 +62,7 @@ def references(variant: Turning) -> References:
     """Core's modes at each speed.
 
     Raises:
-        CaseError: if core cannot solve it, or has fewer modes than are compared.
+        CaseError: if core cannot solve it, or finds fewer modes than are compared.
     """
     return {ALL_EFFECTS: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
 
@@ -82,9 +82,9 @@ def _reference(variant: Turning, omega: float) -> Reference:
 
 
 def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -> list[Column]:
-    """A column for each code and for the closed form; ``limits`` of each solution by a foreign code.
+    """A column for each code and for the closed form; ``limits`` apply to each solution by a foreign code.
 
-    Codes that take blades only have none, unless there are no others.
+    Codes that accept only blades have no column, unless there are no other codes.
     """
     (variant,) = case.variants
     out = []
@@ -132,7 +132,7 @@ def _compared(head: Head, variant: Turning, solve: Solve, core: Sequence[tuple[f
 
 
 def cells(head: Head, omega: float, reference: Reference, answer: Answer, count: int) -> list[Cell]:
-    """A code's cells at one speed: its partner of each of core's ``count`` lowest modes, by mass-weighted MAC."""
+    """Cells of a code at one speed: each of core's ``count`` lowest modes with its partner by mass-weighted MAC."""
     if isinstance(answer, Failure):
         return [failed(head, omega, answer)]
     if fault := _incomplete(reference, answer):
@@ -170,7 +170,7 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
 
 
 def _incomplete(reference: Reference, answer: MechanismModes) -> str:
-    """Why an answer cannot be paired by shape, or is not all of the modes: what a frequency alone does not tell."""
+    """Why an answer cannot be paired by shape or lacks modes; empty if it can be paired and is complete."""
     theirs = [reference.modes.coordinates.index(n) for n in answer.coordinates if n in reference.modes.coordinates]
     shapes, many = reference.modes.shapes, len(reference.modes.values)
     if np.linalg.matrix_rank(shapes[:, theirs]) < np.linalg.matrix_rank(shapes):
@@ -183,7 +183,7 @@ def _incomplete(reference: Reference, answer: MechanismModes) -> str:
 
 
 def alike(reference: Reference, answer: MechanismModes) -> Array:
-    """MAC (m, k) of core's modes with a code's, over the coordinates both have."""
+    """MAC (m, k) of core's modes with a code's, over their common coordinates."""
     shared = [name for name in answer.coordinates if name in reference.modes.coordinates]
     ours = [reference.modes.coordinates.index(name) for name in shared]
     weight = reference.weight[np.ix_(ours, ours)]

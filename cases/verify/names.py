@@ -1,4 +1,4 @@
-"""Names that tell the rows of a run apart: no two of its blades, and no two of its columns, may have the same."""
+"""Unique names of blades and columns: no two blades, and no two columns, of a run may have the same name."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,19 +11,19 @@ from .mechanism_case import MechanismCase
 from .user_results import UserResults
 
 OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed tables")
-"""Columns of this package that are no codes, as in results and as in tables."""
+"""Columns of this package that are not codes: name in results → name in tables."""
 
 
 def unique(
     cases: Sequence[Case | MechanismCase], codes: Sequence[Description], user_results: Sequence[UserResults]
 ) -> None:
-    """Every name is that of one thing only.
+    """Check that every name is used only once.
 
     Args:
-        codes: as described.
+        codes: descriptions of the codes.
 
     Raises:
-        CaseError: one line that names both of two with the same name.
+        CaseError: if a name is used twice; one line that identifies both uses.
     """
     _once("case", ((v.name, _path(case)) for case in cases for v in case.variants), "leave one out, or rename it")
     tables = [name for case in cases if isinstance(case, Case) for name in case.text.compare.tables]

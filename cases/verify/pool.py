@@ -1,6 +1,6 @@
-"""Worker processes for a run that stop at once, and take the foreign codes they wait for with them.
+"""Worker processes for a run that stop immediately, together with the foreign codes they wait for.
 
-They do when told to, and when the process that started them is gone, however it went.
+They stop on request, and when the process that started them ends for any reason.
 """
 
 import os
@@ -28,30 +28,33 @@ _orphaned = False
 
 
 class Pool(ProcessPoolExecutor):
-    """``workers`` processes, one thread of linear algebra each; their temporary files, and those of the codes they run, are
-    in ``scratch`` if it is given: who removes that folder has removed all that a killed process left."""
+    """``workers`` processes with one thread of linear algebra each.
+
+    If ``scratch`` is given, it holds their temporary files and those of the codes they run: removing it removes
+    everything a killed process left.
+    """
 
     def __init__(self, workers: int, scratch: Path | None = None) -> None:
         os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
         super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(scratch,))
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As any executor's; a task that was handed over but not begun when the stop came is not begun."""
-        with _safe_path():  # processes are started when they are first needed
+        """See ``Executor``. A task that is pending when the pool stops is not started."""
+        with _safe_path():  # processes start when they are first needed
             return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
 
     def stop(self) -> None:
-        """Interrupt every process and drop what is pending; returns when all are gone."""
+        """Interrupt every process and drop pending tasks; return when all processes have ended."""
         for child in active_children():
             if child.pid is not None:
-                with suppress(ProcessLookupError):  # it has just gone
+                with suppress(ProcessLookupError):  # it has just ended
                     os.kill(child.pid, signal.SIGINT)
         self.shutdown(wait=True, cancel_futures=True)
 
 
 @contextmanager
 def _safe_path() -> Iterator[None]:
-    """Python processes that are started meanwhile execute no ``random.py`` of the current folder."""
+    """Prevent Python processes started meanwhile from importing modules of the current folder, such as ``random.py``."""
     before = os.environ.get(SAFE_PATH)
     os.environ[SAFE_PATH] = "1"
     try:
@@ -63,7 +66,7 @@ def _safe_path() -> Iterator[None]:
 
 
 def _begin(scratch: Path | None) -> None:
-    os.environ.pop(SAFE_PATH, None)  # it was meant for this process, and not for what foreign codes start
+    os.environ.pop(SAFE_PATH, None)  # meant for this process, not for processes started by foreign codes
     if scratch:
         os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -76,14 +79,14 @@ def _follow_parent() -> None:
     if (parent := parent_process()) and (here := main_thread().ident):
         parent.join()
         _orphaned = True
-        for _ in range(3):  # one may come just where the executor's loop catches everything
+        for _ in range(3):  # one may arrive where the executor's loop catches everything
             signal.pthread_kill(here, signal.SIGTERM)
             sleep(2)
         os._exit(1)
 
 
 def _leave(number: int, frame: FrameType | None) -> None:
-    """Unwind whatever runs (a wait for a foreign code kills it on its way out), once; without a parent, whenever told."""
+    """Unwind the running task once (a wait for a foreign code kills that code); without a parent, at every signal."""
     global _leaving
     if _orphaned or not _leaving:
         _leaving = True
@@ -96,5 +99,5 @@ def _unless_leaving(fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
     try:
         return fn(*args, **kwargs)
     finally:
-        if _orphaned:  # nobody is left to hear of the result, or to say that there is no more to do
+        if _orphaned:  # no process is left to receive the result or to end this one
             os._exit(1)

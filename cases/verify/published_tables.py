@@ -1,4 +1,4 @@
-"""Printed tables as columns of the matrix: the series that are about a case's blade, at the speeds both have."""
+"""Printed tables as columns of the matrix: the series for a case's blade, at the common speeds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,11 +25,11 @@ class Printed:
     """A series of printed numbers for one blade.
 
     Attributes:
-        name: the table's and the series', ``park2010/present``.
-        source: the table's, ``park2010``.
+        name: name of the table and the series, ``park2010/present``.
+        source: name of the table, ``park2010``.
         series: the numbers.
-        unit: what the series' frequencies are multiplied by to be rad/s.
-        speed: what its speeds are multiplied by.
+        unit: factor from the series' frequencies to rad/s.
+        speed: factor from its speeds to rad/s.
     """
 
     name: str
@@ -50,7 +50,7 @@ def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
     """The series of the tables ``names`` whose beam is this blade.
 
     Raises:
-        TableError: if there is no such table.
+        TableError: if a table does not exist.
     """
     return [
         Printed(f"{name}/{series.name}", name, series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
@@ -62,7 +62,7 @@ def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
 
 
 UNITS = {"rad/s": (1.0, 1.0), "rpm, Hz": (2 * np.pi, np.pi / 30)}
-"""What frequencies and speeds of a table are multiplied by to be rad/s; dimensionless ones by the beam's own rate."""
+"""Factors from frequencies and speeds of a table to rad/s; for dimensionless ones the beam's reference frequency."""
 
 
 def _rate(blade: Blade) -> float:
@@ -86,7 +86,7 @@ def _alike(blade: Blade, series: Series) -> bool:
 def rows(
     head: Head, table: Printed, blade: Blade, source: Discretisation | None, core: Sequence[tuple[float, Reference]]
 ) -> tuple[list[Cell], list[Level]]:
-    """Cells of every number that the table has for core's modes; ``source``: what it was computed with, if known."""
+    """Cells of every number in the table for core's modes; ``source`` is the discretisation of the source, if known."""
     cells = []
     held = table.series
     if held.target:
@@ -111,7 +111,7 @@ def rows(
 def discretised(
     blade: Blade, omega: float, model: Effects, reference: Reference, source: Discretisation
 ) -> list[Coarse | None]:
-    """Core's answers for the reference's modes in the source's discretisation, and their limits; None without a partner."""
+    """Core's answers for the reference's modes in the source's discretisation, with limits; None without a partner."""
     n, wanted = source.elements, reference.core.wanted
 
     def ask(runs: Sequence[Run]) -> list[Answer]:

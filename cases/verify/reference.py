@@ -1,4 +1,4 @@
-"""What a code is compared with: core with the effects that the code keeps, and what the missing ones would change."""
+"""The reference of a code: core with the effects that the code keeps, and the change due to the missing effects."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
@@ -20,10 +20,10 @@ class Reference:
 
     Attributes:
         core: converged modes.
-        full: the same modes' frequencies with all effects, rad/s; None where no mode with all effects resembles them.
-        likeness: MAC of each mode with the one with all effects.
-        effects: for each mode, what leaving out each effect that the model lacks does to it; empty where all of them
-            together do no more than the target.
+        full: frequencies of the same modes with all effects, rad/s; None if no mode with all effects corresponds.
+        likeness: MAC of each mode with its counterpart with all effects.
+        effects: for each mode, its change due to each effect that the model lacks; empty if the change due to all of
+            them together is within the target.
     """
 
     core: Converged
@@ -33,26 +33,26 @@ class Reference:
 
 
 MAJORITY = 0.5
-"""Least MAC of core's modes with and without an effect that changes shapes too: at most one mode can be so alike."""
+"""Least MAC of core's modes with and without an effect that also changes shapes: at most one mode can reach it."""
 
 References = dict[Effects, list[Reference | Failure]]
-"""By model, at each speed."""
+"""Model → references at each speed."""
 
 
 def felt(model: Effects, blade: Blade, omega: float = 1.0) -> Effects:
-    """The model as this blade feels it at this speed: what could make no difference is not lacking.
+    """The model without irrelevant omissions: an effect that cannot change this blade at this speed is not missing.
 
-    A blade without rotary inertia cannot lack it; at rest only rotary inertia is left to lack.
+    A blade without rotary inertia cannot lack it; at rest only rotary inertia can be missing.
     """
     inertia = model.rotary_inertia or not blade.mass[:, 3:, 3:].any()
     return replace(model if omega else ALL_EFFECTS, rotary_inertia=inertia)
 
 
 def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Effects]) -> References:
-    """Core's references with all effects, and with those of each of ``models``.
+    """Core's references with all effects, and with the effects of each of ``models``.
 
     Raises:
-        CaseError: if with all effects there is no stable steady state at one of the speeds, or too few modes.
+        CaseError: if core with all effects has no stable steady state at one of the speeds, or too few modes.
     """
     models = set(models) | {ALL_EFFECTS}
     by_speed = [_at(blade, omega, compare, models) for omega in speeds]
@@ -82,7 +82,7 @@ def _reference(
     values = [s.estimate.value if s.estimate else None for s in mine.modes]
     shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
     effects: list[list[Effect]] = [[] for _ in values]
-    if any(shift is None or abs(shift) > target for shift in shifts):  # each effect alone is worth solving for
+    if any(shift is None or abs(shift) > target for shift in shifts):  # solve for each effect alone
         for name in (f.name for f in fields(model) if not getattr(model, f.name)):
             without, _ = _partners(mine, solve(replace(ALL_EFFECTS, **{name: False})))
             for found, f, reference in zip(effects, without, whole, strict=True):
@@ -95,7 +95,7 @@ def _change(without: float | None, whole: float | None) -> float | None:
 
 
 def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
-    """Frequencies in ``other`` of the modes of ``mine``, and how alike the shapes are."""
+    """Frequencies in ``other`` of the modes of ``mine``, and the MACs of the shapes."""
     if isinstance(other, Failure):
         return (None,) * len(mine.modes), (0.0,) * len(mine.modes)
     theirs = dict(zip(other.wanted.indices, other.modes, strict=True))

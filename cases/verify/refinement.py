@@ -1,6 +1,7 @@
-"""One solver's frequencies of one blade at many speeds, refined until they are sure enough.
+"""One solver's frequencies of one blade at many speeds, refined until they are converged.
 
-Every refinement's modes are paired with the same reference modes, so that a sequence of frequencies belongs to one mode.
+The modes of every refinement are paired with the same reference modes, so that a sequence of frequencies belongs to one
+mode.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,14 +20,14 @@ Array = NDArray[np.float64]
 Ask = Callable[[Sequence[Run]], list[Answer]]
 
 SURE = 2e-4
-"""A code is refined until its own uncertainty, relative, is no more than this."""
+"""A code is refined until its relative uncertainty is at most this."""
 
 
 @dataclass(frozen=True)
 class Refining:
-    """How a solver is refined: ``levels`` first, all of them; then twice the last, up to ``cap``, until ``sure``.
+    """Refinement of a solver: all ``levels`` first; then the last is doubled, up to ``cap``, until ``sure``.
 
-    ``bracket``: the solver declares that it brackets its own answer by ``Modes.uncertainty``, so that no refinement is needed.
+    ``bracket``: the solver gives an error bound, ``Modes.uncertainty``, so that no refinement is needed.
     """
 
     levels: tuple[int, ...]
@@ -44,7 +45,7 @@ class RefinedMode:
         estimate: None if no refinement had a partner for the mode.
         partner: at the finest refinement.
         history: (elements, frequency in rad/s) of every refinement that had a partner.
-        bracketed: whether the uncertainty is the bracket that the code declares rather than had by refinement.
+        bracketed: whether the uncertainty is the error bound of the code rather than from refinement.
     """
 
     estimate: Estimate | None
@@ -55,7 +56,7 @@ class RefinedMode:
 
 @dataclass(frozen=True)
 class Refinements:
-    """A solver's answer at one speed: its modes at every refinement, and why the finest asked for is not there."""
+    """A solver's answer at one speed: its modes at every refinement, and why the finest is missing, if it is."""
 
     answers: tuple[Modes, ...]
     failure: Failure | None = None
@@ -77,14 +78,14 @@ def solve(
     count: int,
     wanted: Callable[[float, Sequence[Modes]], Wanted],
 ) -> list[Refinements]:
-    """Studies at each speed. Coarse refinements are asked for first, so that a time limit costs the fine ones.
+    """Refinements at each speed. Coarse ones are solved first, so that a time limit affects only the fine ones.
 
     Args:
         ask: the solver.
         speeds: rad/s.
         refining: how it is refined.
-        count: how many modes to ask for.
-        wanted: what must be sure enough at a speed, given the answers there so far (one at least).
+        count: number of modes to request.
+        wanted: modes that must converge at a speed, from the answers at that speed so far (at least one).
     """
     levels = list(refining.levels)
     runs = [(omega, n, count) for n in levels for omega in speeds]
@@ -92,7 +93,7 @@ def solve(
     failed: dict[float, Failure] = {}
     while runs:
         for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
-            wrong = omega in failed and failed[omega].kind == "nonsense"  # stays, whatever other refinements give
+            wrong = omega in failed and failed[omega].kind == "nonsense"  # final, whatever other refinements give
             if isinstance(answer, Modes) and solved[omega] and answer.elements <= solved[omega][-1].elements:
                 answer = Failure(
                     "nonsense", f"elements: {answer.elements} after {solved[omega][-1].elements}: not refined"
@@ -121,7 +122,7 @@ def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
 
 
 def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[RefinedMode]:
-    """Each wanted mode's estimate from a solver's answers at rising refinements; ``bracket`` as in ``Refining``."""
+    """The estimate of each wanted mode from a solver's answers, coarse to fine; ``bracket`` as in ``Refining``."""
     pairs = [pair(wanted.reference, modes, wanted.indices, wanted.weight) for modes in answers]
     return [_follow(answers, [level[i] for level in pairs], order, bracket) for i in range(len(wanted.indices))]
 

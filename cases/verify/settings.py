@@ -1,4 +1,4 @@
-"""What a report says of a case: its words, and the facts of each blade that every code was given."""
+"""Description of a case in a report: its texts, and the properties of each blade that every code was given."""
 
 from typing import get_args
 
@@ -14,11 +14,11 @@ from ..judge.verdict import unsigned
 from .mechanism_case import MechanismCase, setting
 
 NOT_USED = "in its files, not used"
-"""The fact that lists what a blade's files hold and the blade does not."""
+"""The fact that lists data in a blade's files that the blade does not use."""
 
 
 def settings(case: Case | MechanismCase) -> tuple[Setting, ...]:
-    """One for each blade of the case, or for its mechanism."""
+    """One setting for each blade of the case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         return (setting(case),)
     return tuple(_setting(case, variant) for variant in case.variants)

@@ -1,9 +1,9 @@
-"""The store of answers: one SQLite file in the user's cache folder, from which a run takes what an earlier run computed.
+"""The store of answers: one SQLite file in the user's cache folder, from which a run reuses earlier answers.
 
-An answer belongs to a key: the digest of its question (``identity.digest``: blade, speeds, refinement, code and version, the
-sources of this package, the versions of Python and the libraries) and of the platform. Answers of a code that is not part of
-this package are not stored: its source may call what no digest covers. Nor is an answer with a failure in it: a limit of time
-or memory may have been the reason. Nothing that is read is executed, see ``stored``.
+The key of an answer is the digest of its question (``identity.digest``: blade, speeds, refinement, code and version,
+the sources of this package, the versions of Python and the libraries) and of the platform. Answers of a code that is
+not part of this package are not stored: its source may call code that no digest covers. Answers with a failure are not
+stored either: a limit of time or memory may be the reason. No content of the file is executed, see ``stored``.
 """
 
 import os
@@ -39,7 +39,7 @@ SCHEMA = """create table if not exists answers
 
 @dataclass(frozen=True)
 class Kept:
-    """What the store holds under one label: number of answers, bytes, and when the first and the last were computed (s)."""
+    """Contents of the store under one label: number of answers, bytes, and times of the first and the last answer (s)."""
 
     label: str
     count: int
@@ -49,18 +49,18 @@ class Kept:
 
 
 def path() -> Path:
-    """Where the store is."""
+    """Path of the store."""
     return cache() / NAME
 
 
 class Store:
-    """An open store; several processes may have it open. What cannot be read or written counts as not there."""
+    """An open store; several processes may open it. An answer that cannot be read or written counts as missing."""
 
     def __init__(self, file: Path) -> None:
-        """Open a store, making it if it is not there.
+        """Open a store; create it if it does not exist.
 
         Raises:
-            OSError: the folder cannot be written to, or others can write to it; or the file is not a store.
+            OSError: if the folder is not writable, or other users can write to it, or the file is not a store.
         """
         if not compiled_files.folder(file.parent.parent, file.parent.name):
             raise OSError(f"{file.parent}: not a folder that this user, and nobody else, can write to")
@@ -74,10 +74,10 @@ class Store:
             raise OSError(f"{file}: {error}") from error
 
     def get(self, key: str) -> tuple[Any, float]:
-        """An answer, and when it was computed (s since 1970).
+        """Return an answer and the time it was computed (s since 1970).
 
         Raises:
-            KeyError: if it is not there; a damaged one is removed.
+            KeyError: if it is not stored; a damaged answer is removed.
         """
         try:
             row = self.base.execute("select sum, value, computed from answers where key = ?", (key,)).fetchone()
@@ -93,19 +93,19 @@ class Store:
             raise KeyError(key) from error
 
     def put(self, key: str, label: str, value: Any) -> None:
-        """Keep an answer."""
+        """Store an answer."""
         text = msgspec.json.encode(stored.encode(value))
         row = (key, label, time.time(), sha256(text).digest(), text)
         with suppress(sqlite3.Error):
             self.base.execute("insert or replace into answers values (?, ?, ?, ?, ?)", row)
 
     def kept(self) -> list[Kept]:
-        """What there is, by label."""
+        """Contents of the store, by label."""
         query = "select label, count(*), sum(length(value)), min(computed), max(computed) from answers group by label"
         return [Kept(*row) for row in self.base.execute(f"{query} order by label")]
 
     def damaged(self) -> list[str]:
-        """Keys of answers that are not as they were written."""
+        """Keys of damaged answers."""
         bad = []
         for key, checksum, value in self.base.execute("select key, sum, value from answers"):
             try:
@@ -115,7 +115,7 @@ class Store:
         return bad
 
     def prune(self, before: float) -> int:
-        """Remove the answers computed before a time (s since 1970); how many they were."""
+        """Remove the answers computed before a time (s since 1970) and return their number."""
         count = self.base.execute("delete from answers where computed < ?", (before,)).rowcount
         self.base.execute("vacuum")
         return count
@@ -135,10 +135,10 @@ def _read(checksum: bytes, text: bytes) -> Any:
 
 
 class Cached(Executor):
-    """An executor that takes what it can from a store and keeps what it had to run.
+    """An executor that reuses stored answers and stores new ones.
 
     Attributes:
-        taken: when each of the answers taken from the store was computed, s since 1970.
+        taken: times at which the answers taken from the store were computed, s since 1970.
         asked: number of tasks submitted.
     """
 
@@ -170,13 +170,13 @@ class Cached(Executor):
 
 
 def question(fn: Callable[..., Any], *arguments: Any) -> str:
-    """The key of an answer: of its question, and of the platform, whose arithmetic rounds in its own way."""
+    """The key of an answer: digest of its question and of the platform, as rounding depends on the platform."""
     here = (platform.system(), platform.machine(), platform.processor(), os.environ.get("OPENBLAS_CORETYPE", ""))
     return digest(fn, *arguments, here)
 
 
 def storable(fn: Callable[..., Any]) -> bool:
-    """Whether a task's answer is determined by its digest: not if a code from elsewhere, or of no known version, takes part."""
+    """Whether a task's digest determines its answer: not for an external code or a code of unknown version."""
     return not isinstance(fn, Column) or (not fn.adapter and bool(fn.head.version or fn.head.role == "table"))
 
 
@@ -187,7 +187,7 @@ def _label(fn: Callable[..., Any]) -> str:
 
 
 def _failing(value: Any) -> bool:
-    """Whether there is a failure, or a miss, somewhere in an answer."""
+    """Whether an answer contains a failure or a miss."""
     if isinstance(value, Failure):
         return True
     if isinstance(value, Cell):

@@ -1,6 +1,6 @@
-"""Answers as JSON and back, bit for bit: rows, references of core, whatever else a task of a run gives.
+"""Lossless conversion of answers to JSON and back: rows, references of core, and other results of a run's tasks.
 
-Only the dataclasses listed here are made again, by their fields; nothing that is read is executed.
+Only the dataclasses listed here are rebuilt, from their fields; no content is executed.
 """
 
 import zlib
@@ -41,10 +41,10 @@ NAMES = {kind: name for name, kind in TYPES.items()}
 
 
 def encode(value: Any) -> Any:
-    """The value in lists, strings and numbers: what JSON has no word for is a list that begins with its kind.
+    """Encode a value as lists, strings and numbers; types that JSON lacks become a list that begins with the type.
 
     Raises:
-        TypeError: if there is something in it that is not listed in ``TYPES``.
+        TypeError: if it contains a type that is not listed in ``TYPES``.
     """
     if isinstance(value, np.ndarray):
         packed = zlib.compress(np.ascontiguousarray(value).tobytes(), 1)
@@ -65,10 +65,10 @@ def encode(value: Any) -> Any:
 
 
 def decode(value: Any) -> Any:
-    """What ``encode`` was given.
+    """Decode a value written by ``encode``.
 
     Raises:
-        ValueError: if it is not what ``encode`` writes.
+        ValueError: if ``encode`` does not write such a value.
     """
     try:
         return _decode(value)
@@ -95,4 +95,4 @@ MAKE: dict[str, Callable[..., Any]] = {
     "list": lambda *members: [_decode(m) for m in members],
     "tuple": lambda *members: tuple(_decode(m) for m in members),
 }
-"""What makes each kind that is no dataclass."""
+"""Kind → constructor, for kinds that are not dataclasses."""

@@ -1,8 +1,8 @@
-"""Results without an adapter as columns of the matrix: those of a program are judged, measured ones are not.
+"""Results without an adapter as columns of the matrix: results of a program are judged, measured ones are not.
 
-Beside core's frequency S a measured one, D, has a comparison error E = S − D, and the uncertainty u_val of that from the
-numerical solution, the inputs and the data (ASME V&V 20-2009). Measurements are rarely taken at the speeds of a case: core is
-solved at theirs.
+A measured frequency D is compared with core's frequency S: the comparison error is E = S − D, and its uncertainty u_val
+follows from the numerical solution, the inputs and the data (ASME V&V 20-2009). Measurements are rarely taken at the
+speeds of a case, so core is solved at the measured speeds.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from .user_results import Given, UserResults, at
 
 
 def columns(variant: Variant, user_results: Sequence[UserResults], compare: Compare) -> list[Column]:
-    """A column for each file that has something about a blade."""
+    """A column for each file with results for a blade."""
     out = []
     for one in user_results:
         mine = [row for row in one.rows if row.blade in ("", variant.name)]
@@ -55,7 +55,7 @@ def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
 
 
 def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
-    """A cell for every measured frequency, at the case's speed where its own is that when rounded, else at its own."""
+    """A cell for every measured frequency: at the case's speed if the row's speed rounds to it, otherwise at the latter."""
     cells, solved = [], dict(core)
     for row in given:
         omega = next((omega for omega, _ in core if at(row, omega)), row.omega)
@@ -76,15 +76,15 @@ def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given]
 
 
 def _off(row: Given, omega: float) -> float:
-    """How far a frequency may be off, relative, where the row's speed is not quite ``omega``.
+    """Relative error of a frequency due to the difference of the row's speed from ``omega``.
 
-    By f² = f₀² + K Ω² it changes, relatively, no more than the speed does (Southwell 1921; K not negative).
+    By f² = f₀² + K Ω² the relative change is at most that of the speed (Southwell 1921; K not negative).
     """
     return abs(row.omega / omega - 1.0) if omega else 0.0
 
 
 def _without_partner(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
-    """The cell of a row about a mode that the case does not compare."""
+    """The cell of a row for a mode that the case does not compare."""
     called, known = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
     reason = f"line {row.line}: the case does not compare mode {called} here: it compares {known}"
     return empty(head, omega, "not applicable", reason)
@@ -95,7 +95,7 @@ def _names(reference: Reference) -> list[str]:
 
 
 def _place(row: Given, reference: Reference) -> int | None:
-    """Which of the modes that the case compares a row is of."""
+    """Index of a row's mode among the modes that the case compares; None if it is not compared."""
     if row.family:
         name = f"{row.family} {row.mode}"
         return _names(reference).index(name) if name in _names(reference) else None

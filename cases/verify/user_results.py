@@ -1,20 +1,20 @@
-"""Results without an adapter: frequencies in a CSV file, from any program or a test rig, as one more column of the matrix.
+"""Results without an adapter: frequencies in a CSV file, from any program or a test rig, as a column of the matrix.
 
-The file has a header, a line a frequency, and comments after ``#``::
+The file has a header, one line per frequency, and comments after ``#``::
 
     speed [rpm], frequency [Hz], mode
     0,           0.932,          flapwise 1
     15,          0.9586,         flapwise 1
 
-Speed may be in rad/s, rpm or gamma (of dimensionless cases), frequency in rad/s, Hz or gamma. A mode is called by its family
-(edgewise and lag mean chordwise) and the ordinal within it, as everywhere, or by its number from the lowest of all modes of
-the blade; the family may have a column of its own. Two more columns are optional: ``blade`` (as in ``southwell cases``:
-``park-blade/windpact``), needed if several are compared, and ``uncertainty [%]`` (or in the frequency's unit). Without that one
-a number is as sure as its digits: half a unit of the last.
+Speed may be in rad/s, rpm or gamma (dimensionless cases), frequency in rad/s, Hz or gamma. A mode is identified by its
+family (edgewise and lag mean chordwise) and its ordinal within the family, or by its number among all modes of the
+blade, from the lowest; the family may be in a separate column. Two columns are optional: ``blade`` (as in
+``southwell cases``: ``park-blade/windpact``), required if several blades are compared, and ``uncertainty [%]`` (or in
+the frequency's unit), by default half a unit of the last digit.
 
-With ``measured [Hz]`` in place of ``frequency [Hz]`` the file holds measurements, which are no code's answers. Their
-``uncertainty`` is one standard uncertainty; ``input uncertainty [%]`` is that of the simulation by its inputs. Both may be
-given for all rows at once (``Defaults``), and the first must be given. Speeds need not be among those of the case.
+With ``measured [Hz]`` in place of ``frequency [Hz]`` the file holds measurements. Their ``uncertainty`` is one standard
+uncertainty; ``input uncertainty [%]`` is that of the simulation due to its inputs. Both may be given for all rows at
+once (``Defaults``); the first is required. Speeds need not be among those of the case.
 """
 
 import math
@@ -39,13 +39,13 @@ INPUTS = "input uncertainty [%]"
 OTHERS = ("mode", "family", "blade", *UNCERTAINTY, INPUTS)
 FAMILIES = (*MOTIONS, MIXED)
 ALIASES = {"edgewise": "chordwise", "edge": "chordwise", "lag": "chordwise", "flap": "flapwise"}
-"""Names that other programs give the families."""
+"""Names of the families in other programs."""
 
 NUMBER = re.compile(r"\d+(\.\d*)?([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?")
 
 
 MOST, DIGITS = 1e9, 40
-"""The largest speed or frequency in any unit, and the characters of a number."""
+"""Largest speed or frequency in any unit, and the maximum number of characters of a number."""
 
 
 @dataclass(frozen=True)
@@ -53,14 +53,14 @@ class Given:
     """One frequency of the file.
 
     Attributes:
-        line: in the file, from 1.
+        line: line number in the file, from 1.
         blade: as in ``southwell cases``; empty if the file has no such column.
         omega: rotor speed, rad/s.
         slack: half a unit of the speed's last digit, rad/s.
-        family: empty where the mode is called by its number among all.
-        mode: ordinal within the family, or among all, from 1.
-        value: rad/s, and how sure it is: a bound, or of a measured one its standard uncertainty.
-        inputs: of a measured one the relative standard uncertainty of the simulation by its inputs.
+        family: empty if the mode is identified by its number among all modes.
+        mode: ordinal within the family, or number among all modes, from 1.
+        value: frequency, rad/s, and its uncertainty: a bound, or the standard uncertainty of a measurement.
+        inputs: for a measurement, the relative standard uncertainty of the simulation due to its inputs.
     """
 
     line: int
@@ -75,7 +75,7 @@ class Given:
 
 @dataclass(frozen=True)
 class UserResults:
-    """A file of results, what to call them, and whether they are measured."""
+    """The results in a file, their name, and whether they are measured."""
 
     name: str
     path: str
@@ -85,11 +85,11 @@ class UserResults:
 
 @dataclass(frozen=True)
 class Defaults:
-    """Relative standard uncertainties of measured frequencies that have none of their own in the file.
+    """Default relative standard uncertainties, for measured frequencies without uncertainties in the file.
 
     Attributes:
-        data: u_D over D; None where none is given.
-        inputs: u_input over S: what the uncertainty of the blade's properties makes of its frequencies.
+        data: u_D over D; None if not given.
+        inputs: u_input over S: the uncertainty of the frequencies due to that of the blade's properties.
     """
 
     data: float | None = None
@@ -98,7 +98,7 @@ class Defaults:
 
 @dataclass(frozen=True)
 class _Columns:
-    """Names of a file's columns; ``uncertainty`` is empty without one."""
+    """Names of a file's columns; ``uncertainty`` is empty if the column is missing."""
 
     speed: str
     frequency: str
@@ -114,10 +114,10 @@ class _Columns:
 
 
 def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults:
-    """The results in a CSV file; ``defaults`` are for measured ones.
+    """Read the results in a CSV file; ``defaults`` apply to measured ones.
 
     Raises:
-        CaseError: one line naming the file, the line, the field, the value, the likely cause and the remedy.
+        CaseError: if the file is invalid; one line with the file, line, field, value, likely cause and remedy.
     """
     (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
     columns = _header(header, f"{path}: line {first}")
@@ -136,7 +136,7 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
 
 
 def _header(header: Sequence[str], where: str) -> _Columns:
-    """The names of the columns of speed, frequency and uncertainty."""
+    """Names of the speed, frequency and uncertainty columns."""
     known = (*SPEED, *FREQUENCY, *MEASURED, *OTHERS)
     for column in header:
         if column not in known:
@@ -177,7 +177,7 @@ def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaul
     omega = number(columns.speed)
     size = number(columns.frequency, least=1e-9)
     value = from_print(row[columns.frequency], columns.unit)
-    least = 1e-9 if columns.measured else 0.0  # no measurement is exact
+    least = 1e-9 if columns.measured else 0.0  # measurements are never exact
     if row.get(columns.uncertainty, ""):
         relative = columns.uncertainty == "uncertainty [%]"
         u = number(columns.uncertainty, least, 100.0 if relative else size) / (100.0 if relative else size)
@@ -220,10 +220,12 @@ def _no_repeats(rows: Sequence[Given], path: Path, measured: bool) -> None:
 
 
 def check(user_results: Sequence[UserResults], variants: Sequence[Variant], codes: Iterable[str]) -> None:
-    """Every name is free, and every row is of a blade and a speed that the run has; a measured one of a speed in its range.
+    """Check that names are unused, and that the run has the blade and speed of every row.
+
+    The speed of a measured row only has to be within the range of the run's speeds.
 
     Raises:
-        CaseError: one line, as for ``read``.
+        CaseError: if not; one line, as for ``read``.
     """
     taken = set(codes)
     for one in user_results:
@@ -255,5 +257,5 @@ def check(user_results: Sequence[UserResults], variants: Sequence[Variant], code
 
 
 def at(row: Given, omega: float) -> bool:
-    """Whether a row's speed, as rounded as it is, is ``omega`` (rad/s)."""
+    """Whether a row's speed equals ``omega`` (rad/s) within its rounding."""
     return abs(row.omega - omega) <= max(row.slack * (1 + 1e-9), 1e-9 * omega)

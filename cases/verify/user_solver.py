@@ -1,6 +1,6 @@
-"""A solver that is only a function: its cells, judged in this process as any code's are, and what a miss looks like.
+"""A solver given as a function: its cells, judged in this process like those of any code.
 
-For a test of somebody else's solver, which needs no adapter and no process of its own.
+For tests of a user's solver, which needs neither an adapter nor a separate process.
 """
 
 import inspect
@@ -35,14 +35,14 @@ class UserSolver:
         solve: ``(blade, omega, elements, count)`` or ``(blade, omega)`` → frequencies and shapes. ``omega`` and the (m,)
             frequencies in rad/s; shapes (m, 21, 4) at ``core.modes.STATIONS``, as in ``Modes``, or (m, 21, 3) without the
             rotation about the blade's axis; any scale, real or complex, in any order of frequency.
-        name: of its column.
-        lacks: effects it leaves out, see ``Effects``: core is compared without them.
-        levels: refinements, coarse to fine; those of a function without ``elements`` count for nothing.
+        name: name of its column.
+        lacks: effects it omits, see ``Effects``: core is compared without them.
+        levels: refinements, coarse to fine; ignored for a function without ``elements``.
         order: order of convergence of its frequencies.
-        unsupported: why it cannot solve a blade; None if it can.
+        unsupported: returns why it cannot solve a blade; None if it can.
         cases: names of cases, or ``case/blade``; all by default.
-        target: largest relative difference; each case's own by default.
-        known: differences that are known: pattern of a test's name → cause, and the largest that it explains (relative).
+        target: largest relative difference; by default that of each case.
+        known: known differences: pattern of a test's name → cause, and the largest difference it explains (relative).
     """
 
     solve: Callable[..., tuple[Any, Any]]
@@ -67,8 +67,9 @@ class UserSolver:
 
 
 def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
-    """Its cells of one blade at all the case's speeds: against core, and against printed numbers that core agrees with,
-    with the table's effects and with the solver's.
+    """Cells of a solver for one blade at all speeds of the case: against core and against printed numbers.
+
+    Only printed numbers that core agrees with are used, with the effects of the table and with those of the solver.
 
     Raises:
         CaseError: if core cannot solve the blade.
@@ -99,7 +100,7 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
 
 
 def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
-    """What it answers; a mistake in what it returns is its failure, an exception in it is its author's to see."""
+    """Answers of the solver; an invalid return value becomes a failure, an exception propagates to the user."""
     out: list[Answer] = []
     for omega, elements, count in runs:
         found = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
@@ -119,14 +120,14 @@ def _modes(omega: float, elements: int, frequencies: Any, shapes: Any, exact: bo
     if not shape.any(axis=(1, 2)).all() or not len(values):
         raise ValueError(
             "no modes, or one whose shape is zero everywhere"
-        )  # neither could be told from a blade it cannot do
+        )  # neither could be distinguished from an unsupported blade
     order = np.argsort(values)
     sure = np.zeros(len(values)) if exact else np.zeros(0)
     return Modes(omega, values[order], shape[order], elements, uncertainty=sure)
 
 
 def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: References) -> list[Cell]:
-    """Its frequencies against printed numbers: those that core, with the table's effects, passes."""
+    """The solver's frequencies against the printed numbers that core, with the effects of the table, passes."""
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
         model = felt(table.series.effects, variant.blade)
@@ -146,14 +147,14 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
 
 
 def _agrees(reference: float | None, number: Cell) -> bool:
-    """Whether core without what the solver lacks passes a printed number too: else nobody can be held to it."""
+    """Whether core without the effects that the solver lacks also passes a printed number; otherwise it is not used."""
     if reference is None or not number.frequency:
         return False
     return judge(reference / number.frequency - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
 def _against(mine: Cell, number: Cell, printed: float) -> Cell:
-    """One frequency against one printed number; what is known of the first is known here."""
+    """One frequency against one printed number; a known difference of the frequency remains known."""
     difference = (mine.frequency or 0.0) / printed - 1.0
     unsure = None if mine.uncertainty is None else mine.uncertainty + (number.uncertainty or 0.0)
     verdict, reason = judge(difference, unsure, max(mine.target, number.target))
@@ -167,9 +168,9 @@ def _against(mine: Cell, number: Cell, printed: float) -> Cell:
 
 
 def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
-    """Which fault in core gives the frequency that a miss has; empty if none does.
+    """The fault in core that reproduces a wrong frequency; empty if none does.
 
-    One that explains nine tenths of the difference, at least.
+    It must explain at least nine tenths of the difference.
     """
     if cell.frequency is None or cell.reference is None or cell.difference is None:
         return ""
