@@ -64,7 +64,7 @@ class Calculix:
     def unsupported(self, blade: Blade) -> str | None:
         """A reason unless the blade is uniform and equivalent to a solid of rectangular section."""
         if not uniform(blade):
-            return "sections couple or vary, or there is curvature, twist, precone, pitch, tip mass or a root joint"
+            return "sections couple or vary, or curvature, twist, precone, pitch, tip mass or root joint: this bar has none"
         at = sample(blade, 0.0)
         if not np.isfinite([at.EA, at.EI_y, at.EI_z]).all():
             return "rigid in bending or stretch: a solid has finite EI and EA"
