@@ -35,9 +35,9 @@ def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[U
     """Draw the diagram.
 
     Lines are modes, coloured by their motion at each speed; in a veering, two lines exchange colours. The operating
-    range is shaded. A mode that violates the margin to n per revolution within it is underlaid in red. If the rays reach
-    only the lowest of many modes, these have a separate scale and the higher modes are above it on a coarser one. Points
-    of ``user_results``, such as those of a test rig, are drawn over the lines.
+    range is shaded. A mode that violates the margin to n per revolution within it is underlaid in red. If the rays
+    reach only the lowest of many modes, these have a separate scale and the higher modes are above it on a coarser
+    one. Points of ``user_results``, such as those of a test rig, are drawn over the lines.
     """
     with house():
         low, height = 0.95, 5.9
