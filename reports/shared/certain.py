@@ -1,4 +1,4 @@
-"""Numbers with the digits that their uncertainty leaves, and what a reader of frequencies must know about them."""
+"""Formats numbers with the digits that their uncertainty allows, and remarks on the accuracy of frequencies."""
 
 import math
 from collections.abc import Sequence
@@ -8,11 +8,11 @@ from ...core.solve import LARGE_STRAIN
 from .units import Units
 
 DIGITS = 7
-"""Of a frequency, at most."""
+"""Largest number of digits of a frequency."""
 
 
 def certain(value: float, uncertainty: float, digits: int = DIGITS) -> str:
-    """A number with the digits that a relative uncertainty leaves, ``digits`` at most; ``?`` if it leaves none."""
+    """A number with the digits that a relative uncertainty allows, at most ``digits``; ``?`` if no digit is certain."""
     if not uncertainty < 0.5:
         return "?"
     if value == 0.0:
@@ -25,12 +25,12 @@ def certain(value: float, uncertainty: float, digits: int = DIGITS) -> str:
 
 
 def relative(uncertainty: float) -> str:
-    """A relative uncertainty, ``3e-07``."""
+    """A relative uncertainty as text, such as ``3e-07``."""
     return f"{uncertainty:.0e}" if math.isfinite(uncertainty) else "unknown"
 
 
 def remarks(rows: Sequence[Named], accuracy: float | None, units: Units) -> list[str]:
-    """What a reader of the frequencies must know: large steady strains, and an ``accuracy`` that was not reached."""
+    """Remarks on large steady strains, and on an ``accuracy`` (relative) that was not reached."""
     out = []
     strained = {r.omega: r.strain for r in rows if r.strain > LARGE_STRAIN}
     if strained:

@@ -1,4 +1,4 @@
-"""The console: where commands print, how wide, and progress while a run goes on."""
+"""The console: standard output of the commands, its width, and the display of progress."""
 
 import time
 from types import TracebackType
@@ -9,20 +9,20 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from ...cases.verify.matrix import Progress as Step
 
 WIDE = 240
-"""Columns for tables that go into a file or a log."""
+"""Width of tables written to a file or a log, characters."""
 
 SILENCE = 10.0
-"""Seconds between two lines in a log."""
+"""Shortest time between two lines of progress in a log, seconds."""
 
 
 def output() -> Console:
-    """Where tables go: standard output; wide if that is no terminal."""
+    """The console for tables on standard output; ``WIDE`` characters wide unless it is a terminal."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=WIDE)
 
 
 class Watch:
-    """A bar with what is running and what is left, on standard error; a line now and then where there is no terminal."""
+    """Progress of a run on standard error: a bar on a terminal, otherwise a line from time to time."""
 
     def __init__(self) -> None:
         self.console = Console(stderr=True, highlight=False)
@@ -49,7 +49,7 @@ class Watch:
         self.bar.stop()
 
     def show(self, step: Step) -> None:
-        """Bring the bar up to date."""
+        """Update the progress."""
         running = ", ".join(step.running)
         self.bar.update(self.task, completed=step.done, total=step.total, description=running)
         if self.bar.disable and running and time.monotonic() - self.spoke > SILENCE:

@@ -1,4 +1,4 @@
-"""Output that a CI system cannot take for commands."""
+"""Output that a CI system does not interpret as commands."""
 
 import sys
 from collections.abc import Iterable
@@ -6,18 +6,19 @@ from typing import Any, TextIO
 
 
 class LogSafe:
-    """A stream of which no line is a command to a CI system, whatever a label or a message says.
+    """A stream that writes no line that a CI system would execute as a command.
 
-    GitHub's runner obeys lines that begin with ``::``, after blanks, and ``##[`` anywhere (actions/runner, ActionCommand.cs).
+    GitHub's runner executes lines that begin with ``::``, after optional blanks, and ``##[`` anywhere (actions/runner,
+    ActionCommand.cs).
     """
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
         self.blank = True
-        """Whether nothing but blanks is on the line so far."""
+        """Whether the current line has only blanks so far."""
 
     def write(self, text: str) -> int:
-        """Write, with a blank inside what would be a command."""
+        """Write text; a blank is inserted into anything that would be a command."""
         for piece in text.splitlines(keepends=True):
             safe = piece.replace("##[", "## [")
             if self.blank and safe.lstrip().startswith("::"):
@@ -28,7 +29,7 @@ class LogSafe:
         return len(text)
 
     def writelines(self, lines: Iterable[str]) -> None:
-        """Write each."""
+        """Write each line."""
         for line in lines:
             self.write(line)
 
@@ -37,5 +38,5 @@ class LogSafe:
 
 
 def commands() -> TextIO:
-    """Standard output for commands that are meant as such."""
+    """Standard output for intended commands."""
     return sys.stdout.stream if isinstance(sys.stdout, LogSafe) else sys.stdout

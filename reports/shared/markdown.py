@@ -7,20 +7,20 @@ from html import escape
 import pandas as pd
 
 TEXT = re.compile(r"([\\`*_{}\[\]|~])")
-"""What Markdown could take for markup."""
+"""Characters and patterns that Markdown could interpret as markup."""
 
 
 def plain(text: object) -> str:
-    """Text as text in a line or a table's cell, whatever a case file or a code put into it."""
+    """Text with Markdown escaped, for a line or a table cell."""
     return TEXT.sub(r"\\\1", escape(" ".join(str(text).split()), quote=False))
 
 
 def table(rows: Sequence[dict[str, str]]) -> str:
-    """A Markdown table of ready-made cells; numbers stay as they are written, columns are not filled up with spaces."""
+    """A Markdown table of formatted cells; numbers stay as written, and columns are not padded."""
     text = pd.DataFrame(list(rows)).to_markdown(index=False, disable_numparse=True)
     return re.sub(r":-+\|", ":--|", re.sub(r" +\|", " |", text))
 
 
 def anchor(heading: str) -> str:
-    """The fragment that GitHub, and this package's HTML, give a heading: ``park-blade/windpact`` → ``park-bladewindpact``."""
+    """The fragment of a heading on GitHub and in the HTML report: ``park-blade/windpact`` → ``park-bladewindpact``."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

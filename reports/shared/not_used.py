@@ -1,4 +1,4 @@
-"""Lists what a blade's files hold and the blade does not: once, in every command's output and on every page."""
+"""Lists the quantities in a blade's files that are not used, in the output of every command and on every page."""
 
 from collections.abc import Iterable
 
@@ -8,11 +8,11 @@ from ...cases.input.readers import Unused
 
 
 def lines(unused: Iterable[Unused]) -> tuple[str, ...]:
-    """One line per quantity, each once."""
+    """One line per quantity, without repetition."""
     return tuple(dict.fromkeys(str(quantity) for quantity in unused))
 
 
 def show(unused: Iterable[Unused], console: Console) -> None:
-    """Print the lines."""
+    """Print one line per unused quantity."""
     for line in lines(unused):
         console.print(line, style="yellow", markup=False, soft_wrap=True)

@@ -1,4 +1,4 @@
-"""Exit statuses of every command, in one place; a shell script or a CI job accepts those that it means, and no others."""
+"""Exit statuses of all commands."""
 
 PASSED, FAILED, BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
 
@@ -10,9 +10,9 @@ MEANING: dict[int, str] = {
     INTERNAL: "internal error: a defect of this program",
     INTERRUPTED: "interrupted from the keyboard",
 }
-"""What each says; as in ``docs/ci.md``."""
+"""Meaning of each status, as in ``docs/ci.md``."""
 
 
 def listed() -> str:
-    """All of them in a sentence."""
+    """All statuses in one sentence."""
     return ", ".join(f"{status} {meaning.partition(':')[0]}" for status, meaning in MEANING.items())

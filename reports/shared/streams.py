@@ -1,4 +1,4 @@
-"""Standard streams that never end a command: closed, read by nobody any more, or without a way to write a character."""
+"""Standard streams that do not end a command if they are closed, have no reader, or cannot encode a character."""
 
 import io
 import os
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class _Output(io.FileIO):
-    """A stream's file. A reader of a pipe that has seen enough is no error: what is written from then on is dropped."""
+    """A standard stream that discards output once its reader has closed the pipe."""
 
     def write(self, data: Any) -> int | None:
         try:
@@ -24,16 +24,16 @@ def _nowhere(number: int) -> None:
 
 
 def prepare() -> None:
-    """Make standard output and standard error take any text: signs that an encoding has not are written as ``?``.
+    """Prepare standard output and standard error for any text; characters that cannot be encoded are written as ``?``.
 
-    Streams that were closed lead nowhere; without that, the next file that is opened would take their place. Streams that a
-    caller has replaced, as a test does, are left alone.
+    Closed streams are connected to the null device; otherwise the next file opened would get their number. Streams that
+    the caller has replaced, such as in a test, are left unchanged.
     """
     for number in range(3):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number, which is this one
+            os.open(os.devnull, os.O_RDWR)  # opens the lowest free number, which is this one
     for name, number in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)
         if stream is None or stream is getattr(sys, f"__{name}__"):
@@ -53,7 +53,7 @@ def _open(number: int, stream: io.TextIOWrapper | None) -> io.TextIOWrapper:
 
 
 def finish() -> None:
-    """Write what is left, or drop it where that fails: Python would end with a status of its own."""
+    """Flush the streams, and discard what cannot be written; otherwise Python would end with a status of its own."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

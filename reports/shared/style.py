@@ -1,7 +1,7 @@
-"""How every figure looks: one palette, one marker a code, the same bytes for the same numbers.
+"""The style of every figure: one palette, one marker per code, and the same bytes for the same numbers.
 
-Colours are those of Okabe and Ito (Color Universal Design, 2008), told apart with any common colour vision; no meaning
-rests on colour alone: codes differ in marker too, families in line style.
+The colours are those of Okabe and Ito (Color Universal Design, 2008), which people with any common colour vision can
+distinguish. Colour is never the only distinction: codes also differ in marker, families in line style.
 """
 
 from collections.abc import Iterator, Sequence
@@ -60,7 +60,7 @@ class Look:
 
 @contextmanager
 def house() -> Iterator[None]:
-    """The settings under which a figure is made and saved, whatever the user's own are."""
+    """Apply the settings under which figures are drawn and saved, regardless of the user's Matplotlib settings."""
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(RC)
@@ -68,7 +68,7 @@ def house() -> Iterator[None]:
 
 
 def looks(codes: Sequence[str]) -> dict[str, Look]:
-    """A look for each code, by its place: the same codes look the same in every figure of a run."""
+    """The look of each code by its position in the list, so that it is the same in every figure of a run."""
     return {
         code: Look(COLOURS[k % len(COLOURS)], MARKERS[(k + k // len(COLOURS)) % len(MARKERS)])
         for k, code in enumerate(codes)
@@ -76,11 +76,11 @@ def looks(codes: Sequence[str]) -> dict[str, Look]:
 
 
 WIDTH = 8.6
-"""Of every figure, inches."""
+"""Width of every figure, inches."""
 
 
 def key(figure: Figure, handles: Sequence[Line2D], left: float, across: int = 4) -> None:
-    """The legend, in a band along the lower edge that ``band`` says the height of."""
+    """Draw the legend in a band along the lower edge, whose height is given by ``band``."""
     figure.legend(
         handles=handles,
         loc="lower left",
@@ -93,19 +93,19 @@ def key(figure: Figure, handles: Sequence[Line2D], left: float, across: int = 4)
 
 
 def band(count: int, across: int = 4) -> float:
-    """Height (inches) of the band that holds a legend of ``count`` entries, and of the axis' label above it."""
+    """Height (inches) of the band for a legend of ``count`` entries and the axis label above it."""
     return 0.62 + 0.185 * -(-count // across)
 
 
 def title(figure: Figure, text: str, below: str = "") -> None:
-    """The figure's title in its upper left corner, and a quieter line under it."""
+    """Draw the figure's title in the upper left corner, with an optional muted line below it."""
     height = figure.get_figheight()
     figure.text(0.012, 1 - 0.25 / height, text, weight="bold", size=10.5)
     figure.text(0.012, 1 - 0.44 / height, below, size=8.5, color=MUTED)
 
 
 def svg(figure: Figure) -> str:
-    """The figure as an SVG that depends on the figure alone."""
+    """The figure as SVG without date or random identifiers."""
     out = StringIO()
     with house():
         figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "southwell"})
@@ -122,7 +122,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
-    """Positions as near as can be to those wanted, in their order, no two nearer than ``gap``: labels beside lines."""
+    """Positions as near as possible to ``wanted``, in the same order, at least ``gap`` apart; for labels at lines."""
     order = sorted(range(len(wanted)), key=lambda k: wanted[k])
     blocks: list[tuple[float, list[int]]] = []  # centre and members of labels that touch
     for k in order:
@@ -139,12 +139,12 @@ def spread(wanted: Sequence[float], gap: float) -> list[float]:
 
 
 def beside(axes: Axes, labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
-    """Labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
+    """Draw labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
 
     Args:
-        axes: with its limits and scales settled.
-        labels: height, text, and colour if not that of ink.
-        size: of the letters, points.
+        axes: axes whose limits and scales are final.
+        labels: height, text, and optional colour.
+        size: font size, points.
     """
     figure = axes.figure.figure
     assert figure is not None

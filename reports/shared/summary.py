@@ -1,6 +1,6 @@
-"""What a reader wants to know first: how many cells, the verdict on each code, the worst difference and where.
+"""Summary of a run: number of cells, the verdict on each code, and the worst difference and where it is.
 
-Pure functions of a run, shared by terminal, Markdown and figures, so that all three say the same.
+Pure functions of a run, shared by terminal, Markdown and figures, so that all report the same.
 """
 
 from collections import Counter
@@ -22,7 +22,7 @@ SYMBOL: dict[Verdict, str] = {
     "not applicable": "–",
     "not run": "○",
 }
-"""A sign beside each verdict's name; never instead of it."""
+"""Sign of each verdict, always shown in addition to another distinction."""
 
 WORST_FIRST: tuple[Verdict, ...] = (
     "fail",
@@ -36,29 +36,31 @@ WORST_FIRST: tuple[Verdict, ...] = (
 )
 
 PAPER = 1e-3
-"""The usual target, relative: the paper's. A wider one is shown beside every number that is held to it."""
+"""The usual target, relative, as in the paper. A wider target is shown next to every number it applies to."""
 
 TINY = 1e-6
-"""Targets below this are those of the same discretisation, and percent is no unit for them."""
+"""Targets below this are those of codes with the same discretisation; such differences are not shown in percent."""
 
 BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
 """Verdicts that make a run end with status 1."""
 
 
 def compared(cells: Iterable[Cell]) -> bool:
-    """Whether anything foreign was compared with core: a number that was judged, or an answer that is due and missing."""
+    """Whether an external result was compared with core: a judged number, or a required answer that is missing."""
     foreign = (c for c in cells if c.role != "discretisation" and c.shares != "everything")
     return any(c.verdict in (*BAD, "pass", "known difference") for c in foreign)
 
 
 def incomplete(run: Run) -> str:
-    """What a reader must know before all else of a run that is not complete; empty if it is."""
+    """A note on an incomplete run; empty if the run is complete."""
     return f"Incomplete: {run.unfinished}." if run.unfinished else ""
 
 
 def status(run: Run) -> int:
-    """Exit status of a run, see ``statuses``: passed if something was compared, nothing fails or is inconclusive, every blade
-    is confirmed by as many groups as required, and every seeded fault is detected.
+    """Exit status of a run, see ``statuses``.
+
+    A run passes if something was compared, nothing fails or is inconclusive, every blade is confirmed by as many groups
+    as required, and every seeded fault is detected.
     """
     if run.unfinished:
         return INCOMPLETE
@@ -68,15 +70,15 @@ def status(run: Run) -> int:
 
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:
-    """The verdict that stands for several cells."""
+    """The worst verdict of the cells."""
     found = {c.verdict for c in cells}
     return next(v for v in WORST_FIRST if v in found)
 
 
 def size(cell: Cell) -> float | None:
-    """How far the code is from the answer, relative.
+    """The relative difference of a cell from the answer.
 
-    Where it agrees with core lacking the same effects, its known difference is that from core with all of them.
+    If a code agrees with core without the same effects, its known difference is that from core with all effects.
     """
     agrees = cell.difference is not None and abs(cell.difference) <= cell.target
     if cell.verdict == "known difference" and agrees and cell.frequency is not None and cell.full is not None:
@@ -85,19 +87,19 @@ def size(cell: Cell) -> float | None:
 
 
 def largest(cells: Iterable[Cell]) -> Cell | None:
-    """The cell that is farthest from the answer; None if none has numbers."""
+    """The cell with the largest difference; None if no cell has one."""
     return max((c for c in cells if size(c) is not None), key=lambda c: abs(size(c) or 0.0), default=None)
 
 
 def worst(cells: Iterable[Cell]) -> Cell | None:
-    """The farthest from the answer of the cells with the worst verdict; None if there are none, or none with numbers."""
+    """The cell with the largest difference among those with the worst verdict; None if none has a number."""
     cells = list(cells)
     grave = worst_verdict(cells) if cells else None
     return largest(c for c in cells if c.verdict == grave)
 
 
 def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
-    """How many cells have each verdict; all verdicts, worst first."""
+    """Number of cells by verdict; all verdicts, worst first."""
     found = Counter(c.verdict for c in cells)
     assert set(found) <= set(get_args(Verdict))
     return {v: found[v] for v in WORST_FIRST}
@@ -109,27 +111,28 @@ def cases(run: Run) -> list[str]:
 
 
 def column(cell: Cell) -> str:
-    """The column a cell stands in."""
+    """The column of a cell."""
     return "core as in source" if cell.role == "discretisation" else cell.code
 
 
 def broad(cell: Cell) -> str:
-    """The column a cell stands in where cases share a table: all printed tables in one."""
+    """The column of a cell in a table of several cases, with all printed tables in one column."""
     return "printed tables" if cell.role == "table" else column(cell)
 
 
 def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[str]:
-    """Names of columns: the source's own discretisation, printed tables, then the codes in the run's order."""
+    """Names of columns: the source's discretisation, printed tables, then codes in the run's order."""
     first = ("discretisation", "table")
     ranked = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
     return list(dict.fromkeys(of(c) for c in ranked))
 
 
 def labels(cells: Sequence[Cell]) -> dict[Cell, str]:
-    """Mode names ``flapwise 2``: the family, and the ordinal within it at that speed.
+    """Mode names such as ``flapwise 2``: the family, and the ordinal in the family at that speed.
 
-    Counted among all modes the case compares, so that a printed table's gaps do not shift its numbers; a code that
-    lacks effects is compared with core lacking them, whose modes may come in another order, and is counted by itself.
+    Modes are counted among all modes that the case compares, so that gaps in a printed table do not change the numbers.
+    A code that lacks effects is compared with core without them; its modes may come in another order and are counted
+    separately.
     """
     groups: dict[tuple[str, float, str], dict[int, str]] = {}
     for cell in cells:
@@ -149,7 +152,7 @@ def _basis(cell: Cell) -> tuple[str, float, str]:
 
 
 def amount(value: float, target: float) -> str:
-    """The size of a relative number, as short as a table wants: in percent, or as it is where the target is tiny."""
+    """The size of a relative number as short text: in percent, or as a plain number if the target is tiny."""
     if target < TINY:
         return f"{abs(value):.0e}"
     size = 100 * abs(value)
@@ -167,17 +170,17 @@ def amount(value: float, target: float) -> str:
 
 
 def allowed(target: float) -> str:
-    """A target, in percent, or as it is where it is tiny."""
+    """A target in percent, or as a plain number if it is tiny."""
     return f"{target:.0e}" if target < TINY else unsigned(target)
 
 
 def wide(cell: Cell) -> str:
-    """`` (target 2.00 %)`` of a cell that is held to a wider target than is usual; else empty."""
+    """`` (target 2.00 %)`` if the cell's target is wider than usual; otherwise empty."""
     return f" (target {allowed(cell.target)})" if cell.target > PAPER and cell.role != "measured" else ""
 
 
 def plus_minus(cell: Cell) -> str:
-    """``+0.0021 % ± 0.0004 %``; an unknown uncertainty is said to be unknown."""
+    """A difference and its uncertainty, such as ``+0.0021 % ± 0.0004 %``; the uncertainty may be unknown."""
     shown = size(cell)
     if shown is None:
         return ""
