@@ -1,6 +1,6 @@
-"""The Python interface for notebooks: a blade from a file, its modes, its Campbell diagram, and what other codes find.
+"""The Python interface for notebooks: blades from files, their modes, Campbell diagrams, and results of other codes.
 
-A blade comes in; results come out that show themselves as tables, and give pandas tables and matplotlib axes.
+Takes a blade; returns results with a table view, pandas tables and matplotlib axes.
 """
 
 from .api import campbell, modes, read, verify

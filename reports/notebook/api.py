@@ -41,13 +41,13 @@ def read(
     precone: float | None = None,
     pitch: float | None = None,
 ) -> Blade:
-    """The blade in a file, or the blade of a case that comes with the package.
+    """Read the blade in a file, or the blade of a case that comes with the package.
 
     Args:
-        path: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's own TOML or CSV; or a case, ``"nrel-5mw"`` or
+        path: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's TOML or CSV; or a case, ``"nrel-5mw"`` or
             ``"park-blade/windpact"``.
-        main: the main file that says how the blade sits on the hub.
-        length: from root to tip, m, where no file says it.
+        main: the main file that defines how the blade is mounted on the hub.
+        length: from root to tip, m, if no file states it.
         hub_radius: from the rotor axis to the root, m.
         precone: degrees, positive downwind.
         pitch: degrees, positive with the leading edge downwind (the opposite sign of OpenFAST's BlPitch).
@@ -87,17 +87,17 @@ def modes(
     load: Array | None = None,
     allow_large_strain: bool = False,
 ) -> ModesResult:
-    """The lowest modes of a blade at one rotor speed, by the in-house solver; see ``core.solve.modes``.
+    """Compute the lowest modes of a blade at one rotor speed with the in-house solver; see ``core.solve.modes``.
 
     Args:
         blade: the blade.
         omega: rotor speed, rad/s.
         elements: number of beam elements of equal length; by default as many as ``accuracy`` requires.
         count: number of modes.
-        accuracy: largest relative uncertainty of a frequency, where ``elements`` is not given.
+        accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
         mass: ``consistent``, or ``half_end`` (lumped, Park et al. 2010).
         stiffness: ``corotational``, or ``parent`` (Park et al. 2010).
-        effects: physical effects kept.
+        effects: physical effects included.
         gravity: (3,) m/s², in hub axes.
         load: (n, 3) steady force per length at the blade's stations, N/m, in hub axes.
         allow_large_strain: accept steady strains above 20 %.
@@ -132,7 +132,7 @@ def campbell(
     margin: float = 0.1,
     elements: int = 50,
 ) -> CampbellResult:
-    """The Campbell diagram of a blade: its modes followed along rotor speed, and their margins.
+    """Compute the Campbell diagram of a blade: its modes tracked over rotor speed, and their margins.
 
     Args:
         blade: the blade.
@@ -162,15 +162,15 @@ def verify(
     modes: int = MODES,
     workers: int = 2,
 ) -> VerifyResult:
-    """The blade solved by every code, compared mode by mode with the in-house solver, and judged.
+    """Solve a blade with every code, and compare and judge the results mode by mode against the in-house solver.
 
     Args:
-        blade: a blade, or the name or TOML file of a case, which has its own speeds.
+        blade: a blade, or the name or TOML file of a case, which defines its speeds.
         rpm: rotor speeds in rpm.
         omega: rotor speeds in rad/s, instead.
         codes: names (``southwell codes``); by default all. Codes that are not installed are reported as not run.
-        modes: number of modes compared, from the lowest; of a blade.
-        workers: codes that run at the same time.
+        modes: number of modes of a blade to compare, from the lowest.
+        workers: number of codes that run at the same time.
 
     Raises:
         CaseError: no speeds for a blade, speeds for a case, or a blade that the in-house solver cannot solve.

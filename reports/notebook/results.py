@@ -1,4 +1,4 @@
-"""Results that show themselves: a short text, a table in a notebook, a pandas table, a figure."""
+"""Results with a short text, a table in a notebook, a pandas table and a figure."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +18,7 @@ from ..shared import summary
 from ..shared.units import RAD_S, Units
 
 SIGNIFICANT = 6
-"""Digits of a frequency in a notebook's table; ``to_frame`` has all of them."""
+"""Digits of a frequency in a notebook's table; ``to_frame`` has full precision."""
 
 
 def _html(title: str, frame: pd.DataFrame) -> str:
@@ -26,8 +26,8 @@ def _html(title: str, frame: pd.DataFrame) -> str:
 
 
 def _axes(width: float, height: float) -> Axes:
-    """Axes of a new figure, inches."""
-    import matplotlib.pyplot as plt  # chooses a backend, which reading and solving must not
+    """Axes of a new figure of the given size, inches."""
+    import matplotlib.pyplot as plt  # imported here because it selects a backend
 
     return plt.subplots(figsize=(width, height), layout="constrained")[1]
 
@@ -37,7 +37,7 @@ class ModesResult(Modes):
     """Modes of a blade at one rotor speed.
 
     Attributes:
-        blade: what was solved; the others as in ``Modes``.
+        blade: the blade; the other attributes are those of ``Modes``.
     """
 
     blade: Blade = field(kw_only=True)
@@ -59,12 +59,12 @@ class ModesResult(Modes):
 
     @property
     def names(self) -> list[str]:
-        """Of each mode: its family and its number within it, ``flapwise 2``."""
+        """Name of each mode, its family and ordinal in the family, such as ``flapwise 2``."""
         weight = weights(self.blade)
         return numbered(families(aligned(self, weight), weight))
 
     def plot(self, modes: int = 4, axes: Axes | None = None) -> Axes:
-        """Draw the shapes of the lowest ``modes`` along the span: of each, the motion that is largest, scaled to 1."""
+        """Draw the dominant motion of the lowest ``modes`` shapes along the span, scaled to 1; return the axes."""
         axes = axes or _axes(6.4, 4.8)
         for k, name in enumerate(self.names[:modes]):
             shape = self.shapes[k] * (1, 1, 1, self.blade.length / 10)  # a rotation by its displacement at a tenth of L
@@ -90,8 +90,8 @@ class CampbellResult:
     """A Campbell diagram.
 
     Attributes:
-        diagram: tracks, crossings, resonances and margins; in rad/s.
-        units: of the tables and figures: those in which the speeds were given.
+        diagram: tracks, crossings, resonances and margins, in rad/s.
+        units: units of the tables and figures, which are those of the given speeds.
     """
 
     diagram: Campbell
@@ -120,16 +120,16 @@ class CampbellResult:
 
     @property
     def verdict(self) -> str:
-        """The margins in one line."""
+        """The verdict on the margins in one line."""
         return tables.verdict(self.diagram, self.units)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw frequencies along rotor speed, the lines of n per revolution and the operating range."""
+        """Draw frequencies over rotor speed, the lines of n per revolution and the operating range; return the axes."""
         axes = axes or _axes(7.0, 4.5)
         return lines(axes, self.diagram, self.units)
 
     def write(self, folder: str | Path) -> tuple[Path, ...]:
-        """Write campbell.md, figures (SVG, PNG) and CSV tables, as ``southwell campbell`` does; their paths."""
+        """Write campbell.md, figures (SVG, PNG) and CSV tables, as ``southwell campbell`` does; return the paths."""
         return page.write(self.diagram, Path(folder), self.units, "from Python")
 
     def __repr__(self) -> str:
@@ -143,10 +143,10 @@ class CampbellResult:
 
 @dataclass(frozen=True, repr=False)
 class VerifyResult:
-    """What other codes found, compared with the in-house solver.
+    """The results of other codes, compared with the in-house solver.
 
     Attributes:
-        run: every cell, refinement and origin; see ``cases.judge.results``.
+        run: all cells, refinements and origins; see ``cases.judge.results``.
     """
 
     run: Run
@@ -199,7 +199,7 @@ class VerifyResult:
         return summary.status(self.run) == 0
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw the size of every difference with its uncertainty, one row per code; the target is a line."""
+        """Draw |difference| + uncertainty of every cell, one row per code, with the targets as lines; return the axes."""
         axes = axes or _axes(7.0, 3.5)
         frame = self.to_frame().dropna(subset=["difference"])
         codes = list(dict.fromkeys(frame["code"]))
