@@ -1,6 +1,6 @@
-"""The command line: bad input is one line on standard error and status 2, never a traceback.
+"""The command line. Bad input gives one line on standard error and status 2, never a traceback.
 
-A command's module is imported when the command runs: `southwell --help` loads no numerical library.
+A command's module is imported when the command runs, so that `southwell --help` loads no numerical library.
 """
 
 import sys
@@ -16,7 +16,7 @@ from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASS
 from .errors import IncompleteError, UsageError
 
 OUTSIDE = "--allow-outside"
-"""An option of every command, wherever it stands."""
+"""An option that every command accepts, at any position."""
 
 ONE_BLADE, VERIFY, OTHER, CI, LAST = (
     Group.create_ordered(name)
@@ -58,7 +58,7 @@ COMMANDS = (
     (CI, "history", "cli.history:app", "Record the results of runs by commit."),
     (CI, "dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),
 )
-"""Group, name, place and line in the list of commands; the line is also the first of the command's own help."""
+"""Group, name, function and summary of each command; the summary is also the first line of the command's help."""
 
 
 def _version() -> str:
@@ -68,7 +68,7 @@ def _version() -> str:
 
 
 def build(listing: bool = False) -> App:
-    """The application; with ``listing`` each command has its line in the list but is not imported for it."""
+    """Build the application; with ``listing``, commands are listed but not imported."""
     built = App(
         name="southwell",
         help=f"""Verify the natural frequencies of rotating blades.
@@ -96,7 +96,7 @@ app = build()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """The entry point; ends the process with the command's status, see ``statuses``."""
+    """Run the command line; end the process with the command's status, see ``statuses``."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     streams.prepare()
     with (
@@ -110,7 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _status(words: list[str]) -> int:
-    """Run a command; its exit status."""
+    """Run a command; return its exit status."""
     try:
         status = _run(words)
         sys.stdout.flush()
@@ -145,7 +145,7 @@ def _run(words: list[str]) -> int:
 
 
 def _reported(what: object, status: int) -> int:
-    """Say in one line why there is no more; the status."""
+    """Print one line on why the command ended; return the status."""
     from ...cases.input.errors import brief
 
     print(f"southwell: {brief(str(what))}", file=sys.stderr)
@@ -159,7 +159,7 @@ def _outside_allowed() -> AbstractContextManager[object]:
 
 
 def _one_thread() -> AbstractContextManager[object]:
-    """Matrices are small: threads would wait for each other."""
+    """Limit numerical libraries to one thread; the matrices are too small for several."""
     from threadpoolctl import threadpool_limits
 
     return threadpool_limits(1)

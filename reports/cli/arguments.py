@@ -1,4 +1,4 @@
-"""Types of arguments, and the finished run that several commands read."""
+"""Types of arguments, and access to the results of a run, for several commands."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,7 @@ RESULTS = "results.jsonl"
 
 
 def _whole(_: type, tokens: Sequence[Token]) -> int:
-    """A whole number as typed (Cyclopts' own conversion rounds 1.5)."""
+    """Convert a whole number as typed (the conversion of Cyclopts rounds 1.5)."""
     try:
         return int(tokens[0].value)
     except ValueError:
@@ -31,10 +31,10 @@ Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
 Workers = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1024))]
 
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]
-"""Of one blade; more than the most are gigabytes and minutes, and change nothing."""
+"""Number of beam elements of a blade; more than the limit take gigabytes and minutes without a change of the result."""
 
 Positive = Annotated[float, Parameter(validator=Number(gt=0, lte=86_400))]
-"""Seconds, or gibibytes."""
+"""A time in days or seconds, or memory in GiB."""
 
 Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 """A relative uncertainty."""
@@ -43,7 +43,7 @@ Flag = Annotated[bool, Parameter(negative=())]
 
 
 CONTINUE = "run the same `southwell verify` again, which continues where it was stopped"
-"""What to do about an incomplete run."""
+"""The remedy for an incomplete run."""
 
 Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_default=False, consume_multiple=False)]
 """Changes of a blade's properties, each as ``NAME=*FACTOR``."""
@@ -51,10 +51,10 @@ Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_d
 
 @contextmanager
 def writing(out: Path) -> Iterator[None]:
-    """While a command writes in the folder ``out``, which is made if there is none and locked.
+    """Create and lock the output folder ``out`` while a command writes in it.
 
     Raises:
-        UsageError: if it cannot be made or written.
+        UsageError: if it cannot be created or written.
         CaseError: if another process is writing in it.
     """
     with ExitStack() as stack:
@@ -67,7 +67,7 @@ def writing(out: Path) -> Iterator[None]:
 
 
 def finished(path: Path) -> Run:
-    """The complete run in a report's folder, or in its results file.
+    """Read the complete run in a report's folder, or in its results file.
 
     Raises:
         CaseError: if there is none.
@@ -80,11 +80,11 @@ def finished(path: Path) -> Run:
 
 
 def found(path: Path) -> Run:
-    """The run in a report's folder, or in its results file; of a folder, the one that was begun last, complete or not.
+    """Read the run in a report's folder, or in its results file; from a folder the latest run, complete or not.
 
     Raises:
         CaseError: if there is none.
-        IncompleteError: if not a single cell of it is there.
+        IncompleteError: if it has no cell.
     """
     file = path
     if os.path.isdir(path):

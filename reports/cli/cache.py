@@ -1,4 +1,4 @@
-"""``southwell cache``: what the store of answers holds, whether it is as it was written, and removal."""
+"""``southwell cache``: lists, checks and removes stored answers."""
 
 import sys
 import time

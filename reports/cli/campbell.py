@@ -175,7 +175,7 @@ def command(
 
 
 def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
-    """The codes that confirm each line, from a run of all of them."""
+    """Run all codes; return the table of the codes that confirm each line."""
     case = default_case(
         subject.blade,
         confirmation.speeds(diagram),
@@ -193,7 +193,11 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
 
 
 def _check(out: Path) -> None:
-    """Raise before minutes of work if the folder cannot be written."""
+    """Check that the folder can be written, before minutes of work.
+
+    Raises:
+        CaseError: if it cannot be written.
+    """
     there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
     if not os.path.isdir(there):
         raise _unwritable(out, f"{there} is a file")
@@ -206,10 +210,10 @@ def _unwritable(out: Path, why: str | None) -> CaseError:
 
 
 def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:
-    """The diagram with progress; ``workers`` processes share the speeds asked for.
+    """Compute the diagram and show progress; ``workers`` processes share the requested speeds.
 
     Raises:
-        CaseError: what ``campbell`` raises.
+        CaseError: as ``campbell``.
     """
     progress = SpeedProgress(blade.name, wanted.speeds, units)
     with ExitStack() as stack:
@@ -242,7 +246,7 @@ class SpeedProgress:
         self.task = self.bar.add_task("", total=len(speeds), name=name)
 
     def __call__(self, omega: float) -> None:
-        """Hear that a speed is done."""
+        """Record that a speed is solved."""
         if omega in self.asked:
             self.bar.update(self.task, advance=1, description=self.units.at(omega))
         else:
@@ -252,7 +256,7 @@ class SpeedProgress:
 def _shared(
     blade: Blade, wanted: Wanted, executor: Executor, here: Solver, progress: SpeedProgress, units: Units
 ) -> Solver:
-    """A solver that has the speeds asked for solved by ``executor`` from the start, and others ``here`` as they come."""
+    """A solver: ``executor`` starts on the requested speeds at once; ``here`` solves other speeds on demand."""
     ahead = {omega: executor.submit(_one, blade, wanted, omega, units) for omega in wanted.speeds}
 
     def answer(omega: float) -> Modes:

@@ -1,4 +1,4 @@
-"""What is typed after ``southwell campbell``, made into numbers; each raises a CaseError that names the option."""
+"""Converts the options of ``southwell campbell``; each function raises a CaseError that names the option."""
 
 from collections.abc import Sequence
 from math import inf
@@ -12,11 +12,11 @@ from ..shared.units import RAD_S, RPM, Units
 from .mounting import angle
 
 MOST_PER_REV = 1000
-"""Multiple of the rotor's speed, at most."""
+"""Largest order n per revolution."""
 
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
-    """Speeds (rad/s) and their unit; None if neither option is given."""
+    """Rotor speeds (rad/s) and their unit; None if neither option is given."""
     if rpm is not None and omega is not None:
         raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
     if rpm is None and omega is None:
@@ -29,7 +29,7 @@ def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units
 
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
-    """Gravity in the hub's axes at an azimuth in degrees; none without one."""
+    """Gravity in the hub's axes, m/s², at an azimuth and tilt in degrees; zero without an azimuth."""
     if azimuth is None and tilt:
         raise CaseError(f"--tilt {tilt:g}: it turns gravity, and without --azimuth there is none: add --azimuth 0")
     at, up = angle("--azimuth", azimuth), angle("--tilt", tilt)
@@ -40,12 +40,12 @@ def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
 
 
 def load(path: Path | None, blade: Blade) -> tuple[tuple[float, float, float], ...]:
-    """The load of a file at the blade's stations; none without one."""
+    """The load of a file at the blade's stations, N/m in hub axes; empty without a file."""
     return () if path is None else tuple((x, y, z) for x, y, z in prestress.load(path, blade).tolist())
 
 
 def per_rev(text: str) -> tuple[int, ...]:
-    """``1:6`` or ``1,2,3,6``."""
+    """The orders in ``1:6`` or ``1,2,3,6``, ascending."""
     first, colon, last = text.partition(":")
     try:
         found = (
@@ -63,7 +63,7 @@ def per_rev(text: str) -> tuple[int, ...]:
 
 
 def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, float]:
-    """``6.9:12.1`` in the unit of the speeds; rad/s, as ``speeds`` are, within which it must lie."""
+    """The operating range in rad/s from text such as ``6.9:12.1`` in ``units``, within ``speeds`` (rad/s)."""
     try:
         low, high = (float(p) for p in text.split(":"))
     except ValueError:
@@ -79,7 +79,7 @@ def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, 
 
 
 def margin(text: str) -> float:
-    """``10%``, or ``10``: from 1 on a percentage; below 1 a fraction, ``0.1``."""
+    """The margin as a fraction: ``10%``, or ``10`` (1 and above is a percentage), or ``0.1``."""
     try:
         value = float(text.removesuffix("%"))
     except ValueError:

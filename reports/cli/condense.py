@@ -1,4 +1,4 @@
-"""``southwell condense``: finite element matrices to a compressed model, its tables and modes; or the example that shows it."""
+"""``southwell condense``: condenses finite element matrices to a compressed model, or runs the example."""
 
 import shlex
 import sys
@@ -99,7 +99,7 @@ def _example(folder: Path) -> int:
 
 @contextmanager
 def _watched() -> Iterator[Callable[[str], None]]:
-    """What is being done, on standard error."""
+    """Show the current step on standard error."""
     console = Console(stderr=True, highlight=False)
     columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False)
     with Progress(*columns, console=console, transient=True) as bar:

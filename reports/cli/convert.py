@@ -1,4 +1,4 @@
-"""``southwell convert``: a blade of any readable format, written as TOML, BeamDyn or ElastoDyn files."""
+"""``southwell convert``: writes a blade of any readable format as TOML, BeamDyn or ElastoDyn files."""
 
 import os
 from collections.abc import Sequence
@@ -22,14 +22,17 @@ Format = Literal["toml", "beamdyn", "elastodyn"]
 
 
 KEPT = 1e-7
-"""Of the length: stations that move less on BeamDyn's curve change no frequency by more than 1e-6."""
+"""Tolerance on the reference axis, relative to the length.
+
+Removing stations that deviate less from BeamDyn's curve changes no frequency by more than 1e-6.
+"""
 
 CARRIED: dict[Format, tuple[str, ...]] = {
     "toml": (),
     "beamdyn": beamdyn.CARRIED,
     "elastodyn": elastodyn.CARRIED,
 }
-"""Quantities that no blade holds and that a format keeps."""
+"""Quantities that are not part of a blade but are kept by a format."""
 
 
 def command(
@@ -89,7 +92,7 @@ def command(
 
 
 def _write(subject: Subject, out: Path, to: Format, omega: float) -> tuple[list[Path], Mount | None]:
-    """The files, and what is left to a main file."""
+    """Write the files; return their paths and the mount that a main file must define."""
     blade, given = subject.blade, subject.unused
     if to == "toml":
         southwell_toml.write(blade, out)
@@ -101,12 +104,12 @@ def _write(subject: Subject, out: Path, to: Format, omega: float) -> tuple[list[
 
 
 def _unknown(given: Sequence[Unused], to: Format) -> list[str]:
-    """What the format has and the blade's files do not say."""
+    """List the quantities that the format has and the blade's files do not define."""
     return [name for name in CARRIED[to] if name not in {u.name for u in given}]
 
 
 def _main_file(left: Mount) -> str:
-    """What ElastoDyn's main file must say, in its names, units and signs, and how it is read again."""
+    """Describe the mount in the names, units and signs of ElastoDyn's main file, and how to read the blade again."""
     values = {"HubRad": left.hub_radius or 0.0, "PreCone(1)": float(np.degrees(left.precone or 0.0))}
     if left.length is not None:
         values = {"TipRad": left.length + values["HubRad"], **values}

@@ -1,4 +1,4 @@
-"""``southwell dashboard``: runs and their history as a static site that opens from the file system."""
+"""``southwell dashboard``: writes runs and their history as a static site that opens from the file system."""
 
 from pathlib import Path
 from typing import Annotated

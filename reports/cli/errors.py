@@ -1,9 +1,9 @@
-"""Errors of the command line; imports nothing, for `southwell --help` to be fast."""
+"""Errors of the command line. Imports nothing, so that `southwell --help` is fast."""
 
 
 class UsageError(ValueError):
-    """An argument that cannot be used: names it, its value, the likely cause, the remedy."""
+    """An invalid argument; the message has its name, its value, the likely cause and the remedy."""
 
 
 class IncompleteError(ValueError):
-    """A run that is not complete, where only a complete one will do: names it, says what is missing."""
+    """A run is incomplete where a complete one is required; the message has its name and what is missing."""

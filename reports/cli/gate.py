@@ -1,4 +1,4 @@
-"""``southwell gate``: a run against an earlier one; status 1 if something got worse."""
+"""``southwell gate``: compares a run with an earlier one; status 1 if something got worse."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -97,7 +97,7 @@ def command(
 
 
 def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
-    """The run to compare with, and those whose times show noise."""
+    """The run to compare with, and the runs from which the noise of run times is estimated."""
     if os.path.isdir(path) or _is_run(path):
         if commit:
             raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")
@@ -114,7 +114,7 @@ def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
 
 
 def _is_run(path: Path) -> bool:
-    """Whether a file is a run's results: its lines say of what kind they are."""
+    """Whether a file has the results of a run, whose lines each state their kind."""
     try:
         first = msgspec.json.decode(read_bytes(path, LARGEST_DATA).partition(b"\n")[0])
     except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
@@ -123,7 +123,7 @@ def _is_run(path: Path) -> bool:
 
 
 def _page(run: Run, gate: Comparison, strict: bool) -> str:
-    """What the run found, and what the gate did."""
+    """The page with the headline of the run and the findings of the gate."""
     parts = [
         "### Southwell",
         *matrix_report.marked(run, matrix_report.headline(run)),

@@ -74,10 +74,10 @@ def listing(file: Path, /) -> int:
 
 
 def load(file: Path) -> History:
-    """The history in a file; truncated lines are reported on standard error.
+    """Read the history in a file; truncated lines are reported on standard error.
 
     Raises:
-        CaseError: if there is no such file, or it is none.
+        CaseError: if there is no such file, or it is not a history.
     """
     try:
         found = history.read(file)

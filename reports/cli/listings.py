@@ -1,4 +1,4 @@
-"""``southwell cases`` and ``southwell codes``: lists, and isolated environments for codes that need one."""
+"""``southwell cases`` and ``southwell codes``: lists, and installation of codes in isolated environments."""
 
 import sys
 from pathlib import Path

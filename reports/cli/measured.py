@@ -1,4 +1,4 @@
-"""``--add`` and the uncertainties of what it adds, for the commands that take measurements."""
+"""``--add`` and the uncertainties of its data, for the commands that take measurements."""
 
 import re
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from .errors import UsageError
 
 
 def defaults(data: str | None, inputs: str | None) -> Defaults:
-    """What ``--data-uncertainty`` and ``--input-uncertainty`` say."""
+    """Convert ``--data-uncertainty`` and ``--input-uncertainty``."""
     return Defaults(
         data=_percent("--data-uncertainty", data) if data is not None else None,
         inputs=_percent("--input-uncertainty", inputs) if inputs is not None else 0.0,
@@ -30,10 +30,10 @@ def _percent(option: str, text: str) -> float:
 
 
 def added(text: str, u: Defaults) -> UserResults:
-    """The file of one ``--add``.
+    """Read the file of one ``--add``.
 
     Raises:
-        UsageError: if it has not the form NAME=FILE.csv.
+        UsageError: if it does not have the form NAME=FILE.csv.
         CaseError: if the file cannot be used.
     """
     name, equals, path = text.partition("=")
@@ -43,10 +43,10 @@ def added(text: str, u: Defaults) -> UserResults:
 
 
 def check(files: Sequence[UserResults], data: str | None, inputs: str | None) -> None:
-    """Refuse an uncertainty that is of nothing.
+    """Reject an uncertainty option that applies to no file.
 
     Raises:
-        UsageError: if no file is measured and one is given.
+        UsageError: if an uncertainty is given and no file has measurements.
     """
     for option, given in (("--data-uncertainty", data), ("--input-uncertainty", inputs)):
         if given is not None and not any(one.measured for one in files):

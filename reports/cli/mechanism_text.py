@@ -14,13 +14,13 @@ NOTE = (
     "± rounding: relative for frequencies, absolute for damping ratios; nothing is discretised, so there is no other "
     "numerical error"
 )
-"""What the uncertainties are."""
+"""Explanation of the uncertainties."""
 
 ROTATIONS = (".rx", ".ry", ".rz")
 
 
 def modes(found: Solution, title: str) -> Table:
-    """A row for each mode: frequency, damping ratio, the coordinate that leads, each with the digits that rounding leaves."""
+    """The table of modes: frequency, damping ratio and dominant coordinate, without digits lost to rounding."""
     out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     for head in ("mode", "rad/s", "Hz", "damping ratio", "± rounding"):
         out.add_column(head, justify="right")
@@ -35,7 +35,7 @@ def modes(found: Solution, title: str) -> Table:
 
 
 def _ratio(damping: float, sure: float) -> str:
-    """Six decimals at most, and none that are uncertain."""
+    """The damping ratio with at most six decimals, none of them uncertain."""
     if not sure < 0.5:
         return "?"
     places = 6 if sure <= 1e-6 else int(-np.ceil(np.log10(sure)))
@@ -43,11 +43,11 @@ def _ratio(damping: float, sure: float) -> str:
 
 
 ROUNDING = 1e-14
-"""Less than this, in m or rad, is what rounding leaves of zero; ``--json`` has it."""
+"""Smaller values (m or rad) are rounding of zero and shown as 0; ``--json`` has them."""
 
 
 def state(found: Solution) -> Table:
-    """A row for each coordinate: its value in the steady state, and whether it is free to choose, follows, or is prescribed."""
+    """The table of coordinates: steady value, and whether the coordinate is independent, dependent or prescribed."""
     out = Table(box=box.SIMPLE_HEAD, title="steady state", title_justify="left", title_style="bold")
     out.add_column("coordinate")
     out.add_column("value", justify="right")
@@ -67,7 +67,7 @@ def redundant(found: Solution) -> str:
 
 
 def plain(name: str, found: Solution) -> dict[str, Any]:
-    """All of it as plain numbers, strings and lists."""
+    """All results as numbers, strings and lists."""
     return {
         "name": name,
         "modes": _rows(found),

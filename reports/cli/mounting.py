@@ -1,7 +1,7 @@
-"""Options that say what a blade's file leaves to others: how long it is and how it sits on the hub.
+"""Options for what a blade's file does not define: the length, and how the blade is mounted on the hub.
 
-Pitch has two signs. Southwell's turns y towards z: the leading edge downwind, towards stall of an upwind rotor. OpenFAST's
-BlPitch turns the leading edge upwind, to feather: the same angle with the other sign.
+Pitch has two sign conventions. Southwell's rotates y towards z: the leading edge moves downwind, towards stall of an
+upwind rotor. OpenFAST's BlPitch rotates the leading edge upwind, to feather: the same angle with the opposite sign.
 """
 
 from dataclasses import dataclass
@@ -56,10 +56,10 @@ class Mounting:
     offsets: bool | None = None
 
     def mount(self) -> Mount:
-        """The same for a reader, in radians.
+        """The mount for a reader, in radians.
 
         Raises:
-            CaseError: naming the option that cannot be.
+            CaseError: naming the invalid option.
         """
         for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
             if value is not None and not least <= value <= LONGEST:
@@ -80,10 +80,10 @@ class Mounting:
 
 
 def angle(option: str, degrees: float | None, most: float = 360.0) -> float | None:
-    """Radians; None if not given.
+    """Convert an angle to radians; None if not given.
 
     Raises:
-        CaseError: if it is not finite, or larger than ``most`` degrees.
+        CaseError: if it is not finite, or its absolute value exceeds ``most`` degrees.
     """
     if degrees is not None and not isfinite(degrees):
         raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")

@@ -1,4 +1,4 @@
-"""``southwell report``, and what every run shows at its end."""
+"""``southwell report``, and the summary that every run prints at its end."""
 
 from pathlib import Path
 
@@ -44,12 +44,12 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
 
 
 def show(run: Run, folder: Path) -> Path | None:
-    """Write the report and print its summary; the path of the report.
+    """Write the report and print its summary; return the path of the report.
 
-    None, and nothing is written, if the run is unfinished and the report there is of a complete one.
+    Nothing is written, and None returned, if the run is unfinished and the existing report is of a complete run.
     """
     from ..verification import (
-        report as matrix_report,  # with its figures half of a command's time to start, and of every worker's
+        report as matrix_report,  # not at the top: the figures take half of the start-up time
     )
 
     keep = bool(run.unfinished) and (folder / RESULTS).exists()
@@ -62,7 +62,7 @@ def show(run: Run, folder: Path) -> Path | None:
 
 
 def show_tables(run: Run) -> None:
-    """The headline, the matrix and the controls on standard output."""
+    """Print the headline, the matrix and the controls on standard output."""
     from ..verification import report as matrix_report
 
     console = output()

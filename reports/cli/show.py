@@ -1,4 +1,4 @@
-"""``southwell show``: the properties of a blade in numbers and a figure, and how its file was read."""
+"""``southwell show``: the properties of a blade as numbers and a figure, and how its file was read."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,17 +25,17 @@ from .subjects import subjects as find_subjects
 Array = NDArray[np.float64]
 
 ROWS = 13
-"""Stations in the table, unless all are wanted."""
+"""Number of stations in the table, unless all are requested."""
 
 COLUMNS = (
     *("s [m]", "mass [kg/m]", "EI flap [N m²]", "EI edge [N m²]", "GJ [N m²]", "EA [N]", "twist [deg]"),
     *("mass y [m]", "mass z [m]", "tension y [m]", "tension z [m]", "shear y [m]", "shear z [m]"),
 )
 PROPERTIES = 7
-"""Columns before those of the centres."""
+"""Number of columns before those of the centres."""
 
 MORE = ("principal axes [deg]", "mass axes [deg]", "axis x [m]", "axis y [m]", "axis z [m]")
-"""Further columns of the CSV: axes from the section's own y and z, empty where there are none; the reference axis."""
+"""Further columns of the CSV: angles of axes from the section's y and z, empty if undefined; reference axis."""
 
 CONVENTIONS = (
     "x along the blade, z the rotor's axis, y the direction of motion (to the leading edge); sections turn with twist and "
@@ -82,7 +82,7 @@ def command(
 
 
 def facts(blade: Blade) -> dict[str, str]:
-    """What is said of a blade, by name; its tip mass included."""
+    """Facts on a blade by name, including its tip mass."""
     hub, root = about_hub(blade), about_root(blade)
     x, y, z = np.where(np.abs(hub.centre) < 1e-9 * blade.length, 0.0, hub.centre)
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
@@ -120,7 +120,7 @@ def _body(found: Mass) -> str:
 
 
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
-    """Facts in a table, and how the blade was read."""
+    """A table of facts, followed by how the blade was read."""
     table = Table(
         box=None, show_header=False, pad_edge=False, title=escape(blade.name), title_justify="left", title_style="bold"
     )
@@ -133,13 +133,13 @@ def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
 
 
 def rows(blade: Blade, found: Sections) -> Array:
-    """A row a station, columns as in ``COLUMNS``."""
+    """(n, columns) numbers of all stations, columns as in ``COLUMNS``."""
     stiff = (blade.mass[:, 0, 0], found.EI_flap, found.EI_edge, found.GJ, found.EA, np.degrees(blade.twist))
     return np.column_stack([blade.stations, *stiff, found.mass_centre, found.tension_centre, found.shear_centre])
 
 
 def stations(blade: Blade, most: int | None) -> tuple[Table, Table]:
-    """The sections in two tables, properties and centres: at most ``most`` stations, evenly spaced, with both ends."""
+    """The tables of properties and of centres, with at most ``most`` evenly spaced stations including both ends."""
     values = rows(blade, sections(blade))
     n = len(values)
     picked = np.unique(np.linspace(0, n - 1, min(n, most or n)).round().astype(int))
@@ -166,8 +166,8 @@ def _cell(column: int, x: float) -> str:
 
 
 def write(blade: Blade, folder: Path) -> list[Path]:
-    """Write the figure (SVG, PNG) and the table of all stations (CSV)."""
-    from ..campbell import span  # with its figures half of a command's time to start
+    """Write the figure (SVG, PNG) and the table of all stations (CSV); return the paths."""
+    from ..campbell import span  # not at the top: the figures take half of the start-up time
 
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "stations.csv"

@@ -1,4 +1,4 @@
-"""Which blades a command is asked for: a blade's file in any format that is read, or a case's blades."""
+"""The blades that a command is given: a blade file in any readable format, or the blades of a case."""
 
 import os
 from collections.abc import Sequence
@@ -15,20 +15,20 @@ from ...core.blade import Blade
 from ..shared.units import BY_KEY, RPM, Units
 
 FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")
-"""Of a case's blade, those worth a line."""
+"""Facts on a case's blade that are shown."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A blade to be solved.
+    """A blade to solve.
 
     Attributes:
         blade: the blade.
-        speeds: its own, rad/s: a case's, or the one a blade's file states for the analysis; may be empty.
+        speeds: rotor speeds in rad/s, from the case or the blade's file; may be empty.
         units: of the speeds.
-        about: where it is from, one fact per line.
-        notes: what its file leaves open and how that was settled.
-        unused: non-zero quantities of its files that it does not hold.
+        about: origin of the blade, one fact per line.
+        notes: what the blade's file leaves open, and the choices made.
+        unused: non-zero quantities of the files that the blade does not use.
     """
 
     blade: Blade
@@ -40,20 +40,20 @@ class Subject:
 
 
 def changed(found: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
-    """The subjects with properties changed; the changes are listed with their sources.
+    """The subjects with changed properties; ``about`` lists the changes.
 
     Raises:
-        CaseError: a change that a blade does not allow.
+        CaseError: if a blade does not allow a change.
     """
     lines = tuple(f"changed: {change}" for change in given)
     return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in found]
 
 
 def single(name: str, mount: Mount) -> Subject:
-    """The one blade of a file or case.
+    """The only blade of a file or case.
 
     Raises:
-        CaseError: as ``subjects``, or if the case has several.
+        CaseError: as ``subjects``, or if the case has several blades.
     """
     found = subjects(name, mount if is_blade_file(name) else Mount())
     if len(found) > 1:
@@ -62,10 +62,10 @@ def single(name: str, mount: Mount) -> Subject:
 
 
 def subjects(name: str, mount: Mount) -> list[Subject]:
-    """The blade of a file, mounted so, or the blades of a case, which say themselves how they are mounted.
+    """The blade of a file, with the given mount, or the blades of a case, which define how they are mounted.
 
     Raises:
-        CaseError: if there is no such file or case, or the file is at fault.
+        CaseError: if there is no such file or case, or the file has an error.
     """
     if is_blade_file(name):
         found = readers.reading(Path(name), mount)
@@ -89,7 +89,7 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
 
 
 def is_blade_file(name: str) -> bool:
-    """Whether a name is that of a blade's file, and not of a case."""
+    """Whether a name is that of a blade file, not of a case."""
     path = Path(name)
     if (
         name in library.names()

@@ -1,4 +1,4 @@
-"""``southwell verify``: cases through every code, compared, judged, reported."""
+"""``southwell verify``: solves cases with every code, compares and judges the results, and writes a report."""
 
 import os
 import shlex
@@ -46,7 +46,7 @@ from .report import show
 from .subjects import is_blade_file, subjects
 
 FRESH = "SOUTHWELL_FRESH"
-"""Environment variable that means ``--fresh``."""
+"""Environment variable equivalent to ``--fresh``."""
 
 SCRATCH = "results.partial.tmp"
 """Folder in ``--out`` for temporary files of this run and of the codes it runs."""
@@ -170,14 +170,14 @@ def command(
 
 @dataclass(frozen=True)
 class Stopped:
-    """Why a run came to no end, in words, and the status that says so."""
+    """Why a run stopped before its end, and the exit status."""
 
     what: str
     status: int
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
-    """How many groups a run requires of a blade: as told, or as the case says if all codes take part."""
+    """The setting with the required number of groups: as given, or as in the case if all codes take part."""
     if witnesses is None and whole:
         return setting
     return replace(setting, groups=witnesses or 0, lacking="")
@@ -195,12 +195,13 @@ def _solve(
     limits: Mapping[str, Any],
     kept_before: Store | None,
 ) -> tuple[Run, Stopped | None]:
-    """The complete run, written to ``out``; or what there is of it, and what stopped it. Answers go to the journal at once.
+    """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
-    Seeded faults are run again every time: they show that this run would have noticed.
+    Answers go to the journal at once. Seeded faults are never taken from the store, because they show that this run
+    would detect a fault.
     """
     scratch = out / SCRATCH
-    shutil.rmtree(scratch, ignore_errors=True)  # a killed run's
+    shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
     pool, watch = Pool(workers, scratch.resolve()), console.Watch()
     fresh = Remembering(pool, kept)
     cached = Cached(pool, kept_before) if kept_before else None
@@ -245,7 +246,7 @@ def _solve(
 
 
 def _store(fresh: bool) -> Store | None:
-    """The store of answers; None if it is not wanted or cannot be used."""
+    """Open the store of answers; None if it is not wanted or cannot be used."""
     if fresh or os.environ.get(FRESH):
         return None
     try:
@@ -268,14 +269,14 @@ def _said(error: OSError) -> str:
 
 
 def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
-    """Faults for each worker: neighbours together, as their trials are the same case."""
+    """Distribute faults over workers; neighbours stay together, because they are tried on the same case."""
     size = -(-len(names) // workers)
     return [names[k : k + size] for k in range(0, len(names), size)] if names else []
 
 
 @dataclass(frozen=True)
 class _Decks:
-    """What is said of blade files beside their names: rotor speeds and their unit, and how they are mounted."""
+    """What the command line gives for blade files: rotor speeds and their unit, and how they are mounted."""
 
     speeds: tuple[tuple[float, ...], Units] | None
     mount: Mount
@@ -297,7 +298,7 @@ def _chosen(name: str, decks: _Decks) -> Case | MechanismCase:
 
 
 def _changed(case: Case | MechanismCase, given: Sequence[Change]) -> Case | MechanismCase:
-    """The case with properties of its blades changed, which its printed tables are not about."""
+    """The case with changed blade properties and without printed tables, which no longer apply."""
     if not given:
         return case
     if not isinstance(case, Case):
