@@ -1,6 +1,6 @@
-"""What a gate found, in words and tables: for the terminal, as Markdown, and as GitHub's annotations.
+"""The result of a gate as text and tables: for the terminal, as Markdown, and as GitHub annotations.
 
-Frequencies and speeds are in rad/s, as they are kept; digits enough to show a change of 1e-9.
+Frequencies and speeds are in rad/s, with enough digits to show a change of 1e-9.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,13 +19,13 @@ from ...cases.regression.history import Caught, Entry, Point
 from ..shared.markdown import plain, table
 
 ROWS = 50
-"""Of a table in Markdown, most: a job's summary has its limits, and so has a reader."""
+"""Largest number of rows of a table in Markdown; a job's summary has a size limit."""
 
 Row = dict[str, str]
 
 
 def verdict(found: Comparison, strict: bool) -> str:
-    """One line: passed or not, and why."""
+    """One line: passed or failed, and why."""
     counts = {
         "worse": len(found.worse),
         "with a wider target": len(found.loosened),
@@ -47,7 +47,7 @@ def _named(entry: Entry) -> str:
 
 
 def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
-    """Title and rows of each table that has any, what counts against the run first."""
+    """Title and rows of each non-empty table; those that can fail the gate come first."""
     every = [
         ("Worse", [_change(c) for c in found.worse]),
         ("Held to a wider target than before", [_loosened(c) for c in found.loosened]),
@@ -99,7 +99,7 @@ def _digits(frequency: float | None) -> str:
 
 
 def _gone(gone: Iterable[Gone]) -> list[Row]:
-    """A row for each case and code: a code that is not installed is gone everywhere."""
+    """One row per case and code, with the missing speeds and modes."""
     rows = []
     for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
         members = list(group)
@@ -145,7 +145,7 @@ def _timing(timing: Timing) -> Row:
 
 
 def tables(found: Comparison) -> Iterator[RenderableType]:
-    """All but the verdict, for the terminal or a log."""
+    """All tables, for the terminal or a log."""
     for title, rows in sections(found):
         shown = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
         for head in rows[0]:
@@ -156,7 +156,7 @@ def tables(found: Comparison) -> Iterator[RenderableType]:
 
 
 def markdown(found: Comparison, strict: bool) -> str:
-    """The same for a job's summary, long tables cut short, and said to be."""
+    """Verdict and tables as Markdown for a job's summary; tables longer than ``ROWS`` are cut, with a note."""
     blocks = [f"**{plain(verdict(found, strict))}**"]
     for title, rows in sections(found):
         shown = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
@@ -166,9 +166,10 @@ def markdown(found: Comparison, strict: bool) -> str:
 
 
 def annotations(found: Comparison, folder: Path) -> list[str]:
-    """GitHub's workflow commands: an error on the file of every case that got worse, a warning where a miss is an old one.
+    """GitHub workflow commands for the files of cases.
 
-    One for each case and code, for GitHub shows ten of a step. ``folder``: where case files are looked for.
+    An error for each case and code that got worse, a warning for each that still fails; one each, because GitHub shows
+    only ten per step. Case files are searched in ``folder``.
     """
     files = case_files(folder)
     worse = {c.after.key for c in found.worse}
@@ -189,7 +190,7 @@ def _became(change: Change) -> str:
 
 
 def _by_column(points: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
-    """The first of each case and code, and how many more there are."""
+    """The first point of each case and code, and the number of further ones."""
     groups: dict[tuple[str, str], list[tuple[Point, str]]] = {}
     for point, text in points:
         groups.setdefault((point.case, point.code), []).append((point, text))
@@ -201,7 +202,7 @@ def _by_column(points: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
 
 
 def _command(level: str, file: Path | None, case: str, text: str) -> str:
-    """A workflow command; its properties and message escaped as GitHub's toolkit does (actions/toolkit, command.ts)."""
+    """A workflow command, with properties and message escaped as in GitHub's toolkit (actions/toolkit, command.ts)."""
     properties = {"file": file.as_posix()} if file else {}
     properties |= {"title": case}
     joined = ",".join(f"{k}={_escaped(v).replace(':', '%3A').replace(',', '%2C')}" for k, v in properties.items())
@@ -213,7 +214,7 @@ def _escaped(text: str) -> str:
 
 
 def case_files(folder: Path) -> dict[str, Path]:
-    """Case files beneath a folder, by the name that stands in them; hidden folders, and files that are no TOML, left out."""
+    """Case files in a folder by the name that they define; hidden folders and invalid TOML files are skipped."""
     found: dict[str, Path] = {}
     for path in sorted(folder.rglob("*.toml"), key=lambda p: (len(p.parts), p)):
         inside = path.relative_to(folder)

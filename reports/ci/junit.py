@@ -1,7 +1,7 @@
-"""A run as JUnit's XML, which every CI shows: a test case a cell, a suite a case's blade.
+"""A run as JUnit XML: one test suite per blade, one test case per cell.
 
-Written by the standard library's ElementTree: five kinds of elements need no library of their own, and it escapes what is in
-them. Characters that XML has no way to write, as a crashed code may print, are replaced.
+Written with ElementTree of the standard library. Characters that XML cannot represent, such as in the output of a
+crashed code, are replaced.
 """
 
 import re
@@ -13,18 +13,18 @@ from ...cases.regression.history import Caught, Point
 from ..shared import summary
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 (section 2.2, Char) cannot hold."""
+"""Characters that XML 1.0 (section 2.2, Char) does not allow."""
 
 SKIPPED = ("not run", "not applicable", "measured")
-"""Verdicts of cells that judge nothing: no test has passed there, and none has failed."""
+"""Verdicts without a judgement; their test cases are skipped."""
 
 
 def render(run: Run, found: Comparison | None = None, strict: bool = False) -> bytes:
-    """The document.
+    """The XML document.
 
-    A cell fails if its verdict is a miss, or if a gate found it worse (``strict``: or moved); answers that are gone and
-    controls that are no longer caught are failed test cases of their own; a run that is incomplete is a test case with an
-    error, the first. A solution's time is shared by its modes.
+    A cell fails if its verdict is a failure or inconclusive, or if the gate found it worse or, with ``strict``, moved.
+    Missing answers, and negative controls that are no longer detected, are separate failed test cases. An incomplete
+    run adds a first test case with an error. The time of a solution is divided among its modes.
     """
     findings = _findings(found, strict) if found else {}
     root = Element("testsuites", name="southwell")
@@ -51,7 +51,7 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
 
 
 def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, int], str]:
-    """What a gate has against cells that are there."""
+    """Findings of the gate on present cells, by cell."""
     messages = {
         c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in found.worse
     }
@@ -62,7 +62,7 @@ def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, in
 
 
 def _regressions(root: Element, found: Comparison) -> None:
-    """Test cases for what is there no more."""
+    """Add test cases for missing answers and for faults that are no longer detected."""
     if not (found.gone or found.uncaught):
         return
     suite = SubElement(root, "testsuite", name="against the earlier run")

@@ -1,7 +1,7 @@
-"""The matrix in anyone's pytest: a mark with a solver makes a test of every blade, speed and mode.
+"""The verification matrix in pytest: a mark with a solver makes one test per blade, speed and mode.
 
-Registered as a ``pytest11`` entry point, so that it is there wherever the package is installed. Everything it needs is imported
-when a test has the mark.
+Registered as a ``pytest11`` entry point and so active wherever the package is installed. Other modules are imported
+only when a test has the mark.
 """
 
 import fnmatch
@@ -26,7 +26,7 @@ HELP = (
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The command line's options."""
+    """Add the command line options."""
     group = parser.getgroup("southwell", "natural frequencies of rotating blades")
     group.addoption(
         "--southwell-cases", metavar="A,B", help="only these cases, or case/blade, of those that the tests have"
@@ -40,7 +40,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Names the mark; gathers results if a report is wanted, where there is one process that sees them all."""
+    """Register the mark and, if a report is wanted, the plug-in that collects results."""
     config.addinivalue_line("markers", HELP)
     if folder := config.getoption("--southwell-report"):
         from .pytest_report import PlanSender, Report
@@ -51,7 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @dataclass(frozen=True)
 class Chosen:
-    """One test: a solver, a blade, a speed (rad/s) and which of the modes that the case compares, from 1."""
+    """One test: a solver, a blade, a speed (rad/s) and the number of a compared mode, from 1."""
 
     solver: "UserSolver"
     case: "Case"
@@ -61,12 +61,12 @@ class Chosen:
 
     @property
     def name(self) -> str:
-        """As in the test's name: ``park-cantilever-10rad_s-mode1``."""
+        """Identifier in the test's name, such as ``park-cantilever-10rad_s-mode1``."""
         return f"{self.variant.name}-{self.omega:.6g}rad_s-mode{self.mode}"
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test for every blade, speed and mode."""
+    """Generate a test for every blade, speed and mode."""
     if FIXTURE not in metafunc.fixturenames:
         return
     mark = metafunc.definition.get_closest_marker(MARK)
@@ -85,7 +85,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     target = config.getoption("--southwell-target")
     try:
         solver = UserSolver(*mark.args, **{**mark.kwargs, **({"target": target} if target else {})})
-        solver.effects  # noqa: B018  (the names of effects are looked at here, once)
+        solver.effects  # noqa: B018  (checks the names of effects)
     except TypeError as error:
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
     wanted = config.getoption("--southwell-cases")
@@ -107,7 +107,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
 
 
 def _all() -> "list[Case]":
-    """Every case whose files are there."""
+    """Every case whose files are present."""
     from ...cases.input import library
 
     absent = library.absent()
@@ -116,17 +116,17 @@ def _all() -> "list[Case]":
 
 @dataclass(frozen=True)
 class CellUnderTest:
-    """What a test is given: one mode of one blade at one speed."""
+    """One mode of one blade at one speed, for a test to check."""
 
     chosen: Chosen
     request: pytest.FixtureRequest
     solved: dict[Any, Any]
 
     def check(self) -> None:
-        """Fail unless the solver's frequency agrees with core, and with every printed number that core agrees with.
+        """Fail unless the solver's frequency agrees with core and with every printed number that core agrees with.
 
-        A difference that is known, by effects that the solver says it lacks or by its mark, is an expected failure (``xfail``);
-        a blade that it does not solve is skipped.
+        A known difference, due to effects that the solver lacks or listed in its mark, is an expected failure
+        (``xfail``). A blade that the solver does not support is skipped.
         """
         __tracebackhide__ = True
         from ...cases.verify import user_solver
@@ -151,7 +151,7 @@ class CellUnderTest:
             pytest.xfail("; ".join(dict.fromkeys(known)))
 
     def _excuse(self, cell: "Cell") -> str:
-        """The cause of a known difference, if the mark names one that is large enough."""
+        """The cause of a known difference, if the mark lists one that covers it; otherwise empty."""
         from ...cases.judge.verdict import percent, unsigned
 
         for pattern, (cause, most) in self.chosen.solver.known.items():
@@ -161,7 +161,7 @@ class CellUnderTest:
         return ""
 
     def _message(self, cell: "Cell") -> str:
-        """What a miss says: the numbers, the verdict, and the fault it looks like."""
+        """The message of a failure: the numbers, the verdict, and the most similar fault."""
         from ...cases.verify import controls
         from ...cases.verify.user_solver import alike
 
@@ -179,7 +179,7 @@ class CellUnderTest:
         return f"{text}; {like}" if like else text
 
     def _once(self, what: str, make: Any) -> Any:
-        """What all tests of one blade share."""
+        """Compute what all tests of one blade share, once."""
         key = (what, id(self.chosen.solver), self.chosen.variant.name)
         if key not in self.solved:
             self.solved[key] = make()
@@ -188,7 +188,7 @@ class CellUnderTest:
 
 @pytest.fixture(scope="session")
 def southwell_solved() -> dict[Any, Any]:
-    """What was solved in this session, by blade and solver."""
+    """Results of this session by blade and solver."""
     return {}
 
 
@@ -199,7 +199,7 @@ def southwell_cell(request: pytest.FixtureRequest, southwell_solved: dict[Any, A
 
 
 def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
-    """What the report needs of one test, as text, which crosses from a worker's process to the one that reports."""
+    """Serialise one test's rows for the report; text can be sent from a worker process."""
     import msgspec
 
     from ...cases.verify.settings import settings

@@ -1,6 +1,6 @@
-"""The report of a pytest session: results.jsonl and report.md of all tests with the mark, whether all of them were run or not.
+"""The report of a pytest session: results.jsonl and report.md of all tests with the mark.
 
-Everything else that it needs is imported when there is something to report.
+Other modules are imported only when there is something to report.
 """
 
 import shlex
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 
 def _planned(session: pytest.Session) -> list[list[Any]]:
-    """Case, solver, speed and mode of every test that is to be run.
+    """Case, solver, speed and mode of every selected test.
 
     Raises:
-        UsageError: if two tests have solvers of one name, whose rows a report could not tell apart.
+        UsageError: if two tests have solvers of the same name, whose rows a report could not distinguish.
     """
     planned, owners = [], {}
     for item in session.items:
@@ -38,17 +38,17 @@ def _planned(session: pytest.Session) -> list[list[Any]]:
 
 
 class PlanSender:
-    """In a process of pytest-xdist: tells the one that reports what is to be run."""
+    """Sends the selected tests from a worker process of pytest-xdist to the process that writes the report."""
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
-        """Hand it over when this process ends."""
+        """Attach the selected tests to the worker's output."""
         session.config.workeroutput[PROPERTY] = _planned(session)  # type: ignore[attr-defined]
 
 
 class Report:
-    """Gathers what tests found, and writes the report when all are done.
+    """Collects the results of tests and writes the report at the end of the session.
 
-    Until then the folder has a journal, as that of ``southwell verify``: it has no finished run.
+    Until then the folder has a journal, like that of ``southwell verify``.
     """
 
     def __init__(self, folder: Path, config: pytest.Config) -> None:
@@ -60,18 +60,18 @@ class Report:
         self.journal: Journal | None = None
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
-        """Note what is to be run, where this process runs it."""
+        """Record the selected tests, if this process runs them."""
         self.planned += _planned(session)
         if self.planned:
             self._begin()
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:
-        """Note what was to be run, where other processes did; each of them has the whole list."""
+        """Record the selected tests of a worker process; each worker has the whole list."""
         self.planned = self.planned or getattr(node, "workeroutput", {}).get(PROPERTY, [])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Keep what one test found."""
+        """Keep the result of one test."""
         found = [str(value) for name, value in report.user_properties if name == PROPERTY]
         if report.when == "call" and found:
             self._begin()
@@ -79,7 +79,10 @@ class Report:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
-        """Write results.jsonl and report.md; of a run that was stopped, only the journal."""
+        """Write results.jsonl and report.md.
+
+        A stopped run keeps its journal instead of results.jsonl; its report does not replace that of a complete run.
+        """
         if self.journal is None:
             return
         from ...cases.judge import results
@@ -103,14 +106,14 @@ class Report:
                 raise self._unwritable(error) from error
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
-        """Say where the report is, and whether it is complete."""
+        """Print where the report is, and whether it is complete."""
         if self.unfinished:
             terminalreporter.write_line(f"southwell: {self.folder}: Incomplete: {self.unfinished}.")
         elif self.parts:
             terminalreporter.write_line(f"southwell: {self.folder / 'report.md'}")
 
     def _begin(self) -> None:
-        """Lock the folder and say in it that there is no finished run."""
+        """Lock the folder and begin a journal, which marks the run as unfinished."""
         if self.journal is not None:
             return
         from ...cases.input.errors import CaseError
@@ -142,7 +145,7 @@ class Report:
         decoded = [msgspec.json.decode(part) for part in self.parts]
 
         def rows(kind: str, row: Any) -> tuple[Any, ...]:
-            """Each once: tests of one blade repeat its setting, and the cell of a speed without an answer."""
+            """Unique rows: tests of one blade repeat its setting, and the cell of a speed without an answer."""
             distinct = {msgspec.json.encode(one): one for part in decoded for one in part[kind]}
             return tuple(msgspec.convert(one, row) for one in distinct.values())
 
