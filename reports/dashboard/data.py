@@ -1,4 +1,4 @@
-"""What the pages of a run show, as plain data: one object for the matrix, one for each case, one for each code."""
+"""The data of a run's pages: one object for the matrix, one per case and one per code."""
 
 import hashlib
 import re
@@ -17,13 +17,13 @@ from ..verification.figures import core_lines
 from .moving import moving
 
 LONGEST = 80
-"""Of a page's name before its number: file systems end at 255 bytes."""
+"""Largest number of characters before the hash in a page's name; file systems allow 255 bytes."""
 
 
 def page(name: str, kind: str = "case") -> str:
-    """File name of a case's or code's page: what is plain in its name, and a number of its own where not all is.
+    """File name of a case's or code's page; a changed name gets part of its hash.
 
-    Two names never share one, not even where the file system tells no capitals from small letters.
+    Names are unique, also on file systems that ignore case.
     """
     plain = re.sub(r"[^a-z0-9.-]", "_", name.lower())[:LONGEST]
     number = "" if plain == name else "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
@@ -31,12 +31,12 @@ def page(name: str, kind: str = "case") -> str:
 
 
 def verdicts() -> list[dict[str, str]]:
-    """Names and signs, worst first; cells have their place in this list."""
+    """Names and signs of the verdicts, worst first; cells refer to positions in this list."""
     return [{"name": v, "sign": SYMBOL[v]} for v in WORST_FIRST]
 
 
 def first(run: Run, name: str) -> dict[str, Any]:
-    """The matrix: every cell in short, cases, columns, results of the seeded faults."""
+    """The matrix: cells, cases, columns, and results of the negative controls."""
     known, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
     named = labels(run.cells)
     titles = {s.case: s.title for s in run.settings}
@@ -71,7 +71,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
 
 
 def headline(run: Run) -> list[str]:
-    """The verdict in a few lines, those of the report."""
+    """The headline of the report."""
     lines = [
         summary.incomplete(run),
         *evidence.first(run),
@@ -99,13 +99,13 @@ def shared(run: Run, head: str) -> str:
 
 
 def units(run: Run, case: str) -> Units:
-    """Those that the case's speeds are given in."""
+    """The units of a case."""
     setting = next((s for s in run.settings if s.case == case), None)
     return BY_KEY[setting.unit if setting else "rad_s"]
 
 
 def of_case(run: Run, case: str) -> dict[str, Any]:
-    """Everything of one case: its words, cells, refinements, and core's shapes at its lowest and highest speed."""
+    """The data of one case: setting, cells, refinements, and core's shapes at the lowest and highest speed."""
     u = units(run, case)
     cells = [c for c in run.cells if c.case == case]
     named = labels(run.cells)
@@ -132,14 +132,14 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
 
 
 def _lines(cells: list[Cell], u: Units) -> list[dict[str, Any]]:
-    """Core's frequencies with all effects against speed, as the report's Campbell diagram has them."""
+    """Core's frequencies with all effects against speed, as in the report's Campbell diagram."""
     found = core_lines([c for c in cells if c.role not in ("same discretisation", "measured")] or cells)
     scaled = {name: [[o * u.speeds, line[o] * u.frequencies] for o in sorted(line)] for name, line in found.items()}
     return [{"name": name, "points": points} for name, points in scaled.items()]
 
 
 def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
-    """A case's answers by verdict, worst first: how many, and the farthest from core for its target, and where."""
+    """The cells of a case by verdict, worst first: their number, and the largest difference relative to its target."""
     out, cells = [], [c for c in run.cells if c.case == case]
     for verdict, n in summary.counts(cells).items():
         mine = [c for c in cells if c.verdict == verdict]
@@ -174,17 +174,17 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
 
 
 def target(c: Cell) -> str:
-    """What a cell is held to, in words; measured data are held to nothing."""
+    """The target of a cell as text; measured data have none."""
     return "none" if c.role == "measured" else summary.allowed(c.target)
 
 
 def code_names(run: Run) -> list[str]:
-    """Codes that have a page: all with answers of their own, or a reason for none."""
+    """Codes that have a page: all with an answer, or with a reason for none."""
     return list(dict.fromkeys(c.code for c in run.cells if c.role in code_pages.ROLES))
 
 
 def codes(run: Run) -> list[dict[str, Any]]:
-    """All codes in a line each: how many answers of each verdict, the worst for its target, the largest explained."""
+    """One row per code: cells by verdict, the worst difference relative to its target, the largest known difference."""
     out = []
     for name in code_names(run):
         cells = code_pages.own(run, name)
@@ -206,12 +206,12 @@ def codes(run: Run) -> list[dict[str, Any]]:
 
 
 def _placed(cell: Cell | None) -> list[Any] | None:
-    """Verdict, size, case; None for none."""
+    """Verdict, size and case of a cell; None without a cell."""
     return [WORST_FIRST.index(cell.verdict), plus_minus(cell), cell.case] if cell else None
 
 
 def of_code(run: Run, name: str) -> dict[str, Any]:
-    """One code: version, what it shares with core and leaves out, its worst difference on every blade, known defects."""
+    """One code: version, what it shares with core and lacks, its worst difference on every blade, known defects."""
     cells, named = code_pages.own(run, name), labels(run.cells)
     worst = []
     for case in dict.fromkeys(c.case for c in cells):
@@ -237,7 +237,7 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
 
 
 def _known(name: str) -> dict[str, str]:
-    """What the adapter says of itself; nothing of a code that is not known here, as in another's results."""
+    """The description of a code by its adapter; empty if the code is not registered here."""
     code = _described().get(name)
     return {"title": code.title, "lacks": ", ".join(code.effects.lacks()), "hint": code.hint} if code else {}
 

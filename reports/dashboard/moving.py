@@ -1,4 +1,4 @@
-"""Core's mode shapes for the moving picture; they are not among a run's rows, and are solved for when the site is written."""
+"""Core's mode shapes for the animation; a run does not store them, so they are solved when the site is written."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,21 +20,21 @@ from ..shared.units import Units
 ELEMENTS, COUNT = 40, 6
 
 FARTHEST, STEEPEST = 0.12, 0.5
-"""What a shape is scaled to: displacement over the rotor's radius, and turning in rad, whichever comes first."""
+"""Limits to which a shape is scaled: displacement relative to the rotor's radius, and rotation in rad."""
 
 HALF_CHORD = 0.035
-"""Of the ribbon that stands for the blade, over the rotor's radius: the rows know no chord."""
+"""Half chord of the blade's ribbon, relative to the rotor's radius; the rows have no chord."""
 
 SAME = 0.01
-"""Relative: a blade of this name whose frequencies differ more from the run's is another blade."""
+"""Largest relative difference of a frequency between this blade and the blade of the run."""
 
 
 def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
-    """Modes at the lowest and highest speed: lengths over the rotor's radius, in the hub's axes.
+    """Modes at the lowest and highest speed; lengths are relative to the rotor's radius, in the hub's axes.
 
-    ``rest`` and ``across`` (21, 3): places, and the half chord; a mode's ``re`` and ``im`` (21, 4): displacement, and turning
-    about the blade. None where the case is not one of the package's blades, or its files are not here, or the run was of
-    another blade of this name.
+    ``rest`` and ``across`` (21, 3) are positions and the half chord. ``re`` and ``im`` (21, 4) of a mode are
+    displacement and rotation about the blade. Returns None if the case is not a blade of the package, its files are
+    missing, or the run was of another blade with the same name.
     """
     blade = _blade(case)
     if blade is None:
@@ -70,7 +70,7 @@ def _at(found: Modes, names: Sequence[str], radius: float, u: Units) -> dict[str
 
 
 def _same(found: Modes, cells: Sequence[Cell]) -> bool:
-    """Whether the run's lowest frequency at this speed is among those found."""
+    """Whether the run's lowest frequency at this speed is among the computed ones."""
     known = [c.full for c in cells if c.omega == found.omega and c.full is not None]
     return not known or bool(np.abs(found.frequencies / min(known) - 1.0).min() < SAME)
 

@@ -1,6 +1,7 @@
-"""The history as plain data: what every frequency, difference and timing was, run by run, where they stepped, and who moved.
+"""The history as data: frequencies, differences and run times by run, and where they changed.
 
-A difference is ``code/core − 1``, so each cell also says what core was: where it is core that moved, core is named.
+A difference is ``code/core − 1``, so each cell also gives core's frequency. If core changed, the change is attributed
+to core.
 """
 
 from collections import defaultdict
@@ -19,7 +20,7 @@ CORE = "core"
 
 
 def of_history(history: History) -> dict[str, Any]:
-    """All numbers; of what is the same in every run, one number for all."""
+    """All numbers of a history; a number that is the same in every run is stored once."""
     entries = history.entries
     cells, timings = _cells(entries), _timings(entries)
     return {
@@ -53,7 +54,7 @@ def _by_key(entries: Sequence[Entry]) -> dict[Key, list[Any]]:
 
 
 def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
-    """Case, code, speed (rad/s), mode, family, then frequencies, differences, verdicts: a list by run, or one for all."""
+    """Case, code, speed (rad/s), mode, family; frequencies, differences, verdicts, as one value or one per run."""
     out = []
     for (case, code, omega, mode), points in _by_key(entries).items():
         there = [p for p in points if p is not None]
@@ -66,7 +67,7 @@ def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
 
 
 def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
-    """One value where all runs have the same, to rounding; ``scale``: of a number that is itself relative."""
+    """One value if all runs agree within rounding, else the list; ``scale``: scale of rounding, if not the value."""
     one = values[0]
     if one is None:
         return None if all(v is None for v in values) else list(values)
@@ -75,7 +76,7 @@ def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
 
 
 def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """Where frequencies stepped: a row for each run, mover (a code, or core) and case."""
+    """Changes of frequencies: one row per run, case and code (or core)."""
     found: dict[tuple[int, str, str], dict[tuple[float, int], float | None]] = defaultdict(dict)
     for (case, code, omega, mode), points in _by_key(entries).items():
         own = [None if p is None else p.frequency for p in points]
@@ -97,7 +98,7 @@ def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
 
 
 def _change(before: float | None, after: float | None) -> float | None:
-    """Relative; None from nothing."""
+    """The relative change; None if there is no earlier value."""
     return after / before - 1.0 if before and after is not None else None
 
 
@@ -106,7 +107,7 @@ def _size(item: tuple[Any, float | None]) -> float:
 
 
 def _timings(entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """Seconds of each code on each case, of all its speeds; each machine by itself, for only those can be compared."""
+    """Run times of each code on each case, in seconds, summed over speeds, separately for each machine."""
     series: dict[tuple[str, str, str], list[float | None]] = defaultdict(lambda: [None] * len(entries))
     for k, entry in enumerate(entries):
         spent: dict[tuple[str, str], dict[float, float]] = defaultdict(dict)
@@ -122,7 +123,7 @@ def _timings(entries: Sequence[Entry]) -> list[dict[str, Any]]:
 
 
 def _slower(timings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """A row for each run and code: in how many cases, and the largest change, and where."""
+    """One row per run and code: the number of cases whose run time changed, and the largest change."""
     found: dict[tuple[int, str], dict[str, float | None]] = defaultdict(dict)
     for t in timings:
         for (_, before), (k, after) in pairwise(t["steps"]):

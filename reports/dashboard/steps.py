@@ -1,4 +1,4 @@
-"""Steps in a series of runs: where a number moved and stayed, as against points that are only noisy."""
+"""Detects steps in a series of runs: lasting changes of a number, as opposed to noise."""
 
 from collections.abc import Sequence
 
@@ -7,20 +7,20 @@ import numpy as np
 from ...cases.regression.gate import MOVED
 
 BEFORE, AFTER = 4, 3
-"""Runs on either side that a step of a timing needs."""
+"""Number of runs required before and after a step of a run time."""
 
 SPREADS, LEAST = 5.0, 0.2
-"""A timing's step is more than this many standard deviations (estimated from medians), and this part of what was before."""
+"""A step exceeds this many standard deviations (estimated from medians), and this fraction of the earlier level."""
 
 TICK = 1e-3
-"""Seconds: a shorter change of a time is none."""
+"""Smallest change of a run time that counts, seconds."""
 
 SIGMA = 1.4826
-"""Standard deviation over median absolute deviation, of a normal distribution (Hampel 1974)."""
+"""Ratio of standard deviation to median absolute deviation of a normal distribution (Hampel 1974)."""
 
 
 def frequency_steps(values: Sequence[float | None]) -> list[int]:
-    """Where a frequency differs from the last one before it: it has no noise, so every move is one."""
+    """Positions at which a frequency differs from its previous value; frequencies have no noise."""
     out, last = [], None
     for k, value in enumerate(values):
         if value is None:
@@ -32,10 +32,10 @@ def frequency_steps(values: Sequence[float | None]) -> list[int]:
 
 
 def timing_steps(seconds: Sequence[float | None]) -> list[tuple[int, float]]:
-    """The levels a timing had: where each begins, and its median; more than one if there was a step.
+    """The levels of a run time: the position where each begins, and its median; several if there are steps.
 
-    A step is where ``AFTER`` runs on end lie beyond the scatter of the level before, on one side of it, and ``BEFORE`` runs
-    tell what that level was: a single slow run is none, nor are two.
+    At a step, ``AFTER`` consecutive runs lie on the same side of the earlier level, beyond its scatter, which is
+    estimated from at least ``BEFORE`` runs. One or two slow runs are not a step.
     """
     at = [k for k, value in enumerate(seconds) if value is not None]
     values = np.array([seconds[k] for k in at], float)

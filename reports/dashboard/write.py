@@ -1,4 +1,4 @@
-"""Writes the site: a page for the matrix, for each case and code, for the history; style and scripts beside them."""
+"""Writes the site: pages for the matrix, for each case and code, and for the history, with style and scripts."""
 
 import json
 from importlib.resources import files
@@ -22,23 +22,25 @@ SCRIPTS = {
     "code": ("page.js", "codes.js"),
     "history": ("page.js", "charts.js", "history.js"),
 }
-"""What a page of each kind needs; the last draws it."""
+"""Scripts of each kind of page; the last one draws the page."""
 
 POLICY = (
     "default-src 'none'; script-src 'self' file:; style-src 'self' file:; img-src data:; base-uri 'none'; "
     "form-action 'none'"
 )
-"""What a browser may do with a page: run the scripts and use the style beside it (as ``file:`` where the site is opened from
-a disk), no other and none that stand in the page."""
+"""Content security policy of a page: only the site's scripts and style are allowed, none inline.
+
+``file:`` allows them if the site is opened from a disk.
+"""
 
 ASSETS = ("dashboard.css", *dict.fromkeys(name for names in SCRIPTS.values() for name in names))
 
 
 def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
-    """Write the site of ``runs`` (name → run; the first is shown first) into ``folder``; the first page's path.
+    """Write the site of ``runs`` (name → run, the first is the start page) into ``folder``; return its path.
 
     Raises:
-        OSError: if something cannot be written.
+        OSError: if a file cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for name in ASSETS:
@@ -72,7 +74,7 @@ def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
 
 
 def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:
-    """One page: its data lie in it as JSON, escaped so that no text of a case can end the element or begin another."""
+    """One page, with its data as JSON, escaped so that text from a case cannot end the element or begin another."""
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
