@@ -1,7 +1,7 @@
-"""The three stages of condensation in one picture: finite element model, sections, compressed model (Park et al. 2010, fig. 2).
+"""The figure of condensation: finite element model, sections, compressed model (Park et al. 2010, fig. 2).
 
-Drawn from the numbers themselves: the mesh's faces; the sections and the frames they are tied to; a box of each rigid body's
-mass, inertia and place, shortened along the span to leave room for the springs, the complex stiffness elements.
+Drawn from the data: the faces of the mesh; the sections and the frames tied to them; and the rigid bodies as boxes of
+the same mass, inertia and position, shortened along the span to show the complex stiffness elements as springs.
 """
 
 from collections.abc import Sequence
@@ -31,14 +31,14 @@ COILS = 3
 
 
 def stages(bricks: Bricks, cuts: NDArray[np.intp], segments: Sequence[Segment], root: Array, freedoms: int) -> Figure:
-    """The picture.
+    """Draw the three stages.
 
     Args:
         bricks: the mesh.
-        cuts: layers of corners along the span at which it was cut into segments.
-        segments: what they became.
+        cuts: layers of corners along the span at which the mesh was cut into segments.
+        segments: the condensed segments.
         root: (4, 4) pose of the first segment's frame a, in the mesh's axes.
-        freedoms: of the finite element model.
+        freedoms: number of degrees of freedom of the finite element model.
     """
     frames = [root]
     for s in segments:
@@ -71,7 +71,7 @@ def _mesh(axes: Axes, bricks: Bricks, *_: object) -> None:
 
 
 def _sections(axes: Axes, bricks: Bricks, cuts: NDArray[np.intp], _: object, frames: Sequence[Array]) -> None:
-    """Sections filled, the blade's edges thin, and the frames' axes."""
+    """Draw filled sections, thin lines for the blade's edges, and the axes of the frames."""
     outline = np.concatenate([bricks.corners[:, j, k][None] for j in (0, -1) for k in (0, -1)])
     axes.add_collection(LineCollection(list(_project(outline)[0]), colors=MUTED, linewidths=0.6))
     for c in sorted(cuts, key=lambda c: -_project(bricks.corners[c, 0, 0])[1]):
@@ -85,7 +85,7 @@ def _sections(axes: Axes, bricks: Bricks, cuts: NDArray[np.intp], _: object, fra
 
 
 def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], frames: Sequence[Array]) -> None:
-    """Boxes from the farthest to the nearest, each with its spring through it; frames as dots."""
+    """Draw boxes from the farthest to the nearest, each with a spring, and frames as dots."""
     order = sorted(range(len(segments)), key=lambda k: -_project(frames[k][:3, 3])[1])
     for k in order:
         box = _box(segments[k].inertia) @ frames[k][:3, :3].T + frames[k][:3, 3]
@@ -98,7 +98,7 @@ def _compressed(axes: Axes, _: object, __: object, segments: Sequence[Segment], 
 
 
 def _box(inertia: Array) -> Array:
-    """(8, 3) corners, in the frame of ``inertia``, of the cuboid that has it: a² = 6 (I_b + I_c − I_a)/m, and so on."""
+    """(8, 3) corners of the cuboid with this inertia, in its frame: a² = 6 (I_b + I_c − I_a)/m, and so on."""
     mass, centre, tensor = about_centre(inertia)
     moments, axes = np.linalg.eigh(tensor)
     sides = np.sqrt(6.0 * np.maximum(moments.sum() - 2.0 * moments, 0.0) / mass)
@@ -107,7 +107,7 @@ def _box(inertia: Array) -> Array:
 
 
 def _coil(to: Array) -> Array:
-    """A zigzag from the origin to a point, in the plane across the line of sight."""
+    """(n, 3) points of a zigzag from the origin to a point, in the plane across the line of sight."""
     t = np.concatenate([[0.0, 0.2], np.linspace(0.2, 0.8, 2 * COILS + 1)[1:-1] - 0.3 / COILS, [0.8, 1.0]])
     side = np.zeros_like(t)
     side[2:-2] = np.where(np.arange(len(t) - 4) % 2, 1.0, -1.0)
@@ -116,7 +116,7 @@ def _coil(to: Array) -> Array:
 
 
 def _skin(corners: Array) -> Array:
-    """(f, 4, 3) the outer faces of a block."""
+    """(f, 4, 3) outer faces of a block."""
     faces = []
     for axis in range(3):
         for side in (0, -1):
@@ -126,12 +126,12 @@ def _skin(corners: Array) -> Array:
 
 
 def _ring(layer: Array) -> Array:
-    """(k, 3) corners round a section (ny+1, nz+1, 3)."""
+    """(k, 3) corners around a section (ny+1, nz+1, 3)."""
     return np.concatenate([layer[:-1, 0], layer[-1, :-1], layer[:0:-1, -1], layer[0, :0:-1]])
 
 
 def _faces(axes: Axes, faces: Array, colour: str, width: float) -> None:
-    """Quadrilaterals (f, 4, 3), lit from above, the farthest first."""
+    """Draw quadrilaterals (f, 4, 3), lit from above, the farthest first."""
     flat, depth = _project(faces)
     order = np.argsort(-depth.mean(axis=1))
     normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
@@ -143,12 +143,12 @@ def _faces(axes: Axes, faces: Array, colour: str, width: float) -> None:
 
 
 def _basis() -> Array:
-    """Rows: to the right, upwards, and into the picture."""
+    """(3, 3) rows: the directions to the right, upwards, and into the picture."""
     ca, sa, ce, se = np.cos(AZIMUTH), np.sin(AZIMUTH), np.cos(ELEVATION), np.sin(ELEVATION)
     return np.array([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [-ce * ca, -ce * sa, -se]])
 
 
 def _project(points: Array) -> tuple[Array, Array]:
-    """Places (…, 2) in the picture and distances (…) into it of points (…, 3); parallel projection."""
+    """Parallel projection of points (…, 3): positions (…, 2) in the picture and depths (…)."""
     turned = points @ _basis().T
     return turned[..., :2], turned[..., 2]

@@ -1,4 +1,4 @@
-"""Condensation in Markdown: the example's comparison with its picture, or a user's own segments and modes."""
+"""Condensation as Markdown: the example's comparison with its figure, or a user's segments and modes."""
 
 import re
 from collections.abc import Sequence
@@ -33,16 +33,16 @@ FORCES = ("axial", "along y", "along z", "torsion", "about y", "about z")
 
 
 def beside(folder: Path) -> str:
-    """What ``southwell condense`` wrote into a report's folder, a heading lower; empty if nothing."""
+    """The page of ``southwell condense`` in a report's folder, one heading level lower; empty if there is none."""
     path = folder / FILE
     return re.sub(r"^#", "##", read_bytes(path).decode(errors="replace"), flags=re.MULTILINE) if path.exists() else ""
 
 
 def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
-    """The three stages as SVG and PNG.
+    """Write the figure of the three stages as SVG and PNG; return the paths.
 
     Raises:
-        OSError: if they cannot be written.
+        OSError: if a file cannot be written.
     """
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     vector, raster = (folder / "figures" / f"condensation.{kind}" for kind in ("svg", "png"))
@@ -56,7 +56,7 @@ def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
 
 
 def example(found: Example, figure: str, command: str) -> str:
-    """The example's page; ``figure`` is the picture's path from the page."""
+    """The example's page; ``figure`` is the figure's path relative to the page."""
     n = found.segments
     worst = max(largest(s) for s in found.speeds)
     bar = cantilever(found, "average")
@@ -113,7 +113,7 @@ Codes: {codes}. `{command}`
 def own(
     blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units, spec: Condensation | None, command: str
 ) -> str:
-    """A user's own blade: what was read, the segments, the modes."""
+    """The page of a user's blade: the input, the segments, and the modes."""
     n = len(blade.segments)
     total = sum(body(s)[0] for s in blade.segments)
     length = sum(np.linalg.norm(s.undeformed[:3, 3]) for s in blade.segments)
@@ -162,7 +162,7 @@ def _modes(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units)
 
 
 def _remarks(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[str]:
-    """How sure the modes are, and large steady strains."""
+    """Remarks on the uncertainty of the modes, and on large steady strains."""
     rows = [
         Named(omega, k, name, float(f), float(sure), modes.strain)
         for omega, modes in found
@@ -237,7 +237,7 @@ def _cantilever(found: Example) -> list[dict[str, str]]:
 
 
 def _torsion(found: Example) -> str:
-    """What turning does to torsion, in the solid and in the compressed model."""
+    """The effect of rotation on torsion, in the solid and in the compressed model."""
     first, last = found.speeds[0], found.speeds[-1]
     at = [[k for k, name in enumerate(s.names) if name.startswith("torsion")][:1] for s in (first, last)]
     if not all(at):
