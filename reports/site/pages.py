@@ -1,6 +1,6 @@
-"""Pages of the documentation that are made from the package: cases, codes, command line, API, closed forms, a run's report.
+"""Generated pages of the documentation: cases, codes, command line, API, closed forms, a run's report.
 
-Nothing in them is typed twice: words are those of case files, adapters, docstrings and options.
+The text is taken from case files, adapters, docstrings and options.
 """
 
 import re
@@ -24,7 +24,7 @@ from . import readme
 Pages = dict[str, str]
 
 REPORT = "report.md"
-"""A run's report on the site; only there if there is a run."""
+"""Path of a run's report on the site; present only if there is a run."""
 
 FLOORS = {
     "core": "The language (blade, modes) and the in-house solver.",
@@ -32,14 +32,14 @@ FLOORS = {
     "cases": "Which blade, which codes, which target; runs, compares, judges.",
     "reports": "Shows: Markdown, figures, command line.",
 }
-"""What each part of the package is for; a part imports only those before it."""
+"""Purpose of each part of the package; a part imports only those before it."""
 
 
 def pages(folder: Path) -> Pages:
-    """Every page that is made, by its path in the site.
+    """Every generated page, by its path in the site.
 
     Args:
-        folder: of a run's results; without results there, pages on codes say how to make them and no report is shown.
+        folder: folder of a run's results; without them, code pages explain how to get them, and the report is left out.
     """
     path = folder / arguments.RESULTS
     run = results.read(path) if path.exists() else Run(())
@@ -55,7 +55,7 @@ def pages(folder: Path) -> Pages:
 
 
 def report(folder: Path) -> Pages:
-    """A run's report as it lies there, and its figures; nothing if there is none."""
+    """The report of a run in ``folder`` and its figures; empty if there is none."""
     path = folder / "report.md"
     if not path.exists():
         return {}
@@ -66,7 +66,7 @@ def report(folder: Path) -> Pages:
 
 
 def cases() -> Pages:
-    """A page for each case that comes with the package, and an index."""
+    """One page per case that comes with the package, and an index."""
     absent = library.absent()
     known = [library.load(name) for name in library.names() if name not in absent]
     known += [mechanism_case.case(library.mechanism(name)) for name in library.mechanisms()]
@@ -103,19 +103,19 @@ def _facts(facts: Setting) -> str:
 
 
 def codes(run: Run) -> Pages:
-    """A page for each code, and an index."""
+    """One page per code, and an index."""
     known = code_pages.described()
     out: Pages = {"codes/index.md": code_pages.index(run, known)}
     return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in known}
 
 
 def command_line() -> str:
-    """Every command with its options, from the application itself."""
+    """All commands with their options, taken from the application."""
     return app.app.generate_docs(heading_level=1, max_heading_level=3)
 
 
 def api() -> Pages:
-    """A page for each part of the package with a section for each module, filled from the docstrings by mkdocstrings."""
+    """One page per part of the package with one section per module, filled from the docstrings by mkdocstrings."""
     root = __name__.partition(".")[0]
     public = f"# {root}\n\nThe names to import from `{root}`; the other pages have every module.\n"
     out: Pages = {"api/index.md": f"{public}\n::: {root}\n    options:\n      heading_level: 2\n"}

@@ -1,8 +1,8 @@
 """The generated parts of the README and of the site's page of results.
 
 ``python -m southwell.reports.site.readme [results.jsonl]`` writes the README and its figure.
-The rows that the tables need, and the measurement of cost beside the results found, are kept beside this module, so that the
-tables can be checked without a run.
+The rows of the tables and the measured run times are stored next to this module, so that the tables can be checked
+without a run.
 """
 
 import shlex
@@ -35,10 +35,10 @@ COMMAND = (
     "southwell campbell examples/nrel-5mw-blade.dat --length 61.5 --hub-radius 1.5 "
     "--rpm 0:12.1:1.1 --operating 6.9:12.1 --modes 4"
 )
-"""The command of the README, typed in a checkout."""
+"""The command in the README, to be run in a checkout."""
 
 LINES = 10
-"""Lines of its output in the README."""
+"""Number of lines of its output in the README."""
 
 SHOWN = {
     "park-cantilever": "uniform cantilever of Park et al. (2010)",
@@ -50,15 +50,15 @@ SHOWN = {
 """Rows of the README's table of results."""
 
 BEGIN, END = "<!-- {}: begin, written by `make readme` -->", "<!-- {}: end -->"
-"""Enclose what is written: ``command`` and ``results``."""
+"""Markers around the generated parts ``command`` and ``results``."""
 
 
 ISOLATED = ("sharpy", "frame3dd", "calculix")
-"""Codes that `make verify` does not install, and uses where they are: the rows are those of any machine."""
+"""Codes left out of the rows, because `make verify` does not install them but uses them if present."""
 
 
 def condense(run: Run) -> Run:
-    """The rows that the tables need: of each case and column the worst cell, and all of the paper's Table 1."""
+    """Reduce a run to the rows of the tables: the worst cell of each case and column, and the paper's Table 1."""
     cells: list[Cell] = []
     for case in summary.cases(run):
         mine = [c for c in run.cells if c.case == case and c.code not in ISOLATED]
@@ -73,8 +73,11 @@ def condense(run: Run) -> Run:
 
 
 def five(run: Run) -> str:
-    """The README's table: of each case in ``SHOWN`` the independent codes of which every answer passes and their largest
-    difference, the independent codes with any other verdict, and the worst difference of a published table."""
+    """The README's table of results, one row per case in ``SHOWN``.
+
+    The columns are the independent codes of which all answers pass with their largest difference, the independent codes
+    with any other verdict, and the worst difference of a published table.
+    """
     rows = []
     for case, what in SHOWN.items():
         codes = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
@@ -106,7 +109,7 @@ def _published(cell: Cell) -> str:
 
 
 def block(run: Run) -> str:
-    """The site's page of results: every case by every code, and Table 1 of the paper."""
+    """The site's tables of results: every case by every code, and Table 1 of the paper."""
     table1 = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
     made = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     none = unasked(run)
@@ -124,7 +127,7 @@ Made by `{run.command}` with {made}.
 
 
 def results_page() -> str:
-    """The site's page of results, from the rows and the measurement kept here."""
+    """The site's page of results, from the stored rows and run times."""
     return f"""# Results
 
 What `make verify` finds. A row is a blade, a column a code or a published table; [how to read a
@@ -139,22 +142,22 @@ the method of Park et al. (2010).
 
 
 def example(folder: Path) -> str:
-    """Standard output of ``COMMAND``, whose files go to ``folder``."""
+    """Run ``COMMAND`` with the output folder ``folder``; return its standard output."""
     words = [sys.executable, "-m", *shlex.split(COMMAND), "--out", str(folder)]
     return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout
 
 
 def console(output: str) -> str:
-    """The README's block: the command and the first lines of its output."""
+    """The README's console block: the command and the first lines of its output."""
     lines = [line.rstrip() for line in output.splitlines()[:LINES]]
     return "\n".join(["```console", f"$ {COMMAND}", *lines, "…", "```", ""])
 
 
 def put(text: str, new: str, what: str) -> str:
-    """``text`` with ``new`` between the markers of ``what``.
+    """Replace the text between the markers of ``what`` in ``text`` by ``new``.
 
     Raises:
-        ValueError: if the markers are not there.
+        ValueError: if the markers are missing.
     """
     first, last = BEGIN.format(what), END.format(what)
     head, begin, rest = text.partition(first)
@@ -165,12 +168,12 @@ def put(text: str, new: str, what: str) -> str:
 
 
 def written(text: str) -> str:
-    """The README with the table of results that the rows kept here give."""
+    """The README with the table of results from the stored rows."""
     return put(text, five(results.read(ROWS)), "results")
 
 
 def main() -> None:
-    """Take the rows from a results file, if one is given, and the measurement beside it; write the README and its figure."""
+    """Update the stored rows and run times from a results file, if one is given; write the README and its figure."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
         run = results.read(path)
