@@ -1,1 +1,1 @@
-"""Shows what the cases found: Markdown, figures, command line; imports cases, core."""
+"""Presents the results of ``cases``: Markdown, figures, command line; imports cases, core."""
