@@ -70,7 +70,7 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
 def refined(
     head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, bracket: bool = False
 ) -> Rows:
-    """Cells of a code at one speed, one for each mode that the case compares, and the frequencies of every refinement."""
+    """Cells of a code at one speed, one for each compared mode, and the frequencies of every refinement."""
     if not refinements.answers or (refinements.failure and refinements.failure.kind == "nonsense"):
         return [failed(head, omega, refinements.failure)], []
     refined_modes = follow(refinements.answers, reference.core.wanted, order, bracket)
@@ -92,9 +92,9 @@ def refined(
 def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
     """Relative uncertainty (m,) of core's frequencies ``mine`` due to rounding.
 
-    It is estimated from core's answers ``again`` to the same equations scaled by common factors, which differ by rounding
-    only. The largest change of any mode is used for all modes, as rounding in the steady state affects them together.
-    The uncertainty that core reports is used if it is larger.
+    It is estimated from core's answers ``again`` to the same equations scaled by common factors, which differ only by
+    rounding. The largest change of any mode is used for all modes, as rounding in the steady state affects them
+    together. The uncertainty that core reports is used if it is larger.
     """
     found = [other for other in (mine, *again) if not isinstance(other, Failure)]
     if isinstance(mine, Failure) or len(found) <= len(again) or len({len(m.frequencies) for m in found}) > 1:
@@ -107,7 +107,7 @@ def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
 def same(
     head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer, noise: Array | None = None
 ) -> Rows:
-    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with the same number of elements.
+    """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements.
 
     ``noise``: (m,) relative uncertainty of core's frequencies due to rounding. The other code's equations are equally
     sensitive, so it is assumed to have the same uncertainty, or the one that it reports.

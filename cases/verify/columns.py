@@ -34,7 +34,7 @@ OTHER_METHOD = "core, velocity transformation"
 """The column of core's other method, which checks the chain solver."""
 
 ELEMENTS = (20, 50)
-"""Numbers of elements of that column, whose cost is cubic; the second is used if neither method is stable with the first."""
+"""Numbers of elements of that column, whose cost is cubic; the second if neither method is stable with the first."""
 
 References = Sequence[tuple[float, Reference]]
 """Rotor speeds, rad/s, and core's references at these speeds."""
@@ -52,7 +52,7 @@ class Column:
         head: fields common to its cells.
         work: function that returns its rows from core's references.
         origin: declared origin of its answers; None if undeclared.
-        due: where cells are required: at every speed for every mode, at the highest speed, or only where it has numbers.
+        due: where cells are required: at every speed for every mode, at the highest speed, or where it has numbers.
         adapter: digest of the source of the code; empty for a code of this package.
     """
 
@@ -79,7 +79,7 @@ class Column:
 def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: Limits) -> list[Column]:
     """All columns of one blade; ``limits`` apply to each solution by a foreign code.
 
-    ``refused`` of each code is its answer to this blade; a code that has not been asked yet is asked when it is to solve
+    ``refused`` of each code is its answer to this blade; a code that has not been asked yet is asked before it solves
     the blade. Codes that accept only mechanisms have no column, unless there are no other codes.
     """
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation

@@ -22,8 +22,8 @@ ELEMENTS = START
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
 
 NEAR = 5e-2
-"""Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error of
-lumped mass is 2 %, and modes of a family are farther apart."""
+"""Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error
+of lumped mass is 2 %, and modes of a family are farther apart."""
 
 
 @dataclass(frozen=True)

@@ -141,7 +141,7 @@ def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) 
 
 
 LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
-"""The paper's discretisation; the last fault has the wrong mass at its end node. Its 50 elements are refined as others."""
+"""The paper's discretisation; the last fault has the wrong mass at its end node. Refined from its 50 elements."""
 
 
 def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:

@@ -24,7 +24,7 @@ SURE = 5e-5
 """Core is refined until its relative uncertainty is at most this: a quarter of the limit for a code."""
 
 START, MOST, CAP = 15, 100, 960
-"""Numbers of elements of core's reference: the coarsest, the largest to start with for many stations, and the finest."""
+"""Elements of core's reference: the coarsest, the most to start with for many stations, and the finest."""
 
 JUMP = 1e-4
 """Intervals shorter than this fraction of the blade's length are steps of the properties."""
@@ -88,8 +88,8 @@ def rescaled(blade: Blade, factor: float) -> Blade:
 def refining(blade: Blade) -> Refining:
     """Refinement of core, starting from elements no longer than the shortest interval between stations.
 
-    Properties have kinks at stations. Intervals that represent a step of the properties do not count: elements integrate
-    across them.
+    Properties have kinks at stations. Intervals that represent a step of the properties do not count: elements
+    integrate across them.
     """
     intervals = np.diff(blade.stations) / blade.length
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))

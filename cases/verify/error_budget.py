@@ -128,7 +128,7 @@ def _held(blade: Blade, strains: Sequence[int]) -> Blade:
 
 
 def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[Share]:
-    """For the modes and speed of ``rows``: the codes' largest numerical uncertainty, and the rounding of printed numbers."""
+    """Largest numerical uncertainty of the codes and rounding of printed numbers, for the modes and speed of ``rows``."""
     out = []
     for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
         here = [c for c in cells if c.omega == omega and c.uncertainty is not None and _name(c, cells) == name]

@@ -11,7 +11,7 @@ from .mechanism_case import MechanismCase
 from .user_results import UserResults
 
 OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed tables")
-"""Columns of this package that are not codes: name in results → name in tables."""
+"""Columns of this package that are not codes, as named in results and in tables."""
 
 
 def unique(

@@ -54,7 +54,7 @@ class Pool(ProcessPoolExecutor):
 
 @contextmanager
 def _safe_path() -> Iterator[None]:
-    """Prevent Python processes started meanwhile from importing modules of the current folder, such as ``random.py``."""
+    """Prevent Python processes started meanwhile from importing modules of the current folder (``random.py``)."""
     before = os.environ.get(SAFE_PATH)
     os.environ[SAFE_PATH] = "1"
     try:

@@ -64,7 +64,7 @@ class Refinements:
 
 @dataclass(frozen=True)
 class Wanted:
-    """The modes to look for at one speed: ``indices`` among the modes of ``reference``; ``weight`` as in ``pairing``."""
+    """Modes wanted at one speed: ``indices`` among the modes of ``reference``; ``weight`` as in ``pairing``."""
 
     reference: Modes
     indices: tuple[int, ...]

@@ -39,7 +39,7 @@ SCHEMA = """create table if not exists answers
 
 @dataclass(frozen=True)
 class Kept:
-    """Contents of the store under one label: number of answers, bytes, and times of the first and the last answer (s)."""
+    """Contents of the store under one label: number of answers, bytes, times of the first and last answer (s)."""
 
     label: str
     count: int

@@ -55,7 +55,7 @@ def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
 
 
 def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
-    """A cell for every measured frequency: at the case's speed if the row's speed rounds to it, otherwise at the latter."""
+    """A cell for every measured frequency, at the case's speed if the row's speed rounds to it, else at the row's."""
     cells, solved = [], dict(core)
     for row in given:
         omega = next((omega for omega, _ in core if at(row, omega)), row.omega)
