@@ -198,8 +198,8 @@ class Planned:
         case: as in ``Cell``.
         code: as in ``Cell``.
         speeds: number of speeds at which cells are required.
-        modes: number of cells required at each speed; a code without an answer has one cell, of mode 0, with the reason.
-            Zero if only some modes are known, as in a printed table.
+        modes: number of cells required at each speed; a code without an answer has one cell, of mode 0, with the
+            reason. Zero if only some modes are known, as in a printed table.
     """
 
     case: str

@@ -78,7 +78,7 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
 def bracketed(difference: float, uncertainty: float | None, target: float) -> Judgement:
     """The verdict on a code that gives an error bound for its answer.
 
-    Refinement does not reduce the bound: an answer that neither passes nor lies outside it is an estimate, not evidence.
+    Refinement does not reduce the bound: an answer that neither passes nor lies outside it is only an estimate.
 
     Args:
         difference: of the code's answer from the reference, relative to the reference.

@@ -37,8 +37,8 @@ class Witness:
 
     Attributes:
         name: name of the code or the printed series.
-        kind: a foreign code, a closed form of this package, a printed series (``coarse`` if its target is wider than the
-            case's), a code that shares something with core, or one that does not declare what it shares.
+        kind: a foreign code, a closed form of this package, a printed series (``coarse`` if its target is wider than
+            the case's), a code that shares something with core, or one that does not declare what it shares.
         standing: at the case's target.
         fine: at ``FINE``; None if not applicable (core's model, too few printed digits).
         answers: number of frequencies it gave.
