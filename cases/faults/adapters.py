@@ -1,4 +1,4 @@
-"""Faults in adapters: at the seam where the matrix asks a foreign code, of what it is given and of what comes back."""
+"""Faults in adapters: in the input that the matrix gives to a foreign code, and in the answer it receives."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ Asked = tuple[float, int, int]
 
 
 def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
-    """The code solves another blade than it is given."""
+    """The code solves a different blade."""
 
     def make(right: Any) -> Any:
         def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
@@ -31,7 +31,7 @@ def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
 
 
 def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
-    """What comes back is altered."""
+    """The answer is altered."""
 
     def make(right: Any) -> Any:
         def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
@@ -44,7 +44,7 @@ def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
 
 
 def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
-    """Another question is asked; the answer says that it is to the one that was put."""
+    """A different question is asked; the answer claims to be for the original one."""
 
     def make(right: Any) -> Any:
         def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
@@ -73,7 +73,7 @@ def _times(factor: float) -> Callable[[Modes], Modes]:
 
 
 def _shuffled(modes: Modes) -> Modes:
-    """Frequencies of the first two pairs of modes belong to each other's shapes."""
+    """The shapes within each of the first two pairs of modes are interchanged."""
     order = np.arange(len(modes.frequencies))
     order[:4] = order[[2, 3, 0, 1]]
     return replace(modes, shapes=modes.shapes[order])
@@ -84,12 +84,12 @@ def _zero(modes: Modes) -> Modes:
 
 
 def _wide(modes: Modes) -> Modes:
-    """60 % off, and by its own account within 90 %."""
+    """60 % off, with a reported error bound of 90 %."""
     return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
 
 
 def _found_at(path: str, code: str = "exact-beam") -> Callable[[Any], Any]:
-    """A code's adapter is another."""
+    """The adapter of a code is replaced by another."""
 
     def make(right: Any) -> Any:
         return lambda name: path if name == code else right(name)

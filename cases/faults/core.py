@@ -1,4 +1,4 @@
-"""Faults in core, at the seams where Python hands geometry, sections, chains and pencils to the compiled loops."""
+"""Faults in core, where Python passes geometry, sections, chains and pencils to the compiled loops."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,7 +19,7 @@ from .seeding import Fault, Trial
 Balance = Callable[..., Steady]
 
 INERTIA = np.pad(np.full((3, 3), 25.0), (3, 0)) + np.pad(np.ones((3, 3)), (0, 3))
-"""Sections five times as thick, as far as their moments of inertia go."""
+"""Sections with the moments of inertia of sections five times as thick."""
 
 PARK = Trial("park-cantilever", (10.0,), ("exact-beam",))
 THICK = Trial("park-cantilever", (10.0,), ("exact-beam",), lambda b: replace(b, mass=b.mass * INERTIA))
@@ -39,16 +39,16 @@ BESIDE[2, 3] = BESIDE[3, 2] = 0.2 * 0.1
 BESIDE[3, 3] = BESIDE[5, 5] = 0.2 * 0.1**2
 
 CONED = Trial("pretwisted-beam", (4.0,), ("exudyn-tree",), lambda b: replace(b, precone=0.1, tip_mass=BESIDE), modes=2)
-"""With a point mass of a fifth of the beam's, a tenth of its length ahead of its axis, at the tip. Without precone or without
-offset, the other sense of either is a mirror image, and no frequency tells."""
+"""With a point mass at the tip: a fifth of the beam's mass, offset from the axis by a tenth of its length. Without precone
+or without offset, reversing the sign of the other gives a mirror image with the same frequencies."""
 
 
 COUPLED = replace(CONED, change=lambda b: _coupled(replace(b, precone=0.1, tip_mass=BESIDE)))
-"""The same blade, so that the sense of the coupling matters, too."""
+"""The same blade, so that the sign of the coupling also matters."""
 
 
 def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
-    """Core leaves effects out and does not say so."""
+    """Core omits effects without declaring it."""
 
     def make(right: Balance) -> Balance:
         def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
@@ -60,7 +60,7 @@ def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
 
 
 def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
-    """Spin softening times ``factor``; effects in ``lacks`` left out too."""
+    """Spin softening is multiplied by ``factor``; effects in ``lacks`` are also omitted."""
 
     def make(right: Balance) -> Balance:
         def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
@@ -73,7 +73,7 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
 
 
 def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
-    """The linearised matrices altered."""
+    """The linearised matrices are altered."""
 
     def make(right: Balance) -> Balance:
         def wrong(*args: Any, **kwargs: Any) -> Steady:
@@ -86,7 +86,7 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
 
 
 def chained(alter: Callable[[Chain, Blade], Chain]) -> Callable[[Any], Any]:
-    """The chain altered after the blade is divided."""
+    """The chain is altered after discretisation."""
 
     def make(right: Any) -> Any:
         def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Chain:
@@ -98,7 +98,7 @@ def chained(alter: Callable[[Chain, Blade], Chain]) -> Callable[[Any], Any]:
 
 
 def bladed(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
-    """A function of the blade is given another blade."""
+    """A function receives a different blade."""
 
     def make(right: Any) -> Any:
         def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Any:
@@ -122,7 +122,7 @@ def valued(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
 
 
 def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
-    """Core turns at another speed than it is told."""
+    """Core uses a different rotor speed."""
 
     def make(right: Any) -> Any:
         def wrong(blade: Blade, omega: float, *args: Any, **kwargs: Any) -> Any:
@@ -181,7 +181,7 @@ def _uncoupled(factor: float) -> Callable[[Any, Blade, Any], Any]:
 
 
 def _coupled(blade: Blade) -> Blade:
-    """Torsion coupled with flapwise bending by half of what would make it singular."""
+    """Torsion is coupled with flapwise bending by half the value that would make the section singular."""
     stiffness = blade.stiffness.copy()
     size = 0.5 * np.sqrt(stiffness[:, TORSION, TORSION] * stiffness[:, BEND_Y, BEND_Y])
     stiffness[:, TORSION, BEND_Y] = stiffness[:, BEND_Y, TORSION] = size

@@ -1,4 +1,4 @@
-"""Faults in counting independent confirmations, and the canaries that must notice them: witnesses whose groups are known."""
+"""Faults in counting independent confirmations, and the canaries that must detect them: witnesses with known groups."""
 
 from typing import Any
 
@@ -54,7 +54,7 @@ COUNTS: dict[str, tuple[Run, int]] = {
 
 
 def canaries() -> list[str]:
-    """What the count should have been and was not; empty where all is well."""
+    """Wrong counts of the canaries; empty if all are correct."""
     wrong = []
     for what, (run, expected) in COUNTS.items():
         found = len(groups(witnesses.witnesses(run, CASE)))

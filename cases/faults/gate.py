@@ -1,6 +1,7 @@
-"""Faults in history and gate, and the canaries that must notice them: changes between two runs, made on purpose.
+"""Faults in history and gate, and the canaries that must detect them: deliberate changes between two runs.
 
-A canary is a pair of runs, written to a history and read again, and what the gate must say of it. In order, they say nothing.
+A canary is a pair of runs, written to a history and read again, with the expected report of the gate. Without a fault
+the canaries report nothing.
 """
 
 from dataclasses import replace
@@ -42,7 +43,7 @@ AFTER: dict[str, Run] = {
 
 
 def canaries() -> list[str]:
-    """What history and gate should have said of the canaries and did not; empty where all is well."""
+    """Expected reports of history and gate that are missing; empty if all are correct."""
     wrong = []
     found = _compared(BEFORE, BEFORE)
     if found is None or not found.passed(strict=True) or not found.after.cells:
@@ -55,7 +56,7 @@ def canaries() -> list[str]:
 
 
 def _compared(before: Run, after: Run) -> Comparison | None:
-    """The gate's comparison of two runs that went through a history; None where it does not come to one."""
+    """The gate's comparison of two runs read from a history; None if it does not reach one."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "history.jsonl"
         try:
@@ -68,7 +69,7 @@ def _compared(before: Run, after: Run) -> Comparison | None:
 
 
 def _entry(**changes: Any) -> Any:
-    """Every point of an entry with these fields."""
+    """Set these fields in every point of an entry."""
 
     def make(right: Any) -> Any:
         def wrong(*args: Any) -> Entry:

@@ -37,7 +37,7 @@ def next_one(right: Any) -> Any:
 
 
 def anything_goes(right: Any) -> Any:
-    """No likeness is too small."""
+    """Any MAC is accepted."""
 
     def wrong(ours: Modes, other: Modes, wanted: Sequence[int], weight: Any, least: float = 0.0) -> list[Pair]:
         return right(ours, other, wanted, weight, 0.0)
@@ -46,7 +46,7 @@ def anything_goes(right: Any) -> Any:
 
 
 def inferred(right: Any) -> Any:
-    """What a code cannot do is inferred from what it did not do."""
+    """Unsupported motions of a code are inferred from its answer."""
     return lambda reference, i, motions: "no mode of this code moves so"
 
 
@@ -127,7 +127,7 @@ def _numbers(right: Any) -> Any:
 
 
 def judge(make: Any) -> tuple[Seam, ...]:
-    """The judge is replaced wherever it is asked."""
+    """The judge is replaced wherever it is called."""
     return (cells, "judge", make), (verdict, "judge", make)
 
 

@@ -16,7 +16,7 @@ from ..verify import mechanism_columns
 from .seeding import Fault, Seam, Trial
 
 HINGED = Trial("hinged-blade", (30.0,), ())
-"""The closed form alone: its parameters are stated apart from the mechanism."""
+"""Only the closed form: its parameters are given separately from the mechanism."""
 
 LINKED = Trial("pitch-link", (30.0,), ())
 
@@ -35,7 +35,7 @@ DAMPED = Trial("hinged-blade", (30.0,), ("pinocchio-loops",))
 
 
 def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
-    """Core's linearised equations of motion altered, at every azimuth."""
+    """Core's linearised equations of motion are altered at every azimuth."""
 
     def make(right: Any) -> Any:
         return lambda *args, **kwargs: alter(right(*args, **kwargs))
@@ -44,7 +44,7 @@ def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
 
 
 def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
-    """What a code answers is altered."""
+    """The answer of a code is altered."""
 
     def make(right: Any) -> Any:
         def wrong(*args: Any) -> list[Answer]:
@@ -56,7 +56,7 @@ def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[An
 
 
 def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
-    """The code solves another mechanism than it is given."""
+    """The code solves a different mechanism."""
 
     def make(right: Any) -> Any:
         def wrong(name: str, some: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:

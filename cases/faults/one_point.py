@@ -1,4 +1,4 @@
-"""The beam of scikit-fem, its weak form integrated with one Gauss point an element; only ever imported by a worker process."""
+"""The beam of scikit-fem with one Gauss point per element; imported only by a worker process."""
 
 from ...references.scikit_fem import beam
 

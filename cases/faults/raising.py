@@ -1,4 +1,4 @@
-"""The exact beam by adapters that raise where they should answer."""
+"""Adapters of the exact beam that raise instead of answering."""
 
 from ...core.blade import Blade
 from ...references.theories.exact_beam import ExactBeam

@@ -1,11 +1,11 @@
-"""Seeded faults: the harness with one faulty component in place, run through the whole pipeline, must say so.
+"""Seeded faults: the pipeline with one faulty component, which must be detected.
 
-A fault replaces something by its name in a module (a *seam*) while a small case is run by the real matrix. It is detected by
-the cells that are bad with it and are not without. A fault in what judges may make cells better instead of worse; it is
-detected by another fault that must be caught and is not. Faults in counting, history and gate are detected by their canaries.
+A fault replaces a named object of a module (a *seam*) while the real matrix runs a small case. It is detected by cells
+that are bad with the fault and not without it. A fault in judging may make cells better instead of worse; it is detected
+if another fault, which must be caught, no longer is. Faults in counting, history and gate are detected by their canaries.
 
-A fault acts in the thread that runs its trial and in no other, so that trials may share a process with real work. Compiled
-loops cannot be replaced from Python: seams of core are the functions that call them.
+A fault acts only in the thread that runs its trial, so that trials may share a process with real work. Compiled loops
+cannot be replaced from Python: seams of core are the functions that call them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -33,7 +33,7 @@ from ..verify.mechanism_case import MechanismCase
 Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"]
 
 Seam = tuple[Any, str, Callable[[Any], Any]]
-"""A module or class, the name of a function or constant in it, and what makes the faulty one from the right one."""
+"""A module or class, the name of a function or constant in it, and a function that makes the faulty from the right one."""
 
 BAD = ("fail", "inconclusive")
 
@@ -48,16 +48,16 @@ def _same_mechanism(mechanism: Mechanism) -> Mechanism:
 
 @dataclass(frozen=True)
 class Trial:
-    """A small case: one blade or mechanism of the package's, at few speeds, by few codes.
+    """A small case: one blade or mechanism of the package, with few speeds and few codes.
 
     Attributes:
         case: ``case`` or ``case/blade``, as on the command line, or a mechanism's name.
         speeds: rad/s.
         codes: names.
-        change: what makes the trial's blade from the package's.
-        modes: how many are compared; as many as the case says by default.
-        motions: those that are compared; likewise.
-        altered: what makes the trial's mechanism from the package's.
+        change: function that makes the trial's blade from the package's.
+        modes: number of modes compared; by default that of the case.
+        motions: motions compared; by default those of the case.
+        altered: function that makes the trial's mechanism from the package's.
     """
 
     case: str
@@ -71,16 +71,16 @@ class Trial:
 
 @dataclass(frozen=True)
 class Fault:
-    """One of them.
+    """One seeded fault.
 
     Attributes:
-        name: short, for a table and for ``verify --faults``.
-        area: what is faulty.
-        what: what such a program does, in a sentence.
-        size: of its effect on what the trial compares.
-        seams: what is replaced.
-        trial: what is run; None for counting, history and gate, whose canaries are run.
-        blinds: name of a fault that must be caught and, with this one, no longer is.
+        name: short name, for a table and for ``verify --faults``.
+        area: the faulty component.
+        what: one sentence on what a program with this fault does.
+        size: size of its effect on the compared quantities of the trial.
+        seams: the replaced objects.
+        trial: the case to run; None for counting, history and gate, whose canaries are run.
+        blinds: name of a fault that must be caught and, with this fault, no longer is.
         fast: whether every run executes it.
     """
 
@@ -99,10 +99,10 @@ _LOCK = RLock()
 
 @contextmanager
 def seeded(seams: Sequence[Seam]) -> Iterator[None]:
-    """With the faulty things in place, for this thread.
+    """Context manager that installs the faulty objects for this thread.
 
     Raises:
-        AttributeError: if a seam is not there any more.
+        AttributeError: if a seam no longer exists.
     """
     here = get_ident()
     with _LOCK:
@@ -126,7 +126,7 @@ def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> 
 
 
 class Serial(Executor):
-    """Runs what it is given at once, in this thread."""
+    """An executor that runs each task immediately, in this thread."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """See ``Executor``."""
