@@ -1,4 +1,4 @@
-"""The frequencies of one blade against those of another, mode by mode: each is paired with the one of its shape."""
+"""Comparison of the frequencies of two blades, with modes paired by shape."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ class Changed:
 
     Attributes:
         omega: rotor speed, rad/s.
-        name: family and number within it, ``flapwise 2``, in the first blade.
-        frequency: of the first blade, rad/s.
-        other: of the mode of the other blade that has the same shape, rad/s; NaN if none has.
-        mac: of both shapes.
-        note: why there is no partner, or what makes it ambiguous.
+        name: family and number within the family in the first blade, ``flapwise 2``.
+        frequency: frequency of the first blade, rad/s.
+        other: frequency of the mode of the other blade with the same shape, rad/s; NaN if there is none.
+        mac: MAC of the two shapes.
+        note: why there is no partner, or why it is ambiguous.
     """
 
     omega: float
@@ -40,13 +40,13 @@ class Changed:
 def changes(
     blade: Blade, against: Blade, speeds: Sequence[float], modes: int, elements: int | None
 ) -> tuple[Changed, ...]:
-    """The lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s), paired with those of ``against``.
+    """Pair the lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s) with those of ``against``.
 
-    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` takes. Shapes are compared by MAC with
-    the mass of ``blade``.
+    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` requires. Shapes are compared by MAC
+    with the mass of ``blade``.
 
     Raises:
-        CaseError: if a speed has no stable steady state for one of them.
+        CaseError: if one of the blades has no stable steady state at a speed.
     """
     weight = weights(blade)
     asked = Wanted(tuple(speeds), modes=modes, elements=elements)

@@ -8,7 +8,7 @@ from ..judge.results import Cell, Run
 from .diagram import Campbell
 
 SAME = 1e-3
-"""Largest relative difference between a line's frequency and the run's, for both to be the same mode."""
+"""Largest relative difference between the frequencies of a line and of the run for the same mode."""
 
 
 @dataclass(frozen=True)
@@ -16,13 +16,13 @@ class Confirmed:
     """One line of the diagram at one speed.
 
     Attributes:
-        track: its place in the diagram.
+        track: index of the track in the diagram.
         omega: rotor speed, rad/s.
-        frequency: the diagram's, rad/s.
-        uncertainty: relative, of the discretisation and of rounding; infinite where it is not known.
+        frequency: frequency in the diagram, rad/s.
+        uncertainty: relative uncertainty due to discretisation and rounding; infinite if unknown.
         codes: names of the codes that share nothing with core and agree with it within the target.
-        difference: the largest relative difference among those; NaN without any.
-        others: codes that share nothing with core and were judged without agreeing, each with its verdict.
+        difference: largest relative difference among these codes; NaN if there are none.
+        others: codes that share nothing with core and do not agree, each with its verdict.
     """
 
     track: int
@@ -35,15 +35,17 @@ class Confirmed:
 
 
 def speeds(diagram: Campbell) -> tuple[float, ...]:
-    """Speeds (rad/s) at which lines are confirmed: of those asked for, the ones nearest the ends of the operating range, or
-    the first and the last without one."""
+    """Speeds (rad/s) at which lines are confirmed.
+
+    These are the requested speeds nearest the ends of the operating range, or the first and the last without a range.
+    """
     asked = np.array(diagram.wanted.speeds)
     ends = diagram.wanted.operating or (asked[0], asked[-1])
     return tuple(sorted({float(asked[np.abs(asked - end).argmin()]) for end in ends}))
 
 
 def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
-    """Every line at the speeds of ``run``, a matrix run of the diagram's blade; lines that do not exist there are left out."""
+    """Every line at the speeds of ``run``, a matrix run of the diagram's blade, except where a line does not exist."""
     tracks = diagram.tracks
     out = []
     for omega in sorted({c.omega for c in run.cells if c.mode}):
@@ -62,7 +64,7 @@ def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
 
 
 def _is(cell: Cell, frequency: float, run: Run) -> bool:
-    """Whether a cell is about the mode of this frequency: the run's nearest mode, within ``SAME``."""
+    """Whether a cell is for the mode of this frequency: the nearest mode of the run, within ``SAME``."""
     if not (cell.mode and cell.full and cell.role == "code"):
         return False
     every = {c.full for c in run.cells if c.omega == cell.omega and c.full}

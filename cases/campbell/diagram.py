@@ -1,4 +1,4 @@
-"""The Campbell diagram of a blade: its modes along rotor speed, named, and how far they keep from n per revolution."""
+"""The Campbell diagram of a blade: named modes over rotor speed, and their margins from n per revolution."""
 
 import warnings
 from collections import deque
@@ -19,24 +19,24 @@ from .margins import Margin, Range, Resonance, Southwell, line_of, margins, reso
 from .tracking import Solver, Tracks, track
 
 SPARE = 4
-"""Modes solved beyond those asked for, so that each finds its successor."""
+"""Number of modes solved above those requested, so that each finds its successor."""
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a diagram is asked to show.
+    """Settings of a diagram.
 
     Attributes:
-        speeds: rad/s, ascending, two at least.
-        modes: how many, from the lowest.
-        per_rev: multiples n of the rotor's speed that excite.
-        operating: (lowest, highest) speed at which the rotor runs, rad/s; within ``speeds``.
-        margin: the least distance wanted of a mode from n per revolution within the operating range, relative.
-        elements: of equal length along the blade; by default as many at each speed as ``accuracy`` takes.
-        accuracy: largest relative uncertainty of a frequency, without ``elements``.
+        speeds: rad/s, ascending, at least two.
+        modes: number of modes, from the lowest.
+        per_rev: excitation harmonics n, multiples of the rotor speed.
+        operating: (lowest, highest) operating speed, rad/s; within ``speeds``.
+        margin: required relative distance of a mode from n per revolution within the operating range.
+        elements: number of elements of equal length; by default as many at each speed as ``accuracy`` requires.
+        accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
         allow_large_strain: accept steady strains above ``core.solve.LARGEST_STRAIN``.
         gravity: (3,) m/s² in the hub's axes, see ``prestress``.
-        load: for each of the blade's stations a steady force per length, N/m, likewise; none by default.
+        load: steady force per length at each of the blade's stations, N/m, in the same axes; none by default.
     """
 
     speeds: Sequence[float]
@@ -56,17 +56,17 @@ class Campbell:
     """A diagram.
 
     Attributes:
-        blade: what was solved.
-        wanted: what was asked for.
-        tracks: the modes along speed.
-        shares: (n, t, 4) of kinetic energy in flap, edge, torsion, axial motion; NaN where there is no mode.
-        names: of each track: of its first speed, ``flap 2``.
-        last: names at the last speed of each, which differ where a mode has changed its motion.
+        blade: the blade.
+        wanted: the settings.
+        tracks: the modes over speed.
+        shares: (n, t, 4) fractions of kinetic energy in flap, edge, torsion, axial motion; NaN where there is no mode.
+        names: name of each track at its first speed, ``flap 2``.
+        last: name of each track at its last speed, which differs if the dominant motion has changed.
         local: (n, t) names at each speed; empty where there is no mode.
-        southwell: of each track; None where it has fewer than three speeds.
+        southwell: fit of each track; None with fewer than three speeds.
         encounters: crossings and veerings.
-        resonances: all within the speeds, by speed.
-        margins: every track with every n; empty without an operating range.
+        resonances: all resonances within the speeds, by speed.
+        margins: margin of every track from every n; empty without an operating range.
     """
 
     blade: Blade
@@ -82,16 +82,16 @@ class Campbell:
     margins: tuple[Margin, ...]
 
     def label(self, t: int) -> str:
-        """A track's name, and what it becomes: ``flap 2 → edge 1``."""
+        """Name of a track at its first and, if different, last speed: ``flap 2 → edge 1``."""
         return self.names[t] if self.names[t] == self.last[t] else f"{self.names[t]} → {self.last[t]}"
 
     def label_at(self, t: int, omega: float) -> str:
-        """What a track is called at the speed solved that is nearest to ``omega``."""
+        """Name of a track at the solved speed nearest to ``omega`` (rad/s)."""
         there = np.flatnonzero(self.tracks.place[:, t] >= 0)
         return self.local[there[np.abs(self.tracks.omega[there] - omega).argmin()]][t]
 
     def label_over(self, t: int, low: float, high: float) -> str:
-        """What it is called from one speed to another: ``flap 2``, or ``flap 2 → edge 1``."""
+        """Name of a track between two speeds (rad/s): ``flap 2``, or ``flap 2 → edge 1``."""
         return " → ".join(dict.fromkeys((self.label_at(t, low), self.label_at(t, high))))
 
 
@@ -101,10 +101,10 @@ def solver(
     on_speed: Callable[[float], None] = lambda omega: None,
     at: Callable[[float], str] = rad_s,
 ) -> Solver:
-    """Core at one speed after another; ``on_speed`` is called with each speed when it is done, ``at`` names one in an error.
+    """Core as a function of speed; ``on_speed`` is called with each solved speed, ``at`` formats a speed in an error.
 
     Raises (the solver):
-        CaseError: if a speed has no stable steady state, or one of large strain.
+        CaseError: if there is no stable steady state at a speed, or its strain is large.
     """
     gravity = np.array(wanted.gravity) if any(wanted.gravity) else NO_GRAVITY
     load = np.array(wanted.load) if wanted.load else None
@@ -136,10 +136,11 @@ def solver(
 
 
 def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campbell:
-    """The diagram; ``solve`` gives the modes instead of core.
+    """Compute the diagram; ``solve`` replaces core as the source of the modes.
 
     Raises:
-        CaseError: fewer than two speeds, an operating range outside them, or a speed without a stable steady state.
+        CaseError: if there are fewer than two speeds, the operating range lies outside them, or a speed has no stable
+            steady state.
     """
     _check(wanted)
     weight = weights(blade)
@@ -170,7 +171,7 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
 
 
 def rises(diagram: Campbell, omega: float) -> Array:
-    """Each track's rise of frequency (t,) from the first speed to ``omega`` (rad/s), relative; NaN where it has none there."""
+    """Relative rise (t,) of each track's frequency from the first speed to ``omega`` (rad/s); NaN where it is missing."""
     out = np.full(diagram.tracks.count, np.nan)
     for t in range(diagram.tracks.count):
         line = line_of(diagram.tracks, t)
@@ -193,7 +194,7 @@ def _check(wanted: Wanted) -> None:
 
 
 def _distinct(names: Sequence[str]) -> tuple[str, ...]:
-    """Tracks that begin at different speeds can be called alike: the later ones are told apart by a prime."""
+    """Make names unique: tracks that begin at different speeds can have the same name; later ones get a prime."""
     out: list[str] = []
     for name in names:
         while name in out:

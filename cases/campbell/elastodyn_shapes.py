@@ -1,13 +1,13 @@
-"""Mode shapes as ElastoDyn wants them: ``φ(x) = Σ c_k x^k``, k = 2 … 6, ``φ(1) = 1``, for flap 1, flap 2 and edge 1.
+"""Mode shapes for ElastoDyn: ``φ(x) = Σ c_k x^k``, k = 2 … 6, ``φ(1) = 1``, for flap 1, flap 2 and edge 1.
 
-ElastoDyn bends a blade in its sections' own flap and edge directions and turns the curvatures by the structural twist itself,
-and knows no torsion, shear, stretch, offsets or sectional inertia. Its shapes are therefore those of the blade without these,
-and without pitch, at the hub radius, precone and rotor speed of interest (J. Jonkman's advice to users of ElastoDyn): of that
-blade flap and edge do not couple, and each shape is one function. Shapes of the twisted blade itself are another thing; where
-they are fitted too, it is to show by how much the two differ.
+ElastoDyn bends a blade in the flap and edge directions of its sections and rotates the curvatures by the structural
+twist itself; it has no torsion, shear, stretch, offsets or sectional inertia. Its shapes are therefore those of the
+blade without these, and without pitch, at the hub radius, precone and rotor speed of interest (J. Jonkman's advice to
+users of ElastoDyn): flap and edge of that blade do not couple, and each shape is one function. The shapes of the
+twisted blade differ; they are fitted only to show the difference.
 
-x is the fraction of the flexible blade from root to tip. A shape has no sign beyond ``φ(1) = 1``: positive flap is ElastoDyn's,
-downwind, and positive edge is ElastoDyn's, as the tip's displacement.
+x is the fraction of the flexible blade from root to tip. The sign of a shape is fixed only by ``φ(1) = 1``: flap is
+positive downwind and edge in ElastoDyn's positive direction, as is the tip's displacement.
 """
 
 import warnings
@@ -27,10 +27,10 @@ from ..judge.pairing import Array
 POWERS = (2, 3, 4, 5, 6)
 
 WANTED = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
-"""Modes, and ElastoDyn's names of their coefficients."""
+"""Modes, and the names of their coefficients in ElastoDyn."""
 
 DIGITS = 6
-"""Decimals to which coefficients are given; they add up to 1 as given."""
+"""Decimals of the coefficients; the rounded coefficients add up to 1."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,14 @@ class Polynomial:
 
     Attributes:
         mode: ``flap 1``.
-        frequency: rad/s, of the blade it is the shape of.
-        coefficients: (5,) of x² … x⁶, as given: rounded, and adding up to 1.
-        shape: (21,) what was fitted, at the common stations, 1 at the tip.
-        largest: largest deviation of the polynomial from the shape, of the tip's displacement.
-        rms: root mean square of the same.
-        condition: of the least-squares problem (2-norm): how many times an error of the shape can be larger in a coefficient.
-        uncertainty: relative, of the frequency; infinite where it is not known.
+        frequency: frequency of the blade with this shape, rad/s.
+        coefficients: (5,) of x² … x⁶, rounded and adding up to 1.
+        shape: (21,) fitted shape at the common stations, 1 at the tip.
+        largest: largest deviation of the polynomial from the shape, relative to the tip displacement.
+        rms: root mean square of the same deviation.
+        condition: condition number (2-norm) of the least-squares problem: largest amplification of an error of the
+            shape in a coefficient.
+        uncertainty: relative uncertainty of the frequency; infinite if unknown.
     """
 
     mode: str
@@ -63,7 +64,7 @@ class Polynomial:
 
 
 def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polynomial:
-    """Least squares over ``x``, ``φ(1) = 1`` held exactly: ``φ − x⁶ = Σ c_k (x^k − x⁶)``, k = 2 … 5.
+    """Least-squares fit over ``x`` with ``φ(1) = 1`` exactly: ``φ − x⁶ = Σ c_k (x^k − x⁶)``, k = 2 … 5.
 
     Raises:
         CaseError: if the tip does not move.
@@ -88,10 +89,10 @@ def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polyn
 
 
 def principal(blade: Blade) -> Blade:
-    """The blade as ElastoDyn knows it: straight, its sections' principal bending stiffnesses untwisted, mass without inertia.
+    """The blade as ElastoDyn models it: straight, untwisted principal bending stiffnesses, mass without inertia.
 
-    The bending stiffness is what a pure moment meets, whatever the reference axis: the inverse of the bending block of the
-    compliance. Of its two principal values, edge is the one whose axis is nearer to the section's z.
+    The bending stiffness is that under a pure moment, independent of the reference axis: the inverse of the bending
+    block of the compliance. Edge is the principal value whose axis is nearer to the section's z.
     """
     block = compliance(blade, blade.stations)[:, BEND_Y : BEND_Z + 1, BEND_Y : BEND_Z + 1]
     values, vectors = np.linalg.eigh(np.linalg.inv(block))
@@ -124,7 +125,7 @@ def polynomials(blade: Blade, omega: float, elements: int | None = None) -> tupl
 
 
 def as_it_is(blade: Blade, solved: Modes) -> tuple[Polynomial, ...]:
-    """The same of the blade itself: the out-of-plane or in-plane part of the modes so named, as many as there are."""
+    """The same fits for the full blade: the out-of-plane or in-plane part of the modes with these names, if present."""
     named = numbered(families(participation(solved, blade)))
     return tuple(_of(solved, blade, name) for name in WANTED if name in named)
 

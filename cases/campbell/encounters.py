@@ -1,8 +1,8 @@
-"""Where two modes meet along speed: they cross, or they veer apart and exchange their shapes.
+"""Crossings and veerings of modes over speed.
 
-Tracks that swap places cross. Tracks that come close without swapping veer if their shapes turn into each other on the way
-past; near the closest point the squares of the frequencies behave as those of two coupled oscillators, the square of their
-difference as a parabola over Ω² (Leissa 1974; Perkins and Mote 1986, J. Sound Vib. 106).
+Tracks that swap places cross. Tracks that come close without swapping veer if they exchange their shapes; near the
+closest point the squares of the frequencies behave like those of two coupled oscillators, and the square of their
+difference is a parabola over Ω² (Leissa 1974; Perkins and Mote 1986, J. Sound Vib. 106).
 """
 
 from dataclasses import dataclass
@@ -18,10 +18,10 @@ from .tracking import Tracks
 Index = NDArray[np.intp]
 
 EXCHANGED = 0.1
-"""Less exchange of shape than this between two modes that come close is no veering: they pass without knowing each other."""
+"""Least exchange of shape for a veering; with less, two close modes are practically uncoupled."""
 
 PAST = 3.0
-"""How many times the smallest gap apart two modes have passed each other: they have then turned by 71° of the 90°."""
+"""Distance, in smallest gaps, at which two modes have passed each other: 71° of the 90° rotation of the shapes."""
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,16 @@ class Encounter:
 
     Attributes:
         kind: ``crossing`` or ``veering``.
-        tracks: the two, the lower before first.
-        omega: rad/s, where they cross or are closest.
-        frequency: rad/s, their mean there.
-        gap: rad/s: of a veering the smallest distance; of a crossing what a gap, if there is one, is narrower than.
-        uncertainty: relative, of the frequencies solved beside it; the gap's own is that of a difference (``gap_uncertainty``).
-        exchanged: share of the shapes that has changed places from ``window[0]`` to ``window[1]``, 0 to 1.
-        window: rad/s, between which speeds they pass each other.
-        whole: whether they have passed each other within the speeds solved.
-        before, after: (2, 4) shares of kinetic energy of the two (``core.participation``) at the window's ends.
+        tracks: indices of the two tracks, the one that is lower before the encounter first.
+        omega: speed of the crossing or of the smallest distance, rad/s.
+        frequency: mean frequency at that speed, rad/s.
+        gap: rad/s: smallest distance of a veering; upper bound on a possible gap of a crossing.
+        uncertainty: relative uncertainty of the neighbouring solved frequencies; for that of the gap see
+            ``gap_uncertainty``.
+        exchanged: fraction of the shapes exchanged from ``window[0]`` to ``window[1]``, 0 to 1.
+        window: speeds between which the modes pass each other, rad/s.
+        whole: whether they have passed each other within the solved speeds.
+        before, after: (2, 4) fractions of kinetic energy of the two (``core.participation``) at the window's ends.
     """
 
     kind: Literal["crossing", "veering"]
@@ -55,12 +56,12 @@ class Encounter:
 
     @property
     def gap_uncertainty(self) -> float:
-        """rad/s."""
+        """Uncertainty of the gap, rad/s."""
         return 2.0 * self.uncertainty * self.frequency
 
 
 def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter, ...]:
-    """All of them, in the order of speed; ``shares`` (n, t, 4) are the tracks' at each speed."""
+    """All encounters, by speed; ``shares`` (n, t, 4) are the energy fractions of the tracks at each speed."""
     found = []
     for i in range(tracks.count):
         for j in range(i + 1, tracks.count):
@@ -98,7 +99,7 @@ def _of_pair(tracks: Tracks, shares: Array, weight: Array, i: int, j: int, k: In
 def _veerings(
     tracks: Tracks, shares: Array, weight: Array, pair: tuple[int, int], k: Index, x: Array, size: Array, squares: Array
 ) -> list[Encounter]:
-    """Interior minima of the distance at which shapes are exchanged; ``size`` is of the squares of the frequencies."""
+    """Interior minima of the distance with exchange of shapes; ``size`` is the distance of the squared frequencies."""
     found = []
     inside = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:])) + 1
     for m in inside.tolist():
@@ -118,7 +119,7 @@ def _veerings(
 
 
 def _closest(x: Array, size: Array) -> tuple[float, float]:
-    """Place and value of the least ``size`` by the parabola through its squares at three points."""
+    """Position and value of the minimum of ``size``, by the parabola through its squares at three points."""
     middle, scale = x[1], x[2] - x[0]
     c2, c1, c0 = np.polyfit((x - middle) / scale, size**2, 2)
     at = float(np.clip(middle - 0.5 * c1 / c2 * scale, x[0], x[2])) if c2 > 0 else float(middle)
@@ -127,7 +128,7 @@ def _closest(x: Array, size: Array) -> tuple[float, float]:
 
 
 def _passed(size: Array, m: int, step: int, smallest: float) -> tuple[int, bool]:
-    """The first index from ``m`` on at which the two are past each other; else the farthest before they close in again."""
+    """First index from ``m`` on at which the two have passed each other, else the farthest before the next approach."""
     k = m
     while 0 <= k + step < len(size) and size[k] < PAST * smallest and size[k + step] >= size[k]:
         k += step

@@ -1,8 +1,8 @@
-"""How far modes keep from n per revolution, where they meet it, and how they follow Southwell's law.
+"""Margins from n per revolution, resonances, and fits of Southwell's law.
 
-A margin is ``ω / (n Ω) − 1``: the natural frequency's distance from the exciting one, in parts of the exciting one. The
-guideline that Park et al. (2010) cite only asks for the two to be apart; how far apart is for the user to say. Park et al.
-reckon with 10 %.
+A margin is ``ω / (n Ω) − 1``: the distance of the natural frequency from the excitation frequency, relative to the
+latter. The guideline cited by Park et al. (2010) requires only that they be separated; the user chooses the margin.
+Park et al. use 10 %.
 """
 
 from collections.abc import Sequence
@@ -15,18 +15,18 @@ from ..judge.pairing import Array
 from .tracking import Tracks
 
 Range = tuple[float, float]
-"""Lowest and highest speed at which the rotor runs, rad/s."""
+"""Lowest and highest operating speed, rad/s."""
 
 
 @dataclass(frozen=True)
 class Southwell:
-    """``ω² = ω₀² + φ Ω²`` (Southwell and Gough 1921) by least squares over the speeds asked for.
+    """``ω² = ω₀² + φ Ω²`` (Southwell and Gough 1921) by least squares over the requested speeds.
 
     Attributes:
         rest: ω₀, rad/s.
         coefficient: φ.
         residual: largest deviation of the fitted frequency, relative.
-        uncertainty: of the coefficient, by those of the frequencies; not relative.
+        uncertainty: absolute uncertainty of the coefficient, due to those of the frequencies.
     """
 
     rest: float
@@ -37,16 +37,16 @@ class Southwell:
 
 @dataclass(frozen=True)
 class Resonance:
-    """A track meets n per revolution.
+    """A resonance: a track meets n per revolution.
 
     Attributes:
-        track: its place.
+        track: index of the track.
         per_rev: n.
-        omega: rad/s, of the rotor.
+        omega: rotor speed, rad/s.
         frequency: rad/s.
-        uncertainty: of both, relative: of the frequencies solved, and of what lies between them.
-        apart: the speed's distance from the operating range, in parts of the range's nearer end; negative below, 0 inside;
-            None without an operating range.
+        uncertainty: relative uncertainty of both, due to the solved frequencies and the interpolation between them.
+        apart: distance of the speed from the operating range, relative to the nearer end of the range; negative below,
+            0 inside; None without an operating range.
     """
 
     track: int
@@ -59,16 +59,16 @@ class Resonance:
 
 @dataclass(frozen=True)
 class Margin:
-    """How far a track keeps from n per revolution over the operating range; each relative to n Ω, positive above it.
+    """Margin of a track from n per revolution over the operating range, relative to n Ω, positive above it.
 
     Attributes:
-        track: its place.
+        track: index of the track.
         per_rev: n.
-        low, high: at the range's ends.
-        least: the smallest within; 0 if they meet.
-        omega: where that is, rad/s.
-        uncertainty: of the margin, by the frequency's.
-        kept: whether it is certainly as large as wanted.
+        low, high: margins at the ends of the range.
+        least: smallest margin within the range; 0 if they meet.
+        omega: speed of the smallest margin, rad/s.
+        uncertainty: uncertainty of the margin, due to that of the frequency.
+        kept: whether the required margin is kept, with the uncertainty taken into account.
     """
 
     track: int
@@ -91,33 +91,33 @@ class Line:
 
     @property
     def first(self) -> float:
-        """Its first speed, rad/s."""
+        """First speed, rad/s."""
         return float(np.sqrt(self.squares[0]))
 
     @property
     def last(self) -> float:
-        """Its last speed, rad/s."""
+        """Last speed, rad/s."""
         return float(np.sqrt(self.squares[-1]))
 
     def at(self, omega: float) -> float:
-        """Frequency, rad/s."""
+        """Frequency, rad/s, at rotor speed ``omega``, rad/s."""
         return float(np.sqrt(PchipInterpolator(self.squares, self.values)(omega**2)))
 
     def uncertainty(self, omega: float) -> float:
-        """Relative, of ``at``: the larger of the neighbours', and how far a straight line between them is from the cubic."""
+        """Relative uncertainty of ``at``: the larger of the neighbours', and the deviation of the cubic from a line."""
         x = omega**2
         k = int(np.clip(np.searchsorted(self.squares, x) - 1, 0, len(self.squares) - 2))
         bent = abs(self.at(omega) ** 2 - float(np.interp(x, self.squares, self.values)))
         return float(self.uncertainties[k : k + 2].max()) + 0.5 * bent / self.at(omega) ** 2
 
     def meets(self, n: int) -> Array:
-        """Rotor speeds at which the frequency is n per revolution."""
+        """Rotor speeds, rad/s, at which the frequency is n per revolution."""
         found = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
         return np.sqrt(np.unique(found[np.isfinite(found) & (found > 0)]))
 
 
 def line_of(tracks: Tracks, t: int) -> Line | None:
-    """A track as a line; None if it is there at fewer than two speeds."""
+    """A track as a line; None if it exists at fewer than two speeds."""
     k = np.flatnonzero(tracks.place[:, t] >= 0)
     if len(k) < 2:
         return None
@@ -125,7 +125,7 @@ def line_of(tracks: Tracks, t: int) -> Line | None:
 
 
 def southwell(tracks: Tracks, t: int) -> Southwell | None:
-    """The fit of one track; None if it is there at fewer than three of the speeds asked for."""
+    """The fit of one track; None if it exists at fewer than three of the requested speeds."""
     k = np.flatnonzero(tracks.asked & (tracks.place[:, t] >= 0))
     if len(k) < 3:
         return None
@@ -139,7 +139,7 @@ def southwell(tracks: Tracks, t: int) -> Southwell | None:
 
 
 def resonances(lines: Sequence[Line | None], per_rev: Sequence[int], operating: Range | None) -> tuple[Resonance, ...]:
-    """Where each line meets each n per revolution, by speed."""
+    """Resonances of each line with each n per revolution, by speed."""
     found = []
     for t, line in enumerate(lines):
         if line is None:
@@ -151,7 +151,7 @@ def resonances(lines: Sequence[Line | None], per_rev: Sequence[int], operating: 
 
 
 def _meeting(line: Line, n: int, omega: float) -> float:
-    """Relative uncertainty of the speed at which a line meets n per revolution: f² − n² Ω² has its slope there."""
+    """Relative uncertainty of the speed at which a line meets n per revolution, from the slope of f² − n² Ω²."""
     x = omega**2
     slope = float(PchipInterpolator(line.squares, line.values).derivative()(x))
     return line.uncertainty(omega) * n**2 / max(abs(n**2 - slope), 1e-300)
@@ -167,14 +167,14 @@ def _apart(omega: float, operating: Range | None) -> float | None:
 def margins(
     lines: Sequence[Line | None], per_rev: Sequence[int], operating: Range | None, wanted: float
 ) -> tuple[Margin, ...]:
-    """Of each line that lasts over the operating range, with each n per revolution; ``wanted`` is the least to be kept."""
+    """Margins of each line that spans the operating range, for each n; ``wanted`` is the required margin."""
     if operating is None:
         return ()
     low, high = operating
     out = []
     for t, line in enumerate(lines):
         if line is None or line.first > low * (1 + 1e-9) or line.last < high * (1 - 1e-9):
-            continue  # a track that does not last over the range has no margin over it
+            continue  # a track that does not span the range has no margin over it
         for n in per_rev:
             at = np.unique([max(low, 1e-9 * high), *[o for o in np.sqrt(line.squares) if low < o < high], high])
             values = np.array([line.at(min(max(o, line.first), line.last)) / (n * o) - 1.0 for o in at])

@@ -1,4 +1,4 @@
-"""What loads a blade steadily besides its rotation, before it is linearised: gravity at one azimuth, and any given load."""
+"""Steady loads on a blade besides rotation, applied before linearisation: gravity at one azimuth, and a given load."""
 
 from pathlib import Path
 
@@ -16,25 +16,25 @@ STANDARD_GRAVITY = 9.80665
 def gravity(azimuth: float, tilt: float = 0.0) -> Array:
     """Gravity (3,) in the hub's axes, m/s², for ``core.solve.modes``.
 
-    A real blade meets it once a revolution; this is the blade as it hangs while it passes ``azimuth``.
+    The load on a real blade varies once per revolution; this is the steady load at ``azimuth``.
 
     Args:
         azimuth: rad, from the blade pointing up, in the direction of rotation.
-        tilt: rad, of the rotor's axis: how far +z points above the horizontal.
+        tilt: rad, of the rotor's axis: elevation of +z above the horizontal.
     """
     up = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), np.sin(tilt)])
     return -STANDARD_GRAVITY * up
 
 
 LOAD = ("fraction [-]", "fx [N/m]", "fy [N/m]", "fz [N/m]")
-"""Columns of a load's table: where along the blade, and force per length in the hub's axes, turning with them."""
+"""Columns of a load table: position along the blade, and force per length in the rotating hub axes."""
 
 
 def load(path: Path, blade: Blade) -> Array:
     """A steady load (n, 3) at the blade's stations, N/m, linear between the rows of a CSV file with the columns ``LOAD``.
 
     Raises:
-        CaseError: a file that is missing or malformed, or that does not cover the blade in order.
+        CaseError: if the file is missing or malformed, or its rows do not cover the blade in ascending order.
     """
     table = read_table(path, LOAD)
     at = table[LOAD[0]]

@@ -1,4 +1,4 @@
-"""Core's own answer for a blade over speeds: frequencies with names."""
+"""Named frequencies of a blade over rotor speed, computed by core."""
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -18,19 +18,19 @@ Method = Literal["chain", "velocity-transformation"]
 """Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
 
 ELEMENTS = 50
-"""Of the velocity transformation, where none are given: its matrices are dense."""
+"""Default number of elements of the velocity transformation, whose matrices are dense."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """One natural frequency: its place from the lowest, and its name, ``flapwise 2``, at that speed.
+    """One natural frequency, with its number and its name at that speed, ``flapwise 2``.
 
     Attributes:
         omega: rotor speed, rad/s.
         mode: 1 for the lowest.
-        name: family and number.
+        name: family and number within the family.
         frequency: rad/s.
-        uncertainty: relative; infinite where it is not known.
+        uncertainty: relative; infinite if unknown.
         strain: largest steady strain at that speed.
     """
 
@@ -52,7 +52,7 @@ def sweep(
     method: Method = "chain",
     at: Callable[[float], str] = rad_s,
 ) -> list[Named]:
-    """The ``count`` lowest modes (fewer if there are fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
+    """The ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
 
     ``at`` names a speed in an error, in the unit in which it was given.
 

@@ -1,11 +1,12 @@
-"""One mode followed along rotor speed, by shape; the step is halved wherever the shapes leave a doubt.
+"""Tracking of modes over rotor speed by shape; the step is halved where the shapes are ambiguous.
 
-Neighbouring speeds are linked by the assignment with the largest sum of mass-weighted MACs. A step is taken as it is if every
-mode of interest is at least ``SURE`` its predecessor and no two of them swap places; else it is halved, down to a stated
-smallest step. What is not clear there is kept as a ``Doubt``. Two modes that swap places between neighbouring speeds cross, or
-veer so closely that it cannot be seen: their shapes bound how closely. With stiffness coupling κ between two modes of squared
-frequencies δ apart (Pierre 1988; Leissa 1974), each shape holds κ/δ of the other, so that the turn of the shapes over the step,
-``asin √MAC`` of one mode with the other, is at most κ (1/|δ| before + 1/|δ| after), and the gap is 2κ.
+Neighbouring speeds are linked by the assignment with the largest sum of mass-weighted MACs. A step is accepted if every
+mode of interest has at least MAC ``SURE`` with its predecessor and no two of them swap places; otherwise it is halved,
+down to a given smallest step. A link that is still ambiguous is recorded as a ``Doubt``. Two modes that swap places
+between neighbouring speeds cross, or veer too closely to be resolved: their shapes bound the gap. With stiffness
+coupling κ between two modes of squared frequencies δ apart (Pierre 1988; Leissa 1974), each shape contains κ/δ of the
+other, so that the rotation of the shapes over the step, ``asin √MAC`` of one mode with the other, is at most
+κ (1/|δ| before + 1/|δ| after), and the gap is 2κ.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,31 +20,31 @@ from ...core.modes import Modes
 from ..judge.pairing import Array, aligned, mac
 
 Solver = Callable[[float], Modes]
-"""Modes at a rotor speed, rad/s; always as many."""
+"""Modes at a rotor speed, rad/s; the same number at every speed."""
 
 SURE = 0.95
-"""A MAC from which a mode is without doubt the one before (the angle between the shapes is 13°)."""
+"""Least MAC for a certain link between two speeds (the angle between the shapes is 13°)."""
 
 LOST = 0.5
-"""A MAC below which a mode is nobody's successor."""
+"""Least MAC for a successor."""
 
 CLOSED = 1e-6
-"""A gap, relative to the frequency, too narrow to look for."""
+"""Gap, relative to the frequency, that is too narrow to resolve."""
 
 SMALLEST = 2.0**-8
-"""The smallest step, of the steps asked for."""
+"""The smallest step, as a fraction of the requested steps."""
 
 
 @dataclass(frozen=True)
 class Doubt:
-    """A step at which a mode's successor is not clear even with the smallest step.
+    """A mode whose successor is ambiguous even with the smallest step.
 
     Attributes:
         omega: (before, after) rad/s.
-        track: the mode's place among the tracks.
-        frequency: rad/s, before.
-        mac: with the successor that was taken; 0 if none was, and the track ends or begins here.
-        rival: the largest MAC with any other.
+        track: index of the track.
+        frequency: frequency before the step, rad/s.
+        mac: MAC with the chosen successor; 0 if there is none and the track ends or begins here.
+        rival: largest MAC with any other mode.
     """
 
     omega: tuple[float, float]
@@ -55,20 +56,20 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Tracks:
-    """Modes followed along speed.
+    """Modes tracked over speed.
 
     Attributes:
-        omega: (n,) rotor speeds solved, rad/s, ascending: those asked for, and those between.
-        asked: (n,) which were asked for.
-        frequencies: (n, t) rad/s; NaN where a track has not begun, or has ended.
-        uncertainty: (n, t) relative; likewise, and infinite where it is not known.
-        place: (n, t) from the lowest mode, 0 upwards; −1 where there is none.
-        mac: (n, t) with the speed before; NaN where there is none.
+        omega: (n,) solved rotor speeds, rad/s, ascending: the requested and the inserted ones.
+        asked: (n,) whether the speed was requested.
+        frequencies: (n, t) rad/s; NaN before the beginning and after the end of a track.
+        uncertainty: (n, t) relative; likewise, and infinite if unknown.
+        place: (n, t) number of the mode from the lowest, 0 upwards; −1 where there is none.
+        mac: (n, t) MAC with the previous speed; NaN where there is none.
         shapes: (n, t, 21, 4) complex; NaN where there is none.
-        solved: all modes at each speed, also those that no track is about.
-        bound: (n, t, t) where two tracks have swapped places since the speed before, a gap between them is no wider than
-            this, rad/s; else NaN.
-        doubts: what could not be settled.
+        solved: all modes at each speed, including those without a track.
+        bound: (n, t, t) upper bound on the gap between two tracks that have swapped places since the previous speed,
+            rad/s; else NaN.
+        doubts: ambiguous links.
         smallest: the smallest step, rad/s.
     """
 
@@ -86,7 +87,7 @@ class Tracks:
 
     @property
     def count(self) -> int:
-        """How many tracks."""
+        """Number of tracks."""
         return self.frequencies.shape[1]
 
 
@@ -101,10 +102,10 @@ class _Link:
 
 
 def track(solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: int) -> Tracks:
-    """Follow the ``count`` lowest modes along ``speeds`` (rad/s, ascending).
+    """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending).
 
-    A mode that is among the ``count`` lowest at any speed is followed over all of them, as far as ``solve`` gives it: let that
-    give a few more.
+    A mode that is among the ``count`` lowest at any speed is tracked over all speeds, as far as ``solve`` returns it;
+    ``solve`` should therefore return a few more modes.
 
     Raises:
         ValueError: if ``speeds`` are not ascending.
@@ -127,7 +128,7 @@ def _solved(solve: Solver, omega: float, weight: Array) -> Modes:
 def _between(
     solve: Solver, a: Modes, b: Modes, weight: Array, count: int, smallest: float
 ) -> list[tuple[_Link, Modes]]:
-    """Links and modes from ``a`` (without) to ``b`` (with), as many as it takes."""
+    """Links and modes from ``a`` (excluded) to ``b`` (included), with as many steps as required."""
     link = _link(a, b, weight)
     if b.omega - a.omega <= smallest * (1 + 1e-9) or _sure(link, a, count):
         return [(link, b)]
@@ -149,7 +150,7 @@ def _link(a: Modes, b: Modes, weight: Array) -> _Link:
 
 
 def _bound(a: Modes, b: Modes, before: tuple[int, int], after: tuple[int, int], table: Array) -> float:
-    """The widest gap, rad/s, that two modes which swap places over a step can have had between."""
+    """Upper bound, rad/s, on the gap between two modes that swap places over a step."""
     (i, j), (p, q) = before, after
     turn = np.arcsin(np.sqrt(min(max(table[i, q], table[j, p]), 1.0)))
     apart = [abs(x[m] ** 2 - x[n] ** 2) for x, (m, n) in ((a.frequencies, before), (b.frequencies, after))]
@@ -160,7 +161,7 @@ def _bound(a: Modes, b: Modes, before: tuple[int, int], after: tuple[int, int], 
 
 
 def _sure(link: _Link, a: Modes, count: int) -> bool:
-    """Whether nothing would be learnt from a smaller step about the ``count`` lowest modes."""
+    """Whether the links of the ``count`` lowest modes need no smaller step."""
     for i, p in zip(link.rows, link.columns, strict=True):
         if (i < count or p < count) and link.table[i, p] < SURE:
             return False
@@ -170,7 +171,7 @@ def _sure(link: _Link, a: Modes, count: int) -> bool:
 def _strung(
     points: Sequence[Modes], links: Sequence[_Link], speeds: Sequence[float] | Array, count: int, smallest: float
 ) -> Tracks:
-    """Tracks from links; those that are never among the ``count`` lowest are left out."""
+    """Tracks from links, without those that are never among the ``count`` lowest."""
     owner = [list(range(len(points[0].frequencies)))]  # the track of each mode at each speed
     tracks = len(owner[0])
     doubts: list[Doubt] = []

@@ -1,6 +1,6 @@
-"""How far a rotating blade's frequencies rise: Fig. 3 of Park et al. (2010), for the stand-ins of its unpublished blade.
+"""Rise of a blade's frequencies with rotor speed: Fig. 3 of Park et al. (2010), for stand-ins of its unpublished blade.
 
-The paper prints no frequency of its blade, only that the largest variation is 8 % at 20 rpm and 16.5 % at 30 rpm.
+The paper gives no frequency of its blade, only the largest variation: 8 % at 20 rpm and 16.5 % at 30 rpm.
 """
 
 from dataclasses import dataclass
@@ -13,18 +13,18 @@ from ..judge.pairing import Array
 from .diagram import Campbell, Wanted, campbell, rises
 
 PRINTED = {20.0: 0.08, 30.0: 0.165}
-"""Rotor speed, rpm → the largest variation the paper states."""
+"""Rotor speed, rpm → largest variation given in the paper."""
 
 LOWEST = 5
-"""Modes in the paper's figure."""
+"""Number of modes in the paper's figure."""
 
 
 @dataclass(frozen=True)
 class Variation:
-    """One blade's rises.
+    """Frequency rises of one blade.
 
     Attributes:
-        diagram: of the converged blade.
+        diagram: Campbell diagram of the converged blade.
         rises: (2, t) at the speeds of ``PRINTED``, relative to rest.
         lumped: (2, t) the same with the paper's discretisation.
     """
@@ -35,7 +35,7 @@ class Variation:
 
 
 def variations(case: str = "park-blade", elements: int | None = None) -> tuple[Variation, ...]:
-    """Of each blade of a case that states the paper's discretisation, over 0 to 30 rpm."""
+    """Variations of each blade of a case that specifies the paper's discretisation, over 0 to 30 rpm."""
     known = library.load(case)
     lumping = known.text.discretisation
     assert lumping is not None
