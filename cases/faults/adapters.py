@@ -73,7 +73,7 @@ def _times(factor: float) -> Callable[[Modes], Modes]:
 
 
 def _shuffled(modes: Modes) -> Modes:
-    """The shapes within each of the first two pairs of modes are interchanged."""
+    """The shapes of the first and the second pair of modes are interchanged."""
     order = np.arange(len(modes.frequencies))
     order[:4] = order[[2, 3, 0, 1]]
     return replace(modes, shapes=modes.shapes[order])

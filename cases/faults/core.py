@@ -39,8 +39,8 @@ BESIDE[2, 3] = BESIDE[3, 2] = 0.2 * 0.1
 BESIDE[3, 3] = BESIDE[5, 5] = 0.2 * 0.1**2
 
 CONED = Trial("pretwisted-beam", (4.0,), ("exudyn-tree",), lambda b: replace(b, precone=0.1, tip_mass=BESIDE), modes=2)
-"""With a point mass at the tip: a fifth of the beam's mass, offset from the axis by a tenth of its length. Without precone
-or without offset, reversing the sign of the other gives a mirror image with the same frequencies."""
+"""With a point mass at the tip: a fifth of the beam's mass, offset from the axis by a tenth of its length. Without
+precone or without offset, reversing the sign of the other gives a mirror image with the same frequencies."""
 
 
 COUPLED = replace(CONED, change=lambda b: _coupled(replace(b, precone=0.1, tip_mass=BESIDE)))

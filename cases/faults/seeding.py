@@ -1,8 +1,9 @@
 """Seeded faults: the pipeline with one faulty component, which must be detected.
 
 A fault replaces a named object of a module (a *seam*) while the real matrix runs a small case. It is detected by cells
-that are bad with the fault and not without it. A fault in judging may make cells better instead of worse; it is detected
-if another fault, which must be caught, no longer is. Faults in counting, history and gate are detected by their canaries.
+that are bad with the fault and not without it. A fault in judging may make cells better instead of worse; it is
+detected if another fault, which must be caught, no longer is. Faults in counting, history and gate are detected by
+their canaries.
 
 A fault acts only in the thread that runs its trial, so that trials may share a process with real work. Compiled loops
 cannot be replaced from Python: seams of core are the functions that call them.
@@ -33,7 +34,7 @@ from ..verify.mechanism_case import MechanismCase
 Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"]
 
 Seam = tuple[Any, str, Callable[[Any], Any]]
-"""A module or class, the name of a function or constant in it, and a function that makes the faulty from the right one."""
+"""A module or class, the name of a function or constant in it, and a function from the right to the faulty object."""
 
 BAD = ("fail", "inconclusive")
 
@@ -139,7 +140,7 @@ class Serial(Executor):
 
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
-    """What the real matrix makes of a trial."""
+    """Cells of a trial run by the real matrix."""
     if trial.case in library.mechanisms():
         return matrix.run([_turning(trial)], known(trial), Serial(), parts=False).cells
     case, changed = _variant(trial)
@@ -175,14 +176,14 @@ def _described(trial: Trial, _paths: tuple[str, ...]) -> tuple[Description, ...]
 
 @lru_cache
 def faultless(trial: Trial) -> tuple[Cell, ...]:
-    """What the real matrix makes of a trial without any fault; once in a process."""
+    """Cells of a trial run by the real matrix without any fault; computed once per process."""
     return cells(trial)
 
 
 def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
     """Run one fault's trial.
 
-    ``by_name`` finds another fault by its name; ``canaries`` are those of counting, history and gate.
+    ``by_name`` returns another fault by its name; ``canaries`` runs those of counting, history and gate.
     """
     trial = fault.trial
     if fault.blinds:
@@ -202,7 +203,7 @@ def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[]
 
 
 def _blinding(fault: Fault, caught: Fault) -> Control:
-    """A fault in what judges: with it, another is caught no longer, or cells that are right are bad."""
+    """Result for a fault in judging: another fault is no longer caught, or correct cells are bad."""
     assert caught.trial
     if absent := [one.asked for one in known(caught.trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
@@ -217,7 +218,7 @@ def _blinding(fault: Fault, caught: Fault) -> Control:
 
 
 def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:
-    """Which cells are bad with a fault and not without it."""
+    """Result for a fault from the cells that are bad with it and not without it."""
     was_bad = {_key(c) for c in right if c.verdict in BAD}
     bad = [c for c in wrong if c.verdict in BAD and _key(c) not in was_bad]
     changes = [c.difference for c in bad if c.difference is not None]

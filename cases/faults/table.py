@@ -1,4 +1,4 @@
-"""All seeded faults, by name; those that every run executes, and the task that executes some of them."""
+"""All seeded faults by name, those that every run executes, and the task that executes some of them."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ FAST = tuple(fault.name for fault in ALL if fault.fast)
 
 
 def canaries() -> list[str]:
-    """What counting, history and gate should have said of their canaries and did not."""
+    """Expected results of the canaries of counting, history and gate that are missing."""
     return [*counts(), *gates()]
 
 
@@ -30,7 +30,7 @@ def chosen(text: str) -> tuple[str, ...]:
     """Names of faults: ``fast``, ``all``, ``none``, or names separated by commas.
 
     Raises:
-        CaseError: if there is no such fault; the nearest is suggested.
+        CaseError: if a fault does not exist; the nearest name is suggested.
     """
     sets = {"fast": FAST, "all": tuple(BY_NAME), "none": ()}
     names = sets.get(text, tuple(dict.fromkeys(name.strip() for name in text.split(","))))
