@@ -152,7 +152,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of the answers of one column for one blade; see ``references.interface.Independence``."""
+    """Origin of the answers of one column for one blade; see ``references.protocol.interface.Independence``."""
 
     case: str
     code: str

@@ -7,7 +7,7 @@ wide, does not count; neither does a measurement.
 Witnesses with the same engine, theory or rotation terms may share an error, so they form one *group*, even if only a
 third witness links them. A code with core's discretisation or frames confirms that core solves its model, not that the
 model is right, and belongs to no group. The same applies to a code that declares no origin
-(``references.interface.Independence``), and to a table that supports only a wider target than the case's.
+(``references.protocol.interface.Independence``), and to a table that supports only a wider target than the case's.
 
 Independent witnesses have two targets: that of the case (0.1 %, the paper's), and ``FINE`` for the extrapolated values
 of their refinements.
