@@ -1,6 +1,7 @@
-"""Files that are there wholly or not at all: written beside their place, flushed to the disk, then renamed onto it.
+"""Atomic file writes: a temporary file in the same folder is written, flushed to disk, and renamed onto the target.
 
-A reader sees the earlier file or the new one, never half of either; after a full disk or a kill the earlier one is still there.
+A reader sees either the earlier or the new file, never a partial one; after a full disk or a kill the earlier file is
+intact.
 """
 
 import os
@@ -10,21 +11,21 @@ from pathlib import Path
 from typing import BinaryIO
 
 PART = ".part"
-"""Ends the name of a file that is being written. The name is fixed, so that the next attempt takes its place."""
+"""Suffix of a file being written. It is fixed, so that the next attempt replaces the file."""
 
 
 def write(path: Path, content: str | bytes | Iterable[bytes]) -> None:
     """Write ``content`` to ``path``; text as UTF-8, with line ends as they are.
 
     Raises:
-        OSError: naming ``path``, if it cannot be written; what was there before is unchanged.
+        OSError: if ``path`` cannot be written; the message names it. An existing file is then unchanged.
     """
     parts = [content.encode() if isinstance(content, str) else content] if isinstance(content, str | bytes) else content
     through(path, lambda file: file.writelines(parts))
 
 
 def through(path: Path, save: Callable[[BinaryIO], object]) -> None:
-    """Write ``path`` by a function that takes an open binary file, such as Matplotlib's ``savefig``.
+    """Write ``path`` with a function that accepts an open binary file, such as Matplotlib's ``savefig``.
 
     Raises:
         OSError: as for ``write``.

@@ -1,7 +1,8 @@
-"""The ways a case file can give its blade, and what ``core`` makes of each.
+"""Kinds of blades in a case file, and their conversion to a ``core`` blade.
 
-Beams and stations are straight: shear is rigid (Euler–Bernoulli), the sections' principal axes turn with twist. Whole
-sections, and files of other formats, are in ``readers.sections``. Every kind may say how it is mounted on the hub.
+Beams and stations are straight; shear is rigid (Euler–Bernoulli), and the sections' principal axes rotate with the
+twist. Full sections, and files of other formats, are in ``readers.sections``. Every kind may specify its mounting on
+the hub.
 """
 
 from dataclasses import replace
@@ -29,7 +30,7 @@ from .readers.sections import FromFile, Mounted, Sections
 from .readers.source import LONGEST, Unused, unused
 
 POISSON = 0.3
-"""For the torsional stiffness of a dimensionless beam, which has no influence on its bending."""
+"""Poisson's ratio for the torsional stiffness of a dimensionless beam, which does not affect its bending."""
 
 
 def _positive(description: str) -> Meta:
@@ -69,9 +70,9 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
 
 
 class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless"):
-    """A uniform beam as the literature has it: length, mass per length and bending stiffness (both ways) are 1.
+    """A uniform dimensionless beam: length, mass per length and bending stiffness (both directions) are 1.
 
-    Speeds and frequencies are then in units of ``√(EI / (ρ A L⁴))``, and ``rad/s`` reads as that unit. No rotary inertia.
+    Speeds and frequencies are in units of ``√(EI / (ρ A L⁴))``, in place of ``rad/s``. No rotary inertia.
     """
 
     slenderness: Annotated[float, _positive("α = √(A L² / I), dimensionless")]
@@ -93,7 +94,7 @@ class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless")
 
 
 class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
-    """A blade from a table of stations along its span: a CSV file beside the case file, ``#`` starting a comment."""
+    """A blade from a table of stations along its span: a CSV file next to the case file; ``#`` starts a comment."""
 
     file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
     length: Annotated[float, Meta(gt=0, le=LONGEST, description="from root to tip, m")]
@@ -120,7 +121,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
     OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
 
     def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade, and the columns of its table that a switch of the case leaves out.
+        """The blade, and the columns of its table that a switch in the case excludes.
 
         Raises:
             CaseError: if the table is missing or malformed.
@@ -166,14 +167,16 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
 
 
 STEP = 1e-7
-"""Width of the change between two pieces, of the length."""
+"""Width of the transition between two pieces, as a fraction of the length."""
 
 
 def stepped(blade: Blade, ends: np.ndarray) -> Blade:
-    """The blade with the properties of each piece's middle all along the piece; ``ends`` in fractions of its length.
+    """The blade with piecewise constant properties, those at the middle of each piece.
+
+    ``ends`` are the ends of the pieces as fractions of the length.
 
     Raises:
-        BladeError: ends that do not ascend from 0 to 1.
+        BladeError: if ``ends`` do not ascend from 0 to 1.
     """
     if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or (np.diff(ends) <= STEP).any():
         raise BladeError(f"pieces: {ends.tolist()}: ends of pieces ascend from 0 to 1; correct them")
@@ -191,7 +194,7 @@ def stepped(blade: Blade, ends: np.ndarray) -> Blade:
 
 
 def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-    """Section masses (n, 6, 6) given about their centres, about an axis that lies ``ahead`` (n,) m behind those, along y."""
+    """Transfer section masses (n, 6, 6) from their mass centres to an axis ``ahead`` (n,) m behind these, along y."""
     from_axis = sp.adjoint(sp.pose(np.eye(3), np.multiply.outer(-ahead, [0.0, 1.0, 0.0])))
     return np.swapaxes(from_axis, -1, -2) @ mass @ from_axis
 
@@ -200,10 +203,10 @@ BladeData = Beam | Dimensionless | Stations | Sections | FromFile
 
 
 def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:
-    """Columns of a CSV file by name, ``#`` starting a comment.
+    """Read the columns of a CSV file by name; ``#`` starts a comment.
 
     Raises:
-        CaseError: naming file, line and column.
+        CaseError: if the table is invalid; the message names file, line and column.
     """
     found = files.table(path, absent="a case's is looked for beside the case file; correct the name")
     numbers, rows = zip(*found, strict=True)

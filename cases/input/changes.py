@@ -1,8 +1,9 @@
 """Changes of a blade's properties by name, for "what if": ``EI_flap=*1.1``, ``tip_mass=*2``, ``pitch=2.5``.
 
-A stiffness is scaled about the section's own centre, whatever the reference axis: with the section stiffness K (6, 6), its
-inverse S and the unit vector e of a strain, ``K + (f − 1)/S(e, e) e eᵀ`` multiplies the stiffness 1/S(e, e) by f and keeps the
-other centres; the axial stiffness is scaled with its column, ``K + (f − 1) k kᵀ/K(x, x)``, which keeps the tension centre.
+A stiffness is scaled about the section's centre, independent of the reference axis: with the section stiffness K
+(6, 6), its inverse S and the unit vector e of a strain, ``K + (f − 1)/S(e, e) e eᵀ`` multiplies the stiffness 1/S(e, e)
+by f and keeps the other centres; the axial stiffness is scaled with its column, ``K + (f − 1) k kᵀ/K(x, x)``, which
+keeps the tension centre.
 """
 
 import re
@@ -26,8 +27,8 @@ class Change:
     """A change of one property.
 
     Attributes:
-        name: of the property; one of ``PROPERTIES``.
-        value: the factor, or the new value in the unit of ``PROPERTIES``.
+        name: name of the property; one of ``PROPERTIES``.
+        value: factor, or new value in the unit of ``PROPERTIES``.
         factor: whether ``value`` multiplies the property.
     """
 
@@ -40,10 +41,10 @@ class Change:
 
 
 def parse(text: str) -> Change:
-    """A change from ``NAME=*FACTOR``, or ``NAME=VALUE`` for a property that is one number.
+    """Parse a change: ``NAME=*FACTOR``, or ``NAME=VALUE`` for a scalar property.
 
     Raises:
-        CaseError: another form, an unknown property, a factor that is not positive.
+        CaseError: if the form is invalid, the property unknown, or the factor not positive.
     """
     found = FORM.fullmatch(text)
     if not found:
@@ -59,10 +60,10 @@ def parse(text: str) -> Change:
 
 
 def apply(blade: Blade, changes: Sequence[Change]) -> Blade:
-    """The blade with all changes, in their order.
+    """Apply all changes to a blade, in order.
 
     Raises:
-        CaseError: a rigid stiffness, a property that is zero, or a value that no blade has.
+        CaseError: if a stiffness is rigid, a property is zero, or a value is invalid for a blade.
     """
     for change in changes:
         try:
@@ -121,7 +122,7 @@ PROPERTIES: dict[str, Callable[[Blade, Change], Blade]] = {
     "precone": _number("precone", radians(1.0)),
     "pitch": _number("pitch", radians(1.0)),
 }
-"""What can be changed. Masses change with their moments of inertia; axes are the sections' own."""
+"""Properties that can be changed. Masses change with their moments of inertia; axes are those of the sections."""
 
 UNITS = {"hub_radius": "m", "precone": "degrees", "pitch": "degrees"}
-"""Properties that are one number, and its unit."""
+"""Scalar properties and their units."""

@@ -1,4 +1,4 @@
-"""The case that verifies a blade of which only a file is given."""
+"""The default case for a blade given only by a file."""
 
 import re
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from .readers.source import Unused
 from .schema import Case, CaseFile, Compare, Speeds, Variant
 
 MODES, TARGET = 6, 1e-3
-"""Modes compared, from the lowest, and the largest relative difference."""
+"""Number of modes compared, from the lowest, and the largest relative difference."""
 
 
 def default_case(
@@ -32,9 +32,9 @@ def default_case(
         speeds: rotor speeds, rad/s, ascending.
         rpm: whether reports give speeds in rpm and frequencies in Hz; otherwise both in rad/s.
         source: the files, and how they were read.
-        title: one line over the report.
-        modes: how many modes are compared.
-        unused: non-zero quantities of the files that the blade does not hold.
+        title: title of the report, one line.
+        modes: number of modes compared.
+        unused: non-zero quantities of the files that the blade does not use.
     """
     name = re.sub(r"[^a-z0-9.-]+", "-", Path(blade.name).stem.lower()).strip("-.") or "blade"
     omega = np.asarray(speeds, dtype=float)

@@ -1,4 +1,4 @@
-"""The one error of bad input."""
+"""The error raised for invalid input."""
 
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
@@ -11,15 +11,15 @@ from ...core.chain.steady import LargeStrainError, SteadyStateError
 from ...core.eigen import UnstableError
 
 NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError, EigensolverError, MissedModesError)
-"""What the solver raises where there is no steady state to vibrate about, or its eigensolver fails."""
+"""Errors of the solver if there is no stable steady state or the eigensolver fails."""
 
 
 LONGEST = 1000
-"""Characters of a message, whatever stands in a file."""
+"""Maximum number of characters of a message."""
 
 
 def brief(message: str) -> str:
-    """A message in one line, its middle left out where that is long."""
+    """A message on one line; the middle of a long message is omitted."""
     line = " ".join(message.split())
     return line if len(line) <= LONGEST else f"{line[: LONGEST * 2 // 3]} … {line[-LONGEST // 4 :]}"
 
@@ -32,24 +32,26 @@ class CaseError(ValueError):
 
 
 class FilesMissingError(CaseError):
-    """A case whose blade is in files that do not come with the package."""
+    """A case whose blade is in files that are not part of the package."""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Advice on a word that is not known: the nearest that is, else all of them."""
+    """Suggestion for an unknown word: the nearest known word, else all of them."""
     known = tuple(known)
     near = get_close_matches(word, known, 1, cutoff=0.5)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
 
 
 def rad_s(omega: float) -> str:
-    """A rotor speed in words, in rad/s."""
+    """Format a rotor speed in rad/s."""
     return f"{omega:g} rad/s"
 
 
 def unsteady(blade: str, omega: float, error: Exception, at: Callable[[float], str] = rad_s) -> CaseError:
-    """What to raise where the solver finds no stable steady state of a blade at ``omega`` rad/s; ``at`` says a speed in the
-    unit in which it was given."""
+    """The error to raise if the solver finds no stable steady state of a blade at ``omega`` rad/s.
+
+    ``at`` formats a speed in the unit in which it was given.
+    """
     if isinstance(error, np.linalg.LinAlgError):
         return CaseError(
             f"{blade}: speed: {at(omega)}: implausible stiffness-to-mass ratio: use more elements if the blade is a cable, "

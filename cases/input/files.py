@@ -1,7 +1,7 @@
-"""Text files as editors and spreadsheets save them: marks of byte order, UTF-16, other separators than a comma.
+"""Text files as saved by editors and spreadsheets: byte order marks, UTF-16, separators other than commas.
 
-What is not a text file after all is told from one: an empty file, a binary one, a web page, a pointer in a file's stead.
-Files that a file names are read only from the folder of the file that the user named, see ``reading``.
+Files that are not text are recognised: an empty or binary file, a web page, a pointer in place of the file. Files
+referenced by another file are read only from the folder of the file that the user named, see ``reading``.
 """
 
 import codecs
@@ -19,17 +19,17 @@ NOT_THE_FILE = (
     ("<!doctype html", "a web page, not the file: download the raw file"),
     ("<html", "a web page, not the file: download the raw file"),
 )
-"""How a file begins that stands where another should: what it is and what to do."""
+"""Beginning of a file that is in place of another → what it is and the remedy."""
 
 _folders: ContextVar[tuple[Path, ...]] = ContextVar("folders", default=())
-"""Where files must lie; empty: anywhere."""
+"""Folders from which files may be read; empty: any."""
 
 _outside: ContextVar[bool] = ContextVar("outside", default=False)
 
 
 @contextmanager
 def outside_allowed(allowed: bool = True) -> Iterator[None]:
-    """Within this, files may name files anywhere (``--allow-outside``)."""
+    """Context manager that allows files to reference files in any folder (``--allow-outside``)."""
     token = _outside.set(allowed)
     try:
         yield
@@ -39,19 +39,19 @@ def outside_allowed(allowed: bool = True) -> Iterator[None]:
 
 @contextmanager
 def reading(*named: Path) -> Iterator[None]:
-    """Within this, files are read only from the folders of those that the user named.
+    """Context manager that restricts reading to the folders of the files that the user named.
 
-    HAWC2 looks for files from the model's folder: the one above an htc file's, if that is called ``htc``. Inside another
-    ``reading`` this one is of a file that another one names, and changes nothing.
+    HAWC2 resolves paths from the model's folder: the parent of an htc file's folder, if that is called ``htc``. A nested
+    ``reading``, for a file that another one references, changes nothing.
     """
     folders = [path.parent.parent if _resolved(path.parent).name == "htc" else path.parent for path in named]
-    with _only(_folders.get() or tuple(map(_resolved, (*folders, *named)))):  # a named file may be a link to anywhere
+    with _only(_folders.get() or tuple(map(_resolved, (*folders, *named)))):  # a named file may be a link to any folder
         yield
 
 
 @contextmanager
 def reading_also(folder: Path) -> Iterator[None]:
-    """Within this, files may lie in ``folder`` as well: one that the user named otherwise than by a file."""
+    """Context manager that also allows ``folder``, which the user named other than by a file."""
     with _only((*_folders.get(), _resolved(folder))):
         yield
 
@@ -68,15 +68,15 @@ def _only(folders: tuple[Path, ...]) -> Iterator[None]:
 def _resolved(path: Path) -> Path:
     try:
         return path.resolve()
-    except (OSError, ValueError, RuntimeError):  # a loop of links, an impossible name: reading it says so
+    except (OSError, ValueError, RuntimeError):  # a loop of links or an invalid name: reported when it is read
         return path.absolute()
 
 
 def inside(path: Path) -> None:
-    """Refuse a file that lies elsewhere, ``..`` and links followed.
+    """Check that a file lies in an allowed folder, after resolving ``..`` and links.
 
     Raises:
-        CaseError: naming the option that allows it.
+        CaseError: if it does not; the message names the option that allows it.
     """
     folders = _folders.get()
     if folders and not _outside.get() and not any(_resolved(path).is_relative_to(folder) for folder in folders):
@@ -87,15 +87,15 @@ def inside(path: Path) -> None:
 
 
 def text(path: Path, absent: str = "correct the path", older: bool = False) -> str:
-    """A file's text: UTF-8, or UTF-16 with its mark.
+    """Read a text file: UTF-8, or UTF-16 with a byte order mark.
 
     Args:
-        path: of the file.
-        absent: what to do where there is none.
-        older: whether bytes that are not UTF-8 are Latin-1, in which every byte is a character.
+        path: path of the file.
+        absent: remedy in the message if the file does not exist.
+        older: whether a file that is not UTF-8 is decoded as Latin-1, in which every byte is a character.
 
     Raises:
-        CaseError: if it cannot be read, is empty, or no text; or lies outside the folder of the file that names it.
+        CaseError: if the file cannot be read, is empty or not text, or lies outside the allowed folders.
     """
     inside(path)
     try:
@@ -123,11 +123,12 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
 
 
 def table(path: Path, absent: str) -> list[tuple[int, list[str]]]:
-    """The rows of a CSV file and the lines they are on: ``#`` starts a comment; the header says whether commas, semicolons or
-    tabs separate.
+    """Read the rows of a CSV file with their line numbers.
+
+    ``#`` starts a comment; the header determines the separator: commas, semicolons or tabs.
 
     Raises:
-        CaseError: as ``text``; and if there are only comments.
+        CaseError: as ``text``, and if there are only comments.
     """
     lines = [(k, line.partition("#")[0]) for k, line in enumerate(text(path, absent).splitlines(), 1)]
     lines = [(k, line) for k, line in lines if line.strip()]

@@ -1,4 +1,4 @@
-"""The cases and mechanisms that come with the package, and any other by its file."""
+"""The cases and mechanisms of the package, and others given by file."""
 
 from dataclasses import replace
 from importlib.resources import as_file, files
@@ -12,12 +12,12 @@ from .schema import Case, read
 
 
 def names() -> tuple[str, ...]:
-    """Names of the cases that come with the package, sorted."""
+    """Names of the cases of the package, sorted."""
     return tuple(sorted(Path(f.name).stem for f in files(data).iterdir() if f.name.endswith(".toml")))
 
 
 def absent() -> dict[str, str]:
-    """Cases that come with the package but not with their blade's files, where those are not found: name → what to do."""
+    """Cases of the package whose blade files are not included and not found: name → remedy."""
     out = {}
     for name in names():
         try:
@@ -28,7 +28,7 @@ def absent() -> dict[str, str]:
 
 
 def mechanisms() -> tuple[str, ...]:
-    """Names of the mechanisms that come with the package, sorted."""
+    """Names of the mechanisms of the package, sorted."""
     folder = files(data) / "mechanisms"
     return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith(".toml")))
 
@@ -37,7 +37,7 @@ def mechanism(name: str) -> Described:
     """A mechanism by its name, or by the path of its TOML file.
 
     Raises:
-        CaseError: if there is no such mechanism (the nearest is suggested), or its file is at fault.
+        CaseError: if the mechanism does not exist (the nearest name is suggested), or its file is invalid.
     """
     if name in mechanisms():
         with as_file(files(data) / "mechanisms" / f"{name}.toml") as path:
@@ -53,7 +53,7 @@ def load(name: str) -> Case:
     """A case by its name, or by the path of its TOML file.
 
     Raises:
-        CaseError: if there is no such case (the nearest is suggested), or its file is at fault.
+        CaseError: if the case does not exist (the nearest name is suggested), or its file is invalid.
     """
     if name in names():
         with as_file(files(data)) as folder:
@@ -67,10 +67,10 @@ def load(name: str) -> Case:
 
 
 def select(name: str) -> Case:
-    """A case by name or file, or with only one of its blades: ``park-blade/surrogate``.
+    """A case by name or file, optionally with only one of its blades: ``park-blade/surrogate``.
 
     Raises:
-        CaseError: if there is no such case or blade.
+        CaseError: if the case or blade does not exist.
     """
     stem, _, blade = name.partition("/")
     if name.endswith(".toml") or not blade:

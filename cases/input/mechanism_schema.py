@@ -1,7 +1,7 @@
-"""What a mechanism's file may say: the words of ``core.multibody``, unknown keys refused, every unit in its description.
+"""Schema of a mechanism's file: the terms of ``core.multibody``; unknown keys are rejected; descriptions give the units.
 
-Bodies and joints are tables by name, ``[bodies.hub]``; what acts on a coordinate is keyed by it, ``shaft.rz = {rate = 30.0}``
-under ``[motions]``; springs, bushings and beams are lists, ``[[springs]]``.
+Bodies and joints are tables by name, ``[bodies.hub]``; data for a coordinate are keyed by its name,
+``shaft.rz = {rate = 30.0}`` under ``[motions]``; springs, bushings and beams are lists, ``[[springs]]``.
 """
 
 from typing import Annotated, Any, Literal
@@ -21,7 +21,7 @@ ORIGIN: Three = (0.0, 0.0, 0.0)
 
 
 class Frame(Struct, frozen=True, forbid_unknown_fields=True):
-    """A frame in a body: a point and either an axis for its z, or a turn of all three axes."""
+    """A frame in a body: a point, and either the direction of its z axis or a rotation of all three axes."""
 
     point: Annotated[Three, Meta(description="m, in the body's frame")] = ORIGIN
     axis: Annotated[
@@ -31,7 +31,7 @@ class Frame(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BodyData(Struct, frozen=True, forbid_unknown_fields=True):
-    """A rigid body; without mass it only carries joints."""
+    """A rigid body; a body without mass only connects joints."""
 
     mass: Annotated[float, Meta(ge=0, description="kg")] = 0.0
     centre: Annotated[Three, Meta(description="centre of mass in the body's frame, m")] = ORIGIN
@@ -62,7 +62,7 @@ class HarmonicData(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class MotionData(Struct, frozen=True, forbid_unknown_fields=True):
-    """Motion of a coordinate: numbers at the instant looked at, or a polynomial and harmonics of time, added up."""
+    """Motion of a coordinate: values at one instant, or the sum of a polynomial and harmonics of time."""
 
     position: Annotated[float | None, Meta(description="m or rad")] = None
     rate: Annotated[float, Meta(description="m/s or rad/s")] = 0.0
@@ -93,7 +93,7 @@ class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BushingData(Struct, frozen=True, forbid_unknown_fields=True):
-    """Elastic in all six directions between two frames, strain-free where they coincide."""
+    """Elastic element in all six directions between two frames, strain-free if they coincide."""
 
     body_a: str
     body_b: str
@@ -136,14 +136,14 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
-    """A formula for this mechanism, with its own parameters: see ``references.blade_formulae``."""
+    """A formula for this mechanism, with separate parameters: see ``references.blade_formulae``."""
 
     formula: str
     parameters: Annotated[dict[str, float], Meta(description="SI")]
 
 
 class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
-    """A mechanism's file: see the structures above for what each table may say."""
+    """A mechanism's file; the structures above describe its tables."""
 
     name: Typed
     bodies: Annotated[dict[Name, Any], Meta(min_length=1, description="name → BodyData")]

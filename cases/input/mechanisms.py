@@ -1,4 +1,4 @@
-"""A mechanism from its TOML file (``mechanism_schema``): read, checked, and as core is given it."""
+"""Reading and validation of a mechanism in a TOML file (``mechanism_schema``), and its conversion to core."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,10 +27,10 @@ class Described:
     """A mechanism's file, read.
 
     Attributes:
-        path: of the file, for messages.
+        path: path of the file, for messages.
         text: the file's contents.
-        mechanism: as core is given it.
-        guess: coordinates to start from, by name.
+        mechanism: mechanism as passed to core.
+        guess: initial coordinates, by name.
     """
 
     path: str
@@ -55,16 +55,16 @@ class Described:
 
 
 def is_one(path: Path) -> bool:
-    """Whether a TOML file holds a mechanism: it has bodies.
+    """Whether a TOML file describes a mechanism, i.e. has bodies.
 
     Raises:
-        CaseError: if there is no such file, or it is not TOML.
+        CaseError: if the file does not exist or is not TOML.
     """
     return "bodies" in document(path)
 
 
 def read(path: Path) -> Described:
-    """The mechanism in a TOML file.
+    """Read the mechanism in a TOML file.
 
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
@@ -73,7 +73,7 @@ def read(path: Path) -> Described:
 
 
 def decode(data: Mapping[str, Any], path: str) -> Described:
-    """The mechanism in a decoded TOML document.
+    """Build the mechanism from a decoded TOML document.
 
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
@@ -179,7 +179,7 @@ def _pose(frame: Frame, where: str) -> Array:
 
 
 def _moments(value: list[float | list[float]], where: str) -> Array:
-    """A tensor of inertia: of its principal moments none is more than the others together."""
+    """An inertia tensor (3, 3); no principal moment may exceed the sum of the others."""
     out = _matrix(value, 3, where)
     least, middle, most = np.linalg.eigvalsh(out).tolist()
     if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
@@ -207,7 +207,7 @@ def _by_coordinate(table: Mapping[str, Mapping[str, Any]], kind: type[T], path: 
 
 
 def _check_names(text: MechanismFile, mechanism: mb.Mechanism, guess: Mapping[str, float], path: str) -> None:
-    """Refuse coordinates that no joint has, and what core refuses before it knows a state."""
+    """Reject coordinates without a joint, and anything core rejects before it has a state."""
     try:
         known = compile_tree(at_time(mechanism, 0.0)).coordinates
     except mb.MechanismError as error:

@@ -1,11 +1,11 @@
-"""What may be a name: one line of printable text, short enough for a table, a figure's title and a file's name."""
+"""Valid names: one line of printable text, short enough for a table, a figure's title and a file name."""
 
 from typing import Annotated
 
 from msgspec import Meta
 
 LONGEST = 100
-"""Characters of a name."""
+"""Maximum number of characters of a name."""
 
 RULE = f"one line of printable characters, {LONGEST} at most (names that are typed: a-z, 0-9, point, hyphen)"
 
@@ -13,12 +13,12 @@ Name = Annotated[
     str,
     Meta(min_length=1, max_length=LONGEST, pattern=r"\A[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+\Z"),
 ]
-"""Any name, as of a blade, a variant or a body."""
+"""A name, such as that of a blade, a variant or a body."""
 
 Typed = Annotated[str, Meta(max_length=LONGEST, pattern=r"\A[a-z0-9][a-z0-9.-]*\Z", description="as typed and printed")]
-"""A name that is typed on the command line."""
+"""A name used on the command line."""
 
 
 def named(text: str) -> bool:
-    """Whether a text may be a ``Name``."""
+    """Whether a text is a valid ``Name``."""
     return 0 < len(text) <= LONGEST and text.isprintable()

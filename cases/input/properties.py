@@ -1,15 +1,15 @@
-"""What a blade is before it is solved: its mass and moments, and the centres and principal axes of its sections.
+"""Properties of a blade: its mass and moments, and the centres and principal axes of its sections.
 
-All of it is read off the 6×6 matrices, whatever the reference axis they are about. With the compliance ``S`` of a section
-(strains (axial, y, z, torsion, about y, about z) from forces in that order):
+They follow from the 6×6 matrices, about any reference axis. With the compliance ``S`` of a section (strains (axial, y,
+z, torsion, about y, about z) from forces in that order):
 
-* the tension centre is where an axial force bends nothing;
-* the shear centre is where a force across turns nothing: ``y = −S(τ, z) / S(τ, τ)``, ``z = S(τ, y) / S(τ, τ)``;
-* the principal axes are those of the bending part of ``S``, which no shift of the axis changes.
+* an axial force at the tension centre causes no bending;
+* a transverse force at the shear centre causes no torsion: ``y = −S(τ, z) / S(τ, τ)``, ``z = S(τ, y) / S(τ, τ)``;
+* the principal axes are those of the bending part of ``S``, which is independent of the position of the axis.
 
 (Hodges, *Nonlinear Composite Beam Theory*, 2006, ch. 4; D. H. Hodges' generalised shear centre.) The mass centre comes
-from the first moments ``M(x, ψ) = −m y``, ``M(x, θ) = m z``. A strain that is rigid has no compliance: a centre that only it
-could tell is then on the reference axis, as every centre is of a section without couplings.
+from the first moments ``M(x, ψ) = −m y``, ``M(x, θ) = m z``. A rigid strain has no compliance: a centre that depends on
+it is taken on the reference axis, as are all centres of a section without couplings.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from ...core.space.inertia import about_centre, transformed
 Array = NDArray[np.float64]
 
 ROUND = 1e-3
-"""Bending stiffnesses nearer to each other than this, relative, have no principal axes worth naming."""
+"""Relative difference of the bending stiffnesses below which principal axes are undefined."""
 
 _GAUSS = 6
 
@@ -37,7 +37,7 @@ class Mass:
 
     Attributes:
         mass: kg.
-        centre: (3,) m, of mass, from the point.
+        centre: (3,) m, mass centre, from the point.
         moments: (3, 3) kg m², second moments (moment of inertia) about the point.
     """
 
@@ -59,15 +59,15 @@ class Mass:
 
 @dataclass(frozen=True)
 class Sections:
-    """At each station, in the section's own axes, m and rad; (n,) each, centres (n, 2) along y and z.
+    """Properties at each station, in section axes, m and rad; (n,) each, centres (n, 2) along y and z.
 
     Attributes:
         mass_centre, tension_centre, shear_centre: from the reference axis.
-        principal: angle from the section's y and z to the nearest principal bending axes, about x, within ±π/4; NaN for a
-            section that bends alike every way.
+        principal: angle from the section's y and z to the nearest principal bending axes, about x, within ±π/4; NaN for
+            a section with equal bending stiffness in all directions.
         mass_axes: the same for the axes of the sectional inertia about the mass centre; NaN without inertia.
         EA, GJ: N, N m²; about the tension and shear centre.
-        EI_flap, EI_edge: N m², in the principal axes: resisting motion along z and y.
+        EI_flap, EI_edge: N m², in the principal axes, against motion along z and y.
     """
 
     mass_centre: Array
@@ -82,12 +82,12 @@ class Sections:
 
 
 def about_hub(blade: Blade) -> Mass:
-    """About the hub's centre in the hub's axes (z the rotor's), precone and pitch included, tip mass included."""
+    """Mass about the hub's centre in the hub's axes (z along the rotor's), with precone, pitch and tip mass."""
     return _properties(_inertia(blade))
 
 
 def about_root(blade: Blade) -> Mass:
-    """About the root in the blade's axes (x along the blade, coned and pitched with it), tip mass included."""
+    """Mass about the root in the blade's axes (x along the blade, coned and pitched with it), with the tip mass."""
     return _properties(transformed(_inertia(blade), sp.inverse(root(blade))))
 
 
@@ -97,7 +97,7 @@ def tip(blade: Blade) -> Mass | None:
 
 
 def _inertia(blade: Blade) -> Array:
-    """(6, 6) about the hub's centre: Gauss quadrature between stations, between which mass is linear."""
+    """Inertia (6, 6) about the hub's centre by Gauss quadrature between stations; mass is linear between them."""
     s, weight = (part.ravel() for part in gauss.between(blade.stations, _GAUSS))
     parts = np.concatenate([mass_at(blade, s) * weight[:, None, None], blade.tip_mass[None]])
     return transformed(parts, frames(blade, np.append(s, blade.stations[-1]))).sum(0)
@@ -138,7 +138,7 @@ def sections(blade: Blade) -> Sections:
 
 
 def _compliance(blade: Blade) -> Array:
-    """(n, 6, 6) with nothing for rigid strains."""
+    """Compliance (n, 6, 6), zero for rigid strains."""
     soft = np.flatnonzero(np.isfinite(blade.stiffness).all(axis=(0, 2)))
     out = np.zeros_like(blade.stiffness)
     out[:, soft[:, None], soft] = np.linalg.inv(blade.stiffness[:, soft[:, None], soft])

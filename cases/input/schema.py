@@ -1,6 +1,6 @@
-"""What a case file may say: a frozen schema, unknown keys refused, the unit of every key in its description.
+"""Schema of a case file: frozen structures; unknown keys are rejected; descriptions give the units.
 
-A case asks one question of every code: these blades, at these speeds, compared in these motions, within this target.
+A case specifies the same task for every code: blades, speeds, compared motions and the target.
 """
 
 import math
@@ -29,7 +29,7 @@ Values = list[Annotated[float, Meta(ge=0)]] | str
 
 
 LOOSEST = 0.5
-"""No target is wider: nothing that differs by more agrees."""
+"""Widest allowed target."""
 
 Confirmations = Annotated[int, Meta(ge=0, le=20)]
 
@@ -45,7 +45,7 @@ class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Compare(Struct, frozen=True, forbid_unknown_fields=True):
-    """Which modes are compared, and how closely they must agree."""
+    """The compared modes and the target."""
 
     modes: Annotated[int, Meta(ge=1, le=100, description="how many, from the lowest, of those that qualify")]
     motions: Annotated[
@@ -62,12 +62,12 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     lacking: Annotated[str, Meta(description="why no group is required, where none is")] = ""
 
     def required(self, label: str) -> int:
-        """How many groups must confirm the variant ``label``."""
+        """Number of groups that must confirm the variant ``label``."""
         return self.groups if isinstance(self.groups, int) else self.groups.get(label, 1)
 
 
 class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
-    """A discretisation of core's own, shown in a column of its own: usually the source's."""
+    """A discretisation of core, usually that of the source, shown in a separate column."""
 
     elements: Annotated[int, Meta(ge=1, description="number of elements")]
     mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]
@@ -113,7 +113,7 @@ class Variant:
         name: the case's name, and the variant's after a slash if it has several.
         blade: as every code is given it.
         speeds: (k,) rad/s, ascending.
-        unused: non-zero quantities of the blade's files that the blade does not hold.
+        unused: non-zero quantities of the blade's files that the blade does not use.
     """
 
     name: str
@@ -124,12 +124,12 @@ class Variant:
 
 @dataclass(frozen=True)
 class Case:
-    """A case file, read: ``text`` as it stands there, and its blades.
+    """A case file as read, with its blades.
 
     Attributes:
-        path: of the file, for messages.
+        path: path of the file, for messages.
         text: the file's contents.
-        variants: one at least.
+        variants: blades of the case, at least one.
     """
 
     path: str
@@ -138,12 +138,12 @@ class Case:
 
     @property
     def name(self) -> str:
-        """As typed on the command line."""
+        """Name on the command line."""
         return self.text.name
 
 
 def read(path: Path) -> Case:
-    """The case in a TOML file.
+    """Read the case in a TOML file.
 
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
@@ -153,7 +153,7 @@ def read(path: Path) -> Case:
 
 
 def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
-    """The case in a decoded TOML document; ``folder`` holds the tables it names.
+    """Build the case from a decoded TOML document; ``folder`` contains the tables it references.
 
     Raises:
         CaseError: one line with file, field, value, cause and remedy.
@@ -176,7 +176,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
 
 
 def _confirmed(text: CaseFile, path: str) -> None:
-    """Required groups are of this case's variants, and where none is required the file says why."""
+    """Check that required groups refer to variants of this case, and that a requirement of none has a reason."""
     compare = text.compare
     if isinstance(compare.groups, dict):
         for label in compare.groups:
@@ -189,15 +189,16 @@ def _confirmed(text: CaseFile, path: str) -> None:
 
 
 FASTEST, MOST_SPEEDS = 1e6, 10_000
-"""Of a range: the highest speed, in any unit, and the most steps."""
+"""Limits of a range: the highest speed, in any unit, and the number of steps."""
 
 
 def speed_range(text: str) -> NDArray[np.float64]:
-    """Speeds from ``first:last:step``, both ends included (the last step is the shorter where it must be), from a list
-    ``0,5,10``, or from one number.
+    """Parse speeds from ``first:last:step``, from a list ``0,5,10``, or from one number.
+
+    Both ends of a range are included; the last step may be shorter.
 
     Raises:
-        ValueError: saying what is wrong with it.
+        ValueError: if the text is invalid; the message gives the reason.
     """
     if "," in text:
         listed = np.concatenate([speed_range(part) for part in text.split(",")])
@@ -223,10 +224,10 @@ def speed_range(text: str) -> NDArray[np.float64]:
 
 
 def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:
-    """The speeds in a file in rad/s, ascending (as they are, where they are γ).
+    """The speeds of a file in rad/s, ascending (unchanged if given as γ).
 
     Raises:
-        CaseError: none or several units, no speeds, or not ascending.
+        CaseError: if there are no or several units, no speeds, or the speeds do not ascend.
     """
     units = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(given, unit)) is not UNSET}
     if len(units) != 1:

@@ -1,4 +1,4 @@
-"""From a TOML file to a frozen structure, every fault one line: file, field, value, likely cause, remedy."""
+"""Conversion of a TOML file to a frozen structure; errors are one line: file, field, value, likely cause, remedy."""
 
 import math
 import re
@@ -18,10 +18,10 @@ T = TypeVar("T")
 
 
 def document(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file.
+    """Read the tables of a TOML file.
 
     Raises:
-        CaseError: if there is no such file, it is no text, not TOML, or nested too deeply.
+        CaseError: if the file does not exist, is not text, not TOML, or nested too deeply.
     """
     text = files.text(path, absent="correct the path, or give the name of a case")
     try:
@@ -33,7 +33,7 @@ def document(path: Path) -> dict[str, Any]:
         raise CaseError(f"{path}: not TOML: {_short(str(error))}: correct that line") from error
     except RecursionError:
         raise _too_deep(path) from None
-    except ValueError:  # Python's own limit, against numbers that take minutes to read
+    except ValueError:  # Python's limit on the digits of an integer
         raise CaseError(f"{path}: a whole number of thousands of digits: correct it") from None
     if _depth(found) > DEEPEST:
         raise _too_deep(path)
@@ -41,7 +41,7 @@ def document(path: Path) -> dict[str, Any]:
 
 
 DEEPEST = 32
-"""Tables and lists within each other; of what is read none has more than 6."""
+"""Maximum nesting depth of tables and lists; valid files need at most 6."""
 
 
 def _too_deep(path: Path) -> CaseError:
@@ -49,7 +49,7 @@ def _too_deep(path: Path) -> CaseError:
 
 
 def _depth(value: Any) -> int:
-    """Of tables and lists within each other, counted up to one too many."""
+    """Nesting depth of tables and lists, counted up to one above the limit."""
     layer, depth = [value], 0
     while layer and depth <= DEEPEST:
         inner = [v for v in layer if isinstance(v, (dict, list))]
@@ -59,22 +59,22 @@ def _depth(value: Any) -> int:
 
 
 def _short(value: str) -> str:
-    """Text from a file for a message, its middle left out where it is long."""
+    """Text from a file for a message; the middle of a long text is omitted."""
     return value if len(value) <= SHOWN else f"{value[: SHOWN // 2]} … {value[-SHOWN // 2 :]}"
 
 
 SHOWN = 200
-"""Characters of a value in a message, at most."""
+"""Maximum number of characters of a value in a message."""
 
 LARGEST = 1e30
-"""A number that nothing in a file can be, whatever its unit."""
+"""Numbers in a file must be smaller than this, in any unit."""
 
 
 def finite(value: Any, path: str, field: str = "") -> None:
-    """Refuse numbers that are none, or that no unit explains, wherever they stand.
+    """Reject non-finite and implausibly large numbers at any depth.
 
     Raises:
-        CaseError: naming the first.
+        CaseError: naming the first such number.
     """
     if isinstance(value, Mapping):
         for key, item in value.items():
@@ -90,10 +90,10 @@ def finite(value: Any, path: str, field: str = "") -> None:
 
 
 def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
-    """``data`` as a ``kind``; ``under`` is the field it stands in.
+    """Convert ``data`` to a ``kind``; ``under`` is the field that contains it.
 
     Raises:
-        CaseError: naming the field at fault.
+        CaseError: naming the invalid field.
     """
     try:
         return msgspec.convert(data, kind)
@@ -120,7 +120,7 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
     if "matching regex" in message and isinstance(value, str):
         message = f"not a name: {RULE}"
     choices = _choices(node)
-    if not choices:  # the tag of a structure is in its own union, not among the structure's fields
+    if not choices:  # the tag of a structure belongs to its union, not to the structure's fields
         table, _, _ = field.rpartition(".")
         choices = _choices(_walk(kind, table, raw, whole=True)[1])
     if isinstance(value, str) and choices and "nvalid" in message:
@@ -130,7 +130,7 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
 
 
 def _choices(node: Any) -> tuple[str, ...]:
-    """The words that a type, or the tag of its structures, may be."""
+    """Allowed values of a type, or of the tag of its structures."""
     kinds = node.types if isinstance(node, inspect.UnionType) else (node,)
     words = [w for k in kinds if isinstance(k, inspect.LiteralType) for w in k.values]
     tags = [k.tag for k in kinds if isinstance(k, inspect.StructType) and k.tag_field]
@@ -143,7 +143,7 @@ def _keys(kind: type, field: str, raw: Any) -> tuple[str, ...]:
 
 
 def _walk(kind: type, field: str, raw: Any, whole: bool = False) -> tuple[Any, Any]:
-    """The value in a field, as given, and the type it should have; with ``whole``, all of a union."""
+    """The value in a field, as given, and its expected type; with ``whole``, the complete union."""
     node: Any = _plain(inspect.type_info(kind), raw)
     steps = re.findall(r"[^.\[\]]+", field)
     for k, step in enumerate(steps):
@@ -157,7 +157,7 @@ def _walk(kind: type, field: str, raw: Any, whole: bool = False) -> tuple[Any, A
 
 
 def _plain(node: Any, raw: Any, whole: bool = False) -> Any:
-    """The type itself, without its descriptions; of several, the one that the value's tag names, or the only structure."""
+    """The type without annotations; of a union, the member that the value's tag names, or the only structure."""
     while isinstance(node, inspect.Metadata):
         node = node.type
     if isinstance(node, inspect.UnionType) and not (whole or isinstance(raw, str)):

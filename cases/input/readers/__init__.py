@@ -1,11 +1,11 @@
-"""Blades from the files they come in: the format is known by what the file says, the axes are converted at the door.
+"""Readers of blade files: the format is recognised from the contents, and axes are converted on reading.
 
-``reading(path)`` gives the blade with its source, ``read(path)`` the blade alone; a format's own module has its own
-``read`` reads any of them; ``southwell_toml.write`` and ``cases.writers`` write files that are read as the same blade.
+``reading(path)`` returns the blade with its source, ``read(path)`` only the blade; the module of each format has its own
+``read``. ``southwell_toml.write`` and ``cases.writers`` write files that are read as the same blade.
 
-The text formats are parsed here, since no library tells the line of a fault: weio 2.0.0 reads a column that is missing as
-zeros, NaN and negative stiffness as they stand, and no ``1.0D+03``; openfast_io 5.0.0 does not read BeamDyn's old header.
-YAML and TOML are parsed by libraries.
+The text formats are parsed here, since no library reports the line of an error: weio 2.0.0 reads a missing column as
+zeros, accepts NaN and negative stiffness, and does not read ``1.0D+03``; openfast_io 5.0.0 does not read BeamDyn's old
+header. YAML and TOML are parsed by libraries.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ FORMATS = ("ElastoDyn", "BeamDyn", "OpenFAST .fst", "BModes", "HAWC2", "windIO",
 
 
 def read(path: Path, mount: Mount | None = None) -> Blade:
-    """The blade in a file of any format.
+    """Read the blade in a file of any format.
 
     Raises:
         CaseError: as ``reading``.
@@ -35,11 +35,11 @@ def read(path: Path, mount: Mount | None = None) -> Blade:
 
 
 def reading(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in a file of any format, and its source.
+    """Read the blade in a file of any format, with its source.
 
     Args:
-        path: of the file; for formats of several files, of the main or the blade's.
-        mount: what the files do not say, or is to be different.
+        path: path of the file; for formats with several files, of the main file or the blade file.
+        mount: data that the files do not contain, or that override them.
 
     Raises:
         CaseError: one line with file and line, value, likely cause and remedy.
@@ -76,7 +76,7 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     """The reader of a file's format.
 
     Raises:
-        CaseError: if the file is of no known format, or there is none.
+        CaseError: if the format is unknown or the file does not exist.
     """
     module = {".toml": "southwell_toml", ".csv": "southwell_toml", ".yaml": "windio", ".yml": "windio"}.get(
         path.suffix.lower()

@@ -2,10 +2,11 @@
 
 BeamDyn's axes are x downwind, y to the trailing edge, z along the blade; matrices are about the reference curve, order
 (Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a y-component, both then turned by the
-twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in ElastoDyn). Ours swing from the
-blade's axes by the shortest way, half the product of prebend's and sweep's slopes away. Positions and twist between key
-points are natural cubic splines in z; stations are fractions of the curve's arc length. Source: Q. Wang, J. Jonkman,
-M. Sprague, B. Jonkman, *BeamDyn User's Guide and Theory Manual*, NREL, 2016.
+twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in ElastoDyn). The section axes of
+``core.blade`` follow from the blade's axes by the smallest rotation, which differs by half the product of the slopes of
+prebend and sweep. Positions and twist between key points are natural cubic splines in z; stations are fractions of the
+curve's arc length. Source: Q. Wang, J. Jonkman, M. Sprague, B. Jonkman, *BeamDyn User's Guide and Theory Manual*, NREL,
+2016.
 """
 
 from dataclasses import replace
@@ -29,7 +30,7 @@ Array = NDArray[np.float64]
 NAME = "BeamDyn"
 KEY_POINTS = ("kp_xr", "kp_yr", "kp_zr", "initial_twist")
 SAME = 1e-6
-"""Key points and stations nearer than this, of the length, are one."""
+"""Key points and stations closer than this fraction of the length coincide."""
 
 
 def is_blade(text: Text) -> bool:
@@ -43,11 +44,11 @@ def is_main(text: Text) -> bool:
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in BeamDyn's main file, or in a blade file that a main file beside it names.
+    """Read the blade in BeamDyn's main file, or in a blade file that a main file in the same folder references.
 
     Args:
-        path: of either. A blade file with neither a main file nor ``mount.length`` is refused; with the length alone it is
-            straight and untwisted.
+        path: path of either file. A blade file with neither a main file nor ``mount.length`` is rejected; with only the
+            length it is straight and untwisted.
         mount: hub radius, precone and pitch, which BeamDyn does not have; ``mount.main`` is ElastoDyn's main file.
 
     Raises:
@@ -162,7 +163,7 @@ def _axis(found: Table) -> Axis:
 
 
 def _sections(text: Text) -> tuple[Table, Array, Array]:
-    """Stations' fractions, stiffness and mass (n, 6, 6) in BeamDyn's order and axes."""
+    """Fractions (n,) of the stations, and stiffness and mass (n, 6, 6) in BeamDyn's order and axes."""
     named = keys(text)
     count = whole(text, named, "station_total")
     k = named["station_total"][0] + 1
@@ -213,12 +214,12 @@ def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[floa
 
 
 def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
-    """A blade of sections at fractions ``eta`` (n,) of a curve's length, in BeamDyn's axes; stations at key points too.
+    """A blade from sections at fractions ``eta`` (n,) of a curve's length, in BeamDyn's axes.
 
-    If those are too few for the curve, there are stations in between. ``path`` is the file's, for messages.
+    Key points are also stations; more stations are added where the curve needs them. ``path`` is for messages.
 
     Raises:
-        CaseError: what cannot be.
+        CaseError: if the data are invalid.
     """
     length = axis.arc[-1]
     own = eta * length

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 TURN, FINE = np.radians(1.0), 65
-"""Of the tangent between two stations; points at which it is taken between two, and the most they are divided into."""
+"""Limit on the rotation of the tangent between two stations, points per interval to evaluate it, and most divisions."""
 
 
 class Axis(NamedTuple):
@@ -32,7 +32,7 @@ class Axis(NamedTuple):
         return z
 
     def points(self, z: Array) -> Array:
-        """The curve's points (n, 3) at ``z`` (n,), in our axes."""
+        """The curve's points (n, 3) at ``z`` (n,), in the axes of ``core.blade``."""
         x, y, _ = self.spline(z).T
         return np.stack([z, -y, x], axis=1)
 
@@ -67,7 +67,7 @@ def _arc(axis: Axis, z: Array) -> Array:
 
 
 def resolved(axis: Axis, s: Array) -> Array:
-    """The arc lengths ``s`` (n,), with more between two where the curve turns by over ``TURN``: core's spline follows those."""
+    """The arc lengths ``s`` (n,), with more inserted where the curve turns by more than ``TURN``, for core's spline."""
     fine = (s[:-1, None] + np.diff(s)[:, None] * np.linspace(0, 1, FINE)).ravel()
     t = _tangents(axis, np.interp(fine, axis.arc, axis.z)).reshape(-1, FINE, 3)
     turn = np.linalg.norm(np.diff(t, axis=1), axis=2).sum(1)
@@ -83,13 +83,13 @@ def _tangents(axis: Axis, z: Array) -> Array:
 
 
 def _swing(t: Array) -> Array:
-    """Rotations (n, 3, 3) by the shortest way from x to the tangents."""
+    """Smallest rotations (n, 3, 3) from x to the tangents."""
     w = skew(np.cross([1.0, 0.0, 0.0], t))
     return np.eye(3) + w + w @ w / (1.0 + t[:, 0])[:, None, None]
 
 
 def roll(axis: Axis, z: Array) -> Array:
-    """Angle (n,) from our untwisted section axes, swung from the blade's, to BeamDyn's, whose x has no y-component."""
+    """Angle (n,) from the untwisted section axes of ``core.blade`` to BeamDyn's, whose x has no y-component."""
     t = _tangents(axis, z)
     theirs = np.stack([-t[:, 2], np.zeros_like(z), t[:, 0]], axis=1) / np.hypot(t[:, 0], t[:, 2])[:, None]
     y, zz = np.einsum("nij,ni->jn", _swing(t), theirs)[1:]

@@ -1,10 +1,10 @@
-"""BModes 3 main files (.bmi) of a blade, with the section properties they name.
+"""BModes 3 main files (.bmi) of a blade, with the section properties file they reference.
 
 Section axes are x flapwise (downwind), y to the trailing edge, z along the blade, turned by the structural twist, positive
 with the leading edge upwind; offsets are along y, from the reference axis. The mass acts at ``cg_offst`` with principal
 moments of inertia about it in axes turned by ``tw_iner``, stretch and bending at ``tc_offst``, torsion about ``sc_offst``.
-Shear is rigid, which fixes where torsion turns about: where a shear centre is off the axis, the shear centres' line is taken
-for the blade's axis and the other centres from it, as BModes does. Source: G. Bir, *User's Guide to BModes*,
+Shear is rigid, which fixes the centre of torsion: if a shear centre is off the axis, the line of shear centres is used
+as the blade's axis and the other centres are measured from it, as in BModes. Source: G. Bir, *User's Guide to BModes*,
 NREL/TP-500-39133, 2005.
 """
 
@@ -41,7 +41,7 @@ FACTORS = {
     "tc_offst_mult": "tc_offst",
 }
 ROOTS = {1: [np.inf] * 6, 4: [np.inf, np.inf, np.inf, np.inf, 0.0, 0.0]}
-"""What hub_conn holds: 1 all, 4 pinned-free: flap and lag slopes are free."""
+"""Root directions fixed by hub_conn: 1 all, 4 pinned-free: flap and lag slopes are free."""
 
 
 def is_one(text: Text) -> bool:
@@ -50,7 +50,7 @@ def is_one(text: Text) -> bool:
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade of a BModes main file.
+    """Read the blade of a BModes main file.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -123,7 +123,7 @@ def _root(main: Text, named: Named) -> list[float]:
 
 
 def _tip(main: Text, named: Named) -> Array:
-    """The tip's rigid body (6, 6) about the axis in our axes; BModes' moments are about the tip section's axes."""
+    """The tip's rigid body (6, 6) about the axis, in section axes; BModes' moments are about the tip section's axes."""
     names = ("tip_mass", "cm_loc", "cm_axial", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
     m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
     cross = m * np.array([[0.0, -z, y], [z, 0.0, 0.0], [-y, 0.0, 0.0]])

@@ -1,11 +1,11 @@
-"""ElastoDyn's blade file (FAST 7 to OpenFAST 4), and the hub that its main file describes.
+"""ElastoDyn's blade file (FAST 7 to OpenFAST 4), and the hub in its main file.
 
-The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes turned by the
-structural twist. OpenFAST turns a positive twist, and pitch, with the leading edge upwind: about −x here. There is neither
-stretch nor torsion nor rotary inertia in the format: those strains are rigid, and the sections have no moments of inertia;
-FAST 7's further columns (GJStff, EAStff, FlpIner, EdgIner, and the offsets, see ``fast7_offsets``) are used where they are
-there. AdjBlMs, AdjFlSt and AdjEdSt multiply the table. A main file's BlPitch is the initial pitch of a simulation, not an
-operating point: it is listed, not used. Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
+The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes rotated by the
+structural twist. In OpenFAST positive twist and pitch move the leading edge upwind: a rotation about −x here. The format
+has no stretch, torsion or rotary inertia: those strains are rigid, and the sections have no moments of inertia. The
+additional columns of FAST 7 (GJStff, EAStff, FlpIner, EdgIner, and the offsets, see ``fast7_offsets``) are used if
+present. AdjBlMs, AdjFlSt and AdjEdSt multiply the table. A main file's BlPitch is the initial pitch of a simulation, not
+an operating point: it is listed, not used. Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
 """
 
 from collections.abc import Callable
@@ -31,12 +31,12 @@ POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
 USED = (*NEEDED, "GJStff", "EAStff", "FlpIner", "EdgIner")
 MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
 LARGEST = 1_000_000
-"""Bytes of a main file, at most: larger files beside a blade are not looked into."""
+"""Maximum size of a main file, bytes: larger files in the folder of a blade are not searched."""
 
 
 @dataclass(frozen=True)
 class Hub:
-    """What a main file says of the first blade: ``mount``, its tip mass in kg, and the blade file it names."""
+    """Data of the first blade in a main file: ``mount``, its tip mass in kg, and the blade file."""
 
     mount: Mount
     tip_mass: float
@@ -55,12 +55,12 @@ def is_main(text: Text) -> bool:
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in an ElastoDyn blade file, or the first blade of a main file.
+    """Read the blade in an ElastoDyn blade file, or the first blade of a main file.
 
     Args:
-        path: of either. A blade file's length is in the main file: ``mount.main``, or the one main file beside the
-            blade file that names it; or ``mount.length``.
-        mount: what stands in no file, or is to be different.
+        path: path of either file. A blade file's length is in the main file: ``mount.main``, or the only main file in
+            the same folder that references it; or ``mount.length``.
+        mount: data that the files do not contain, or that override them.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -76,10 +76,10 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
 
 
 def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
-    """The one main file in the folder of ``path`` that names ``path``; None if none does.
+    """The only main file in the folder of ``path`` that references ``path``; None if there is none.
 
     Raises:
-        CaseError: if several do.
+        CaseError: if there are several.
     """
     found = []
     for other in sorted(path.parent.glob("*")):
@@ -92,7 +92,7 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
             continue
         try:
             text = load(other)
-        except CaseError:  # empty, or no text: output of a run, not a main file
+        except CaseError:  # empty or not text: output of a run, not a main file
             continue
         if kind(text) and named(text).resolve() == path.resolve():
             found.append(other)
@@ -103,10 +103,10 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
 
 
 def hub(text: Text) -> Hub:
-    """The hub of a main file; OpenFAST's coning is positive downwind, as ours.
+    """The hub of a main file; OpenFAST's coning is positive downwind, as in ``core.blade``.
 
     Raises:
-        CaseError: if a value is missing or none.
+        CaseError: if a value is missing or not a number.
     """
     named = keys(text)
     tip, root = value(text, named, "TipRad"), value(text, named, "HubRad")
@@ -124,16 +124,16 @@ def hub(text: Text) -> Hub:
 
 
 def blade_file(text: Text) -> Path:
-    """The first blade's file that a main file names.
+    """Path of the first blade's file in a main file.
 
     Raises:
-        CaseError: if it names none.
+        CaseError: if it is missing.
     """
     return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
 
 
 def complete(mount: Mount, stated: Mount | None) -> Mount:
-    """``mount`` with what it leaves open from ``stated``."""
+    """``mount`` with missing values from ``stated``."""
     given = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
     return replace(stated or Mount(), **given)
 

@@ -15,7 +15,7 @@ COLUMNS = {
     "AeroCent": ("", AERODYNAMIC),
     "Alpha": ("", "its coupling of bending and torsion is not modelled"),
 }
-"""Columns of a blade table that are known and not used: unit and reason."""
+"""Known columns of a blade table that are not used: unit and reason."""
 
 TEETER = {
     "UndSling": "m",
@@ -34,7 +34,7 @@ CLAMPED = "the teeter hinge is treated as clamped: modes in which the rotor teet
 
 
 def of_table(found: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
-    """The non-zero columns of a blade table that are not among ``used``; ``offsets``: whether the offset columns are."""
+    """Non-zero columns of a blade table not among ``used``; ``offsets``: whether the offset columns are used."""
     out: list[Unused] = []
     for name, values in found.columns.items():
         if name in used or (name in OFFSETS and offsets):
@@ -47,7 +47,7 @@ def of_table(found: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused
 
 
 def of_blade(text: Text) -> tuple[Unused, ...]:
-    """The non-zero values of a blade file outside its table that are not used."""
+    """Unused non-zero values of a blade file outside its table."""
     dampings, tuned = ("BldFlDmp1", "BldFlDmp2", "BldEdDmp1"), ("FlStTunr1", "FlStTunr2")
     damping, shapes, tuners = (_values(text, names) for names in (dampings, SHAPES, tuned))
     scaled = "they scale ElastoDyn's modal stiffness, which sections do not have"
@@ -61,7 +61,7 @@ def of_blade(text: Text) -> tuple[Unused, ...]:
 
 
 def of_main(text: Text) -> tuple[Unused, ...]:
-    """The non-zero values of a main file about the rotor that are not used."""
+    """Unused non-zero values of a main file for the rotor."""
     out: list[Unused] = []
     pitch = _each(text, "BlPitch")
     how = f"use it by --pitch {pitch[0]:g} --pitch-convention openfast" if pitch else ""
@@ -90,7 +90,7 @@ def _each(text: Text, name: str) -> tuple[float, ...]:
 
 
 def _values(text: Text, names: tuple[str, ...]) -> tuple[float, ...]:
-    """The finite numbers of those names that are there."""
+    """The finite numbers of the names that are present."""
     named = keys(text)
     found = (number(named[name.lower()][1]) for name in names if name.lower() in named)
     return tuple(value for value in found if value is not None and math.isfinite(value))

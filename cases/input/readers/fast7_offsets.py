@@ -1,16 +1,17 @@
 """The six offset columns of FAST 7's blade table, as FAST's preprocessor for MSC.ADAMS uses them.
 
-FAST's blade axes are x_b downwind and y_b to the trailing edge (both pitched with the blade); ``n1``, ``n2`` are those turned
-by the structural twist, towards the suction side and the trailing edge. At a station z along the pitch axis
+FAST's blade axes are x_b downwind and y_b to the trailing edge (both pitched with the blade); ``n1``, ``n2`` are these
+axes rotated by the structural twist, towards the suction side and the trailing edge. At a station z along the pitch axis
 
 * the reference axis is at ``PrecrvRef x_b + PreswpRef y_b`` from the pitch axis,
-* the elastic axis is at ``FlpEAOf n1 + EdgEAOf n2`` from the reference axis: the beam runs along it, so that tension, bending
-  and torsion act there,
+* the elastic axis is at ``FlpEAOf n1 + EdgEAOf n2`` from the reference axis: the beam lies along it, so that tension,
+  bending and torsion act there,
 * the mass centre is at ``FlpcgOf n1 + EdgcgOf n2`` from the reference axis; FlpIner and EdgIner are about it.
 
-The preprocessor turns the offsets by AeroDyn's aerodynamic twist; the blade file has only the structural twist, which is
-taken for both. It takes mass and stiffness per length of the pitch axis; here they are per length of the beam's axis, as the
-table's units say (a difference of second order in the slopes). Here x = z, y = −y_b, z = x_b (``core.blade``).
+The preprocessor rotates the offsets by AeroDyn's aerodynamic twist; the blade file has only the structural twist, which
+is used for both. It uses mass and stiffness per length of the pitch axis; here they are per length of the beam's axis,
+according to the table's units (a difference of second order in the slopes). Here x = z, y = −y_b, z = x_b
+(``core.blade``).
 
 Source: J. Jonkman, FAST v7.02, ``FAST2ADAMS.f90``, subroutine ``MakeADM`` (``EAVec``; MARKERs "CM_M", "EA_M"); J. Jonkman,
 M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
@@ -44,8 +45,8 @@ def line(z: Array, offsets: dict[str, Array], twist: Array) -> Line:
 
     Args:
         z: (n,) m from the root along the pitch axis.
-        offsets: (n,) m each, by the names in ``COLUMNS``; a column that is not there is zero.
-        twist: (n,) rad, the section's twist in our sense (y towards z).
+        offsets: (n,) m each, by the names in ``COLUMNS``; a missing column is zero.
+        twist: (n,) rad, the section's twist, positive from y towards z.
     """
     curved, swept, flap_mass, edge_mass, flap_axis, edge_axis = (offsets.get(c, np.zeros_like(z)) for c in COLUMNS)
     within = np.stack([np.zeros_like(z), -edge_axis, flap_axis], axis=1)  # section axes: y = −n2, z = n1

@@ -1,7 +1,7 @@
-"""OpenFAST's primary file (.fst): names the files of the blade, which are read by their own readers.
+"""OpenFAST's primary file (.fst), which references the files of the blade; these have separate readers.
 
-``CompElast`` says whose blade it is: 1 ElastoDyn's (``EDFile``), 2 BeamDyn's (``BDBldFile(1)``) on the hub of ``EDFile``;
-files of FAST 8.00 to 8.02 do not have it and mean 1.
+``CompElast`` selects the blade: 1 ElastoDyn's (``EDFile``), 2 BeamDyn's (``BDBldFile(1)``) on the hub of ``EDFile``; it
+is missing in files of FAST 8.00 to 8.02, which means 1.
 FAST 7's .fst holds the turbine itself and is an ElastoDyn main file here.
 Source: OpenFAST documentation, *glue code input files*.
 """
@@ -22,11 +22,11 @@ def is_one(text: Text) -> bool:
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The first blade of the turbine in a primary file.
+    """Read the first blade of the turbine in a primary file.
 
     Args:
-        path: of the file.
-        mount: what is to be different; ``main`` is refused, as the file names it.
+        path: path of the file.
+        mount: data that override the files; ``main`` is rejected, as the file references it.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -50,7 +50,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
 def _file(text: Text, name: str) -> Path:
     named = keys(text)
     path = text.path.parent / word(text, named, name, name.rstrip("1")).replace("\\", "/")
-    if not os.path.isfile(path):  # False also where the name itself is impossible
+    if not os.path.isfile(path):  # also False for an invalid name
         line = named[name.lower() if name.lower() in named else name.rstrip("1").lower()][0]
         raise CaseError(f"{text.at(line)}: {name}: {path}: no such file: correct the name, or put the file there")
     return path

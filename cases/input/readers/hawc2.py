@@ -1,13 +1,13 @@
 """HAWC2's structural files (``st``): 19 columns, or 30 with fully populated stiffness; curve and twist from an htc's c2_def.
 
-HAWC2's blade axes are x to the leading edge, y downwind, z along the blade; offsets are from the half-chord line, in axes
-turned by c2_def's twist, and ``pitch`` turns from those to the principal bending axes, both positive from x towards y. The
-half-chord line becomes the reference axis. 19 columns: stretch and bending (E A, E I_x, E I_y) act at the elastic centre in
-the principal axes, torsion and shear (G I_p, k G A) at the shear centre; 30 columns: the matrix is about the elastic centre
-in the principal axes, order (shear x, shear y, axial, bending x, bending y, torsion). Radii of gyration are about the
-elastic centre, in the principal axes, as the manual says; there are files (IEA-15's) whose numbers are about the mass
-centre. c2_def is interpolated by Akima splines in z. Source: T. J. Larsen, A. M. Hansen, *How 2 HAWC2, the user's manual*,
-Risø-R-1597, ch. 6.
+HAWC2's blade axes are x to the leading edge, y downwind, z along the blade; offsets are from the half-chord line, in
+axes rotated by c2_def's twist, and ``pitch`` is the angle from these to the principal bending axes, both positive from
+x towards y. The half-chord line becomes the reference axis. 19 columns: stretch and bending (E A, E I_x, E I_y) act at
+the elastic centre in the principal axes, torsion and shear (G I_p, k G A) at the shear centre; 30 columns: the matrix is
+about the elastic centre in the principal axes, order (shear x, shear y, axial, bending x, bending y, torsion). Radii of
+gyration are about the elastic centre, in the principal axes, according to the manual; some files (IEA-15's) have numbers
+about the mass centre. c2_def is interpolated by Akima splines in z. Source: T. J. Larsen, A. M. Hansen, *How 2 HAWC2,
+the user's manual*, Risø-R-1597, ch. 6.
 """
 
 import re
@@ -49,11 +49,11 @@ def is_htc(text: Text) -> bool:
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in a structural file, or the one an htc's body with c2_def and a name beginning with "blade" has.
+    """Read the blade in a structural file, or that of an htc's body with c2_def and a name beginning with "blade".
 
     Args:
-        path: of either. Without an htc (``mount.main``) the half-chord line is straight along r and untwisted.
-        mount: ``subset`` picks set and subset where the file has several.
+        path: path of either file. Without an htc (``mount.main``) the half-chord line is straight along r and untwisted.
+        mount: ``subset`` selects set and subset if the file has several.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -116,7 +116,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
 
 
 def _between(r: Array, values: Array, at: Array) -> Array:
-    """Sections (n, 6, 6) at more places than the r that they are given at, linear between, as ``core`` has them."""
+    """Sections (n, 6, 6) interpolated linearly from their r to the positions ``at``, as in ``core``."""
     k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)
     t = np.clip((at - r[k]) / (r[k + 1] - r[k]), 0.0, 1.0)[:, None, None]
     return (1.0 - t) * values[k] + t * values[k + 1]
@@ -164,7 +164,7 @@ def _stiffness(p: Table) -> Array:
 
 
 def _mass(p: Table) -> Array:
-    """About the half-chord line: moments about the elastic centre less those of the mass there, moved from the mass centre."""
+    """Mass about the half-chord line: moments about the elastic centre are transferred to the mass centre first."""
     m, y, z = p["m"], p["x_cg"] - p["x_e"], p["y_cg"] - p["y_e"]
     rotary = np.zeros((len(m), 6, 6))
     rotary[:, 4, 4], rotary[:, 5, 5] = m * p["ri_x"] ** 2, m * p["ri_y"] ** 2

@@ -1,8 +1,8 @@
-"""HAWC2's htc file: the blade's main_body, what it names, and its half-chord line (c2_def).
+"""HAWC2's htc file: the blade's main_body, the files it references, and its half-chord line (c2_def).
 
-A command ends at ``;``, case does not matter, ``continue_in_file`` goes on in another file. Paths are from the model's
-folder, which is the htc's or the one above. c2_def is x, y, z and twist in degrees at sections, from a root at z = 0 where
-the half-chord line may lie beside the blade's axis; between them Akima splines in z.
+A command ends at ``;``, case is ignored, and ``continue_in_file`` continues in another file. Paths are relative to the
+model's folder, which is that of the htc or its parent. c2_def is x, y, z and twist in degrees at sections, from a root
+at z = 0 where the half-chord line may be offset from the blade's axis, with Akima splines in z between them.
 """
 
 import os
@@ -22,27 +22,27 @@ from .text import ROUNDING, Text, believable, load, number
 Array = NDArray[np.float64]
 
 FINE = 2001
-"""Points between which the half-chord line is taken for straight, to measure it."""
+"""Number of points of the polygon that measures the length of the half-chord line."""
 
 LENGTHS = 5e-3
-"""How far the last station may lie from the end of c2_def, of the length, before they are of different blades."""
+"""Largest distance of the last station from the end of c2_def, as a fraction of the length, for the same blade."""
 
 SAME = 1e-6
-"""Of the length: a section of c2_def so near to a station is that station."""
+"""Distance, as a fraction of the length, within which a section of c2_def coincides with a station."""
 
 _DEEP = 10
 
 MOST_FILES = 100
-"""That ``continue_in_file`` leads to, each as often as it is named."""
+"""Maximum number of files reached by ``continue_in_file``, counting repetitions."""
 
 MOST_LINES = 200_000
-"""Of all of them together."""
+"""Maximum number of lines of all these files."""
 
 _BODIES = re.compile(r"\s*begin\s+(new_htc_structure|main_body)\b", re.IGNORECASE)
 
 
 class Command(NamedTuple):
-    """The words of a command, the first in lower case, and the line it is on."""
+    """The words of a command, the first in lower case, and its line."""
 
     text: Text
     line: int
@@ -50,7 +50,7 @@ class Command(NamedTuple):
 
     @property
     def at(self) -> str:
-        """Where it is, for a message."""
+        """Its position, for a message."""
         return self.text.at(self.line)
 
 
@@ -58,10 +58,10 @@ Body = list[Command]
 
 
 class HalfChords(NamedTuple):
-    """The half-chord line at the stations of both files: arc length (n,) m, curve (n, 3) m and twist (n,) rad in our axes.
+    """The half-chord line at the stations of both files: arc length (n,) m, curve (n, 3) m and twist (n,) rad.
 
-    ``at`` (n,) are the same stations in the structural file's r. ``strays`` says how far (m, rad) the line strays from c2_def
-    between the stations, where the one is a spline of its own and the other Akima's.
+    Axes are those of ``core.blade``. ``at`` (n,) are the same stations in the structural file's r. ``strays`` is the
+    deviation (m, rad) of the line from c2_def between the stations, due to the different splines.
     """
 
     s: Array
@@ -72,15 +72,15 @@ class HalfChords(NamedTuple):
 
 
 def is_one(text: Text) -> bool:
-    """Whether these are lines of an htc file that has bodies."""
+    """Whether these are lines of an htc file with bodies."""
     return any(_BODIES.match(line) for line in text.lines)
 
 
 def blade_body(htc: Text) -> Body:
-    """The commands of the first main_body whose name begins with "blade" and that has sections.
+    """The commands of the first main_body with sections and a name that begins with "blade".
 
     Raises:
-        CaseError: if there is none, or a file to go on in is not there.
+        CaseError: if there is none, or a continuation file is missing.
     """
     body: Body = []
     inside = False
@@ -99,10 +99,10 @@ def blade_body(htc: Text) -> Body:
 
 
 def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
-    """The structural file of a body, and its set and subset.
+    """Path of the structural file of a body, and its set and subset.
 
     Raises:
-        CaseError: if it names none, or one that is not there.
+        CaseError: if the body references none, or the file does not exist.
     """
     named = {c.words[0]: c for c in body}
     if "filename" not in named or len(named["filename"].words) < 2:
@@ -123,11 +123,11 @@ UNUSED = {
     "damping_aniso": ("s", "modes are undamped"),
     "concentrated_mass": ("kg", "a lumped mass on the blade is not held: spread it into the structural file's m"),
 }
-"""Commands of a main_body that bear on its modes and are not used: unit and reason."""
+"""Commands of a main_body that affect its modes and are not used: unit and reason."""
 
 
 def left(body: Body) -> tuple[Unused, ...]:
-    """The non-zero quantities of a body that are not used; of a concentrated mass (node, x, y, z, mass, …) the mass."""
+    """Unused non-zero quantities of a body; for a concentrated mass (node, x, y, z, mass, …) the mass."""
     out: list[Unused] = []
     for command in body:
         if command.words[0] in UNUSED:
@@ -189,7 +189,7 @@ def _section(command: Command) -> list[float]:
 
 
 def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterator[Command]:
-    """The commands of a file and of those it goes on in; ``lengths`` gains the number of lines of each."""
+    """The commands of a file and its continuation files; the number of lines of each is appended to ``lengths``."""
     lengths.append(len(text.lines))
     for k, line in enumerate(text.lines):
         words = line.partition(";")[0].split()
@@ -212,7 +212,7 @@ def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterato
 
 
 def _near(main: Path, command: Command) -> Path:
-    """The file that a command of an htc names."""
+    """Path of the file that a command of an htc references."""
     what, *names = command.words
     if not names:
         raise CaseError(f"{command.at}: {what}: no name: add it")

@@ -1,8 +1,8 @@
-"""Section matrices about one point and in one set of axes, brought to another.
+"""Transformation of section matrices to another reference point and other axes.
 
 Orders and axes are those of ``core.blade``: force and strain (axial, y, z), then moment and curvature about (x, y, z).
 The strain of point p at r from the reference is ε_p = ε + κ × r, so that K = Tᵀ K_p T with T = [1, −r×; 0, 1]
-(Hodges, *Nonlinear Composite Beam Theory*, 2006, ch. 4); mass goes likewise, with velocity for strain.
+(Hodges, *Nonlinear Composite Beam Theory*, 2006, ch. 4); mass transforms likewise, with velocity in place of strain.
 """
 
 import numpy as np
@@ -14,26 +14,26 @@ from ....core.space.spatial import rotation, skew
 Array = NDArray[np.float64]
 
 BEAMDYN = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
-"""Our components of a vector from OpenFAST's blade axes (x downwind, y to the trailing edge, z along the blade)."""
+"""Rotation of a vector from OpenFAST's blade axes (x downwind, y to the trailing edge, z along the blade) to ours."""
 
 HAWC2 = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-"""Our components of a vector from HAWC2's blade axes (x to the leading edge, y downwind, z along the blade)."""
+"""Rotation of a vector from HAWC2's blade axes (x to the leading edge, y downwind, z along the blade) to ours."""
 
 
 def in_axes(matrix: Array, axes: Array) -> Array:
-    """Matrices (…, 6, 6) with components along axes whose matrix to ours is ``axes`` (…, 3, 3), in ours."""
+    """Transform matrices (…, 6, 6) to our axes; ``axes`` (…, 3, 3) is the rotation from the original axes to ours."""
     turn = np.zeros((*axes.shape[:-2], 6, 6))
     turn[..., :3, :3] = turn[..., 3:, 3:] = axes
     return turn @ matrix @ np.swapaxes(turn, -1, -2)
 
 
 def turned(matrix: Array, angle: ArrayLike) -> Array:
-    """Matrices (n, 6, 6) given in axes turned by ``angle`` (n,) about x (y towards z) from the section's, in the section's."""
+    """Transform matrices (n, 6, 6) to section axes, from axes rotated by ``angle`` (n,) rad about x (y towards z)."""
     return in_axes(matrix, rotation(0, np.asarray(angle, float)))
 
 
 def about(matrix: Array, y: ArrayLike, z: ArrayLike) -> Array:
-    """Matrices (n, 6, 6) given about points at (``y``, ``z``) (n,) of the section, about its origin."""
+    """Transfer matrices (n, 6, 6) from the points (``y``, ``z``) (n,) of the section to its origin."""
     y, z = np.broadcast_arrays(np.asarray(y, float), np.asarray(z, float))
     move = np.broadcast_to(np.eye(6), (*y.shape, 6, 6)).copy()
     move[..., :3, 3:] = -skew(np.stack([np.zeros_like(y), y, z], axis=-1))
@@ -41,12 +41,12 @@ def about(matrix: Array, y: ArrayLike, z: ArrayLike) -> Array:
 
 
 def bending(EA: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike) -> Array:
-    """Stiffness (n, 6, 6) of axial and bending strains about the tension centre; none against the others."""
+    """Stiffness (n, 6, 6) of axial and bending strains about the tension centre; zero for the others."""
     return _with({AXIAL: EA, BEND_Y: EI_y, BEND_Z: EI_z})
 
 
 def shearing(GJ: ArrayLike, GA_y: ArrayLike, GA_z: ArrayLike) -> Array:
-    """Stiffness (n, 6, 6) of torsion and shear about the shear centre; none against the others."""
+    """Stiffness (n, 6, 6) of torsion and shear about the shear centre; zero for the others."""
     return _with({TORSION: GJ, SHEAR_Y: GA_y, SHEAR_Z: GA_z})
 
 
@@ -68,7 +68,7 @@ def _with(entries: dict[int, ArrayLike]) -> Array:
 
 
 def fault(matrix: Array) -> str | None:
-    """What is wrong with a section matrix (6, 6): not symmetric to 1e-3 of its diagonal, or not positive definite."""
+    """The fault of a section matrix (6, 6): not symmetric to 1e-3 of its diagonal, or not positive definite."""
     d = np.diag(matrix)
     if (d <= 0).any():
         i = int(np.argmax(d <= 0))
@@ -90,7 +90,7 @@ def fault(matrix: Array) -> str | None:
 
 
 def mass_fault(matrix: Array) -> str | None:
-    """What is wrong with a section's mass (6, 6): as ``fault``, but moments of inertia may be zero."""
+    """The fault of a section's mass (6, 6): as ``fault``, but moments of inertia may be zero."""
     d = np.diag(matrix)
     bad = np.where(np.arange(6) < 3, d <= 0, d < 0)
     if bad.any():

@@ -1,6 +1,6 @@
-"""Blades in our own TOML: whole sections (``kind = "sections"``), a file of any format (``"file"``); root and tip of both.
+"""Blades in Southwell's TOML: full sections (``kind = "sections"``) or a file of any format (``"file"``), root and tip.
 
-Axes are ours throughout (``core.blade``): twist and pitch turn y towards z, the leading edge downwind.
+Axes are those of ``core.blade``: twist and pitch rotate y towards z, the leading edge downwind.
 """
 
 import os
@@ -30,7 +30,7 @@ UPPER = np.triu_indices(6)
 
 
 class Springs(Struct, frozen=True, forbid_unknown_fields=True):
-    """The root's springs along and about the blade's axes there, in N/m and N m/rad; 0 is free, what is not named is held."""
+    """Root springs along and about the blade's axes, in N/m and N m/rad; 0 is free, missing directions are clamped."""
 
     x: Annotated[float, Meta(ge=0)] | None = None
     y: Annotated[float, Meta(ge=0)] | None = None
@@ -51,7 +51,7 @@ class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
     ] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def matrix(self) -> Array:
-        """Rigid body's inertia (6, 6) about the tip."""
+        """Inertia (6, 6) of the rigid body about the tip."""
         x, y, z = self.offset
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         xx, yy, zz, xy, yz, zx = self.inertia
@@ -61,7 +61,7 @@ class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """How a blade sits on its hub and what is at its tip; what is not given is as its file says, else 0 and clamped."""
+    """Mounting of a blade on its hub, and its tip mass; defaults are those of its file, else 0 and clamped."""
 
     precone_deg: Annotated[
         Annotated[float, Meta(ge=-90, le=90)] | None, Meta(description="towards +z (downwind), degrees")
@@ -77,22 +77,22 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     tip_mass: Annotated[TipMass | None, Meta(description="a rigid body at the tip")] = None
 
     def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade and what its file holds beyond it; ``folder`` is where files are looked for.
+        """The blade and the unused quantities of its file, which is searched in ``folder``.
 
         Raises:
-            CaseError: what cannot be read.
+            CaseError: if it cannot be read.
         """
         return self.blade(name, folder), ()
 
     def blade(self, name: str, folder: Path) -> Blade:
-        """The blade; each kind has its own."""
+        """The blade; implemented by each kind."""
         raise NotImplementedError
 
     def mounted(self, blade: Blade) -> Blade:
-        """The blade so mounted.
+        """The blade with this mounting.
 
         Raises:
-            CaseError: a tip mass that no body has.
+            CaseError: if the tip mass is invalid.
         """
         changes: dict[str, Any] = {}
         if self.precone_deg is not None:
@@ -110,10 +110,11 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 
 class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
-    """A blade's sections as they are: matrices about the reference curve in section axes, 21 numbers a station.
+    """Full sections of a blade: matrices about the reference curve in section axes, 21 numbers per station.
 
-    The 21 are the rows of the upper triangle, first (11 … 16), then (22 … 26), and so on; rigid strains have zeros. Where the
-    curve's direction jumps, ``kinks`` says so; they are stations: ``s = [0, 8, 10]``, ``kinks = [8]`` is two straight pieces.
+    The numbers are the rows of the upper triangle, first (11 … 16), then (22 … 26), and so on; rigid strains have zeros.
+    ``kinks`` are the stations where the curve's direction jumps: ``s = [0, 8, 10]``, ``kinks = [8]`` is two straight
+    pieces.
     """
 
     s: Annotated[list[float], Meta(min_length=2, description="arc length from the root, m")]
@@ -138,7 +139,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
         """The blade; ``folder`` is not used.
 
         Raises:
-            CaseError: what cannot be.
+            CaseError: if the data are invalid.
         """
         n = len(self.s)
         for what in ("stiffness", "mass", "twist_deg", "curve"):
@@ -167,7 +168,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
 
 
 class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
-    """A blade from a file of any format that is read (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, CSV)."""
+    """A blade from a file of any supported format (ElastoDyn, BeamDyn, HAWC2, BModes, windIO, CSV)."""
 
     file: Annotated[str, Meta(description="path from the case file's folder, or from `files`")]
     files: Annotated[str | None, Meta(description="environment variable that names the folder `file` is in")] = None
@@ -186,13 +187,13 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     )
 
     def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade and what its file holds beyond it; the file is found from ``folder``.
+        """The blade and the unused quantities of its file; the path is relative to ``folder``.
 
         Raises:
-            FilesMissingError: the variable of ``files`` is not set, or its folder has no such file.
-            CaseError: what the file's reader raises.
+            FilesMissingError: if the variable of ``files`` is not set, or its folder does not contain the file.
+            CaseError: if the reader raises it.
         """
-        from . import reading  # which itself reads blades of these kinds
+        from . import reading  # imports this module
         from .source import Mount
 
         main = folder / self.main if self.main is not None else None
@@ -210,7 +211,7 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         return self.mounted(replace(found.blade, name=name)), found.source.unused
 
     def blade(self, name: str, folder: Path) -> Blade:
-        """The blade alone, as ``read``."""
+        """The blade, as ``read``."""
         return self.read(name, folder)[0]
 
     def _path(self, name: str, folder: Path) -> Path:
@@ -226,7 +227,7 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
 
 
 def springs(root: str | Springs) -> Array:
-    """The root's stiffness (6,) from its name or springs."""
+    """Root stiffness (6,) from its name or springs."""
     out = np.full(6, np.inf)
     if isinstance(root, str):
         out[list(HINGES[root])] = 0.0
@@ -245,7 +246,7 @@ def symmetric(upper: Array) -> Array:
 
 
 def describe(blade: Blade) -> Sections:
-    """A blade as whole sections."""
+    """Describe a blade by full sections."""
     finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
     held = np.isinf(blade.root)
     names = ("x", "y", "z", "torsion", "flap", "lag")

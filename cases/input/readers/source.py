@@ -1,4 +1,4 @@
-"""What every reader is given beside its file, and what it returns beside its blade."""
+"""Additional input and output of every reader, besides the file and the blade."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -7,18 +7,18 @@ from pathlib import Path
 from ....core.blade import Blade
 
 LONGEST = 1e4
-"""No blade's length or hub's radius is more, m."""
+"""Upper limit of a blade's length and a hub's radius, m."""
 
 
 @dataclass(frozen=True)
 class Unused:
-    """A non-zero quantity in a file that the blade does not hold.
+    """A non-zero quantity in a file that the blade does not use.
 
     Attributes:
-        name: as the file calls it.
-        values: as they stand in the file: one for each station, mode or blade.
-        unit: of the values; empty if there is none.
-        file: that holds them.
+        name: name in the file.
+        values: values in the file, one per station, mode or blade.
+        unit: unit of the values; empty if there is none.
+        file: path of the file.
         why: the reason, and what would use the quantity.
     """
 
@@ -48,14 +48,14 @@ def unused(name: str, values: Iterable[float], unit: str, file: Path, why: str) 
 
 @dataclass(frozen=True)
 class Source:
-    """Where a blade came from, and what was done to it at the door.
+    """Origin of a blade, and its conversion on reading.
 
     Attributes:
-        format: the format's name.
-        files: all that were read.
-        axes: the format's axes and centres, and what became of them in ours (see ``core.blade``).
-        notes: what the file does not say and how that was decided, multipliers applied.
-        unused: non-zero quantities of the files that the blade does not hold.
+        format: name of the format.
+        files: all files read.
+        axes: axes and centres of the format, and their conversion to those of ``core.blade``.
+        notes: assumptions about missing data, and multipliers applied.
+        unused: non-zero quantities of the files that the blade does not use.
     """
 
     format: str
@@ -67,7 +67,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Reading:
-    """A blade, its source, and the rotor speed that the file states for the analysis (rad/s; None: none)."""
+    """A blade, its source, and the rotor speed of the analysis in the file (rad/s; None if not given)."""
 
     blade: Blade
     source: Source
@@ -76,17 +76,17 @@ class Reading:
 
 @dataclass(frozen=True)
 class Mount:
-    """What a blade's file leaves to others: how long it is and how it sits on the hub. None: as the files say, else 0.
+    """Length and mounting of a blade, which its file may not contain. None: as in the files, else 0.
 
     Attributes:
-        main: the main input file that says so (ElastoDyn's, also for a BeamDyn blade; a HAWC2 htc).
+        main: main input file with these data (ElastoDyn's, also for a BeamDyn blade; a HAWC2 htc).
         length: arc length from root to tip, m.
         hub_radius: from the rotor's axis to the root, m.
         precone: rad, towards +z (downwind).
-        pitch: rad, in the sense of our twist (y towards z: the leading edge downwind).
-        subset: set and subset of a HAWC2 structural file that has several.
-        multipliers: of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt.
-        offsets: whether the offset columns of a FAST 7 table are used; None: they are.
+        pitch: rad, positive like twist in ``core.blade`` (y towards z: the leading edge downwind).
+        subset: set and subset of a HAWC2 structural file with several.
+        multipliers: multipliers of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt.
+        offsets: whether the offset columns of a FAST 7 table are used; None means yes.
     """
 
     main: Path | None = None

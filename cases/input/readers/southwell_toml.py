@@ -1,6 +1,6 @@
-"""Southwell's own blade files: TOML with ``name`` and a table ``blade`` of any kind of a case file; CSV of stations.
+"""Southwell's blade files: TOML with ``name`` and a table ``blade`` of any kind of a case file; CSV of stations.
 
-Axes are ours (``core.blade``). A CSV has the columns of ``cases.blades.Stations``; its length is given beside it.
+Axes are those of ``core.blade``. A CSV has the columns of ``cases.blades.Stations``; its length is given separately.
 """
 
 from dataclasses import replace
@@ -33,17 +33,17 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def is_one(path: Path) -> bool:
-    """Whether a TOML file is a blade's, and not a case's or a mechanism's."""
+    """Whether a TOML file describes a blade, not a case or a mechanism."""
     found = document(path)
     return "blade" in found and "speeds" not in found and "compare" not in found
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in a TOML or CSV file.
+    """Read the blade in a TOML or CSV file.
 
     Args:
-        path: of the file.
-        mount: hub radius, precone and pitch that are to differ; of a CSV also the length.
+        path: path of the file.
+        mount: hub radius, precone and pitch that override the file; for a CSV also the length.
 
     Raises:
         CaseError: naming the file and field, or line, at fault.
@@ -76,7 +76,7 @@ def _mounted(blade: Blade, mount: Mount) -> Blade:
 
 
 def write(blade: Blade, path: Path) -> None:
-    """Write any blade, all of it, so that ``read`` gives the same."""
+    """Write any blade completely, so that ``read`` returns the same blade."""
     data = msgspec.to_builtins(describe(blade))
     lines = [f"name = {_toml(blade.name)}", "", "[blade]"]
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
@@ -87,7 +87,7 @@ def write(blade: Blade, path: Path) -> None:
 
 
 def _toml(value: object) -> str:
-    """A value as TOML; lists of lists a line each."""
+    """Format a value as TOML; nested lists are on separate lines."""
     if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
         return "[\n" + "".join(f"  {_toml(v)},\n" for v in value) + "]"
     if isinstance(value, list | tuple):

@@ -1,6 +1,6 @@
-"""Text files of numbers with words beside them: lines, values by name, tables; every fault names file and line.
+"""Text files of numbers with labels: lines, values by name, tables; every error names file and line.
 
-Tabs, CRLF, commas between numbers, Fortran's ``1.0D+03`` and comments behind the numbers are all read.
+Tabs, CRLF, commas between numbers, Fortran's ``1.0D+03`` and trailing comments are supported.
 """
 
 import math
@@ -20,10 +20,10 @@ from ..toml import LARGEST
 Array = NDArray[np.float64]
 
 ROUNDING = 1e-9
-"""Of the blade's length: a root or tip this near to its place is taken to be there, as computed files are rounded."""
+"""Tolerance on the position of root and tip, as a fraction of the blade's length, for rounding in files."""
 
 MAX_LINES = 250_000
-"""Of a deck; the longest public one has some thousands."""
+"""Maximum number of lines of an input file; the longest public one has a few thousand."""
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf(inity)?)(\(\w*\))?", re.IGNORECASE)
@@ -38,19 +38,19 @@ class Text:
     lines: tuple[str, ...]
 
     def at(self, k: int) -> str:
-        """Where line ``k`` (from 0) is, for a message."""
+        """Position of line ``k`` (from 0), for a message."""
         return f"{self.path}: line {min(k, len(self.lines) - 1) + 1}"
 
     def blank(self, k: int) -> bool:
-        """Whether nothing is on line ``k``."""
+        """Whether line ``k`` is blank."""
         return not self.lines[k].strip()
 
 
 def load(path: Path) -> Text:
-    """The lines of a file.
+    """Read the lines of a file.
 
     Raises:
-        CaseError: if it cannot be read, is no text, is empty, or has more than ``MAX_LINES`` lines.
+        CaseError: if it cannot be read, is not text, is empty, or has more than ``MAX_LINES`` lines.
     """
     content = files.text(path, older=True)
     if content.count("\n") + content.count("\r") > 2 * MAX_LINES or len(lines := content.splitlines()) > MAX_LINES:
@@ -59,19 +59,19 @@ def load(path: Path) -> Text:
 
 
 def number(token: str) -> float | None:
-    """A token as a number, NaN and infinities included; None if it is none."""
+    """Convert a token to a number, including NaN and infinities; None if it is not a number."""
     if _NUMBER.fullmatch(token):
         return float(token.lower().replace("d", "e"))
     return math.nan if _NO_NUMBER.fullmatch(token) else None
 
 
 def tokens(line: str) -> list[str]:
-    """What stands between blanks, tabs and commas."""
+    """Split a line at blanks, tabs and commas."""
     return line.replace(",", " ").split()
 
 
 def leading(line: str) -> list[float]:
-    """The numbers a line begins with."""
+    """The numbers at the beginning of a line."""
     out: list[float] = []
     for token in tokens(line):
         value = number(token)
@@ -82,10 +82,10 @@ def leading(line: str) -> list[float]:
 
 
 def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
-    """The numbers on line ``k``, one a column; words may follow them.
+    """The numbers on line ``k``, one per column; words may follow.
 
     Raises:
-        CaseError: if there are fewer or more, or one is not finite.
+        CaseError: if there are fewer or more numbers, or one is not finite.
     """
     if k >= len(text.lines):
         raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: truncated? give it whole")
@@ -112,13 +112,13 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
 
 
 def believable(value: float) -> bool:
-    """Whether a number is finite, and no larger than a quantity in any unit is."""
+    """Whether a number is finite and not implausibly large in any unit."""
     return abs(value) <= LARGEST
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of numbers by column, and the line each row is on."""
+    """Rows of numbers by column, and the line of each row."""
 
     text: Text
     columns: dict[str, Array]
@@ -128,20 +128,20 @@ class Table:
         return self.columns[name]
 
     def need(self, condition: ArrayLike, name: str, value: Array, remedy: str) -> None:
-        """Refuse the first row at which ``condition`` is false.
+        """Check that ``condition`` is true in all rows.
 
         Raises:
-            CaseError: with its line and value.
+            CaseError: with the line and value of the first row where it is false.
         """
         if not np.all(condition):
             k = int(np.argmin(condition))
             raise CaseError(f"{self.text.at(self.lines[k])}: {name}: {value[k]:g}: {remedy}")
 
     def positive(self, *names: str, zero: bool = False) -> None:
-        """Refuse negative values in columns (and zero ones, unless allowed).
+        """Reject negative values in columns (and zeros, unless allowed).
 
         Raises:
-            CaseError: naming the first.
+            CaseError: naming the first such value.
         """
         for name in names:
             good = self[name] >= 0 if zero else self[name] > 0
@@ -149,10 +149,10 @@ class Table:
 
 
 def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
-    """``count`` rows from line ``first``, blank lines between them skipped.
+    """Read ``count`` rows from line ``first``, skipping blank lines.
 
     Raises:
-        CaseError: as ``row``; and if the table ends early or goes on.
+        CaseError: as ``row``, and if the table has fewer or more rows.
     """
     rows, lines, k = [], [], first
     while len(rows) < count:
@@ -172,10 +172,10 @@ def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
 
 
 def fractions(found: Table, name: str) -> Array:
-    """The stations as fractions of the length: from 0 to 1, strictly rising.
+    """The stations as fractions of the length: from 0 to 1, strictly increasing.
 
     Raises:
-        CaseError: naming the line of the first that is not so.
+        CaseError: naming the line of the first invalid fraction.
     """
     eta = found[name]
     if len(eta) < 2:
@@ -191,7 +191,7 @@ def fractions(found: Table, name: str) -> Array:
 
 
 def keys(text: Text) -> dict[str, tuple[int, str]]:
-    """Values by name where a line reads ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``."""
+    """Values of lines ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``."""
     out: dict[str, tuple[int, str]] = {}
     for k, line in enumerate(text.lines):
         found = _KEYED.match(line)
@@ -201,10 +201,10 @@ def keys(text: Text) -> dict[str, tuple[int, str]]:
 
 
 def value(text: Text, named: dict[str, tuple[int, str]], *names: str) -> float:
-    """The number called by the first of ``names`` that is there.
+    """The number under the first of ``names`` that is present.
 
     Raises:
-        CaseError: if none is, or it is not a finite number.
+        CaseError: if none is present, or the value is not a finite number.
     """
     k, token = named[_name(text, named, names)]
     out = number(token)
@@ -214,10 +214,10 @@ def value(text: Text, named: dict[str, tuple[int, str]], *names: str) -> float:
 
 
 def whole(text: Text, named: dict[str, tuple[int, str]], name: str) -> int:
-    """The count called ``name``, at least 1.
+    """The count under ``name``, at least 1.
 
     Raises:
-        CaseError: as ``value``, and if it is not whole.
+        CaseError: as ``value``, and if it is not an integer.
     """
     out = value(text, named, name)
     if out != int(out) or out < 1:
@@ -226,10 +226,10 @@ def whole(text: Text, named: dict[str, tuple[int, str]], name: str) -> int:
 
 
 def word(text: Text, named: dict[str, tuple[int, str]], *names: str) -> str:
-    """The word called by the first of ``names`` that is there, without quotes.
+    """The word under the first of ``names`` that is present, without quotes.
 
     Raises:
-        CaseError: if none is.
+        CaseError: if none is present.
     """
     return named[_name(text, named, names)][1]
 
@@ -249,5 +249,5 @@ def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -
 
 
 def fortran(x: float) -> str:
-    """A number with all its digits."""
+    """Format a number with all its digits."""
     return f"{x:.17E}"

@@ -2,19 +2,19 @@
 
 In both the matrices are about the reference axis, order (shear x, shear y, axial, bending about x, about y, torsion), x
 downwind (to the suction side), y to the trailing edge, z along the blade, in axes turned by the twist, positive with the
-leading edge upwind: BeamDyn's conventions. (windIO 2's text on K11 says that x points to the trailing edge; its reference
-axis, its inertia and the files of its own examples say otherwise, and are followed.) ``i_edge`` and ``i_flap`` are about
-the reference axis' x and y, not about the mass centre's, and ``i_cp = −M45`` (windIO's converter from 1 to 2).
+leading edge upwind: BeamDyn's conventions. (windIO 2's text on K11 has x to the trailing edge, which contradicts its
+reference axis, its inertia and its example files; the latter are followed.) ``i_edge`` and ``i_flap`` are about the x
+and y of the reference axis, not of the mass centre, and ``i_cp = −M45`` (windIO's converter from 1 to 2).
 
 | | windIO 1 | windIO 2 |
 |---|---|---|
-| matrices | ``elastic_properties_mb.six_x_six``, 21 numbers a station | ``structure.elastic_properties``, a list an entry |
-| axis, twist | beside the matrices, else ``outer_shape_bem``; rad | ``reference_axis``, ``outer_shape.twist``; degrees |
+| matrices | ``elastic_properties_mb.six_x_six``, 21 per station | ``structure.elastic_properties``, a list per entry |
+| axis, twist | with the matrices, else ``outer_shape_bem``; rad | ``reference_axis``, ``outer_shape.twist``; degrees |
 | ``hub.cone_angle`` | rad | degrees |
 
-The cone is positive away from the tower, hence upwind for an upwind rotor. Grids are fractions of arc length; reference axis
-and twist are interpolated by PCHIP between their own points. Source: IEA Wind Task 37, windIO, turbine schema 1 and 2.1;
-P. Bortolotti et al., *A Framework for the Definition of Wind Turbine Systems*, IEA Wind (2022).
+The cone is positive away from the tower, hence upwind for an upwind rotor. Grids are fractions of arc length; reference
+axis and twist are interpolated by PCHIP between their own points. Source: IEA Wind Task 37, windIO, turbine schema 1
+and 2.1; P. Bortolotti et al., *A Framework for the Definition of Wind Turbine Systems*, IEA Wind (2022).
 """
 
 from collections.abc import Callable
@@ -42,17 +42,17 @@ NAME = "windIO"
 UPPER = np.triu_indices(6)
 ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
 STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
-"""Entries that a file may leave out or give as zero, and the strain that is then rigid, in our order."""
+"""Entries that may be missing or zero in a file, and the strain that is then rigid, in the order of ``core.blade``."""
 
 FAR = 1.0
-"""No blade is twisted by more, in radians: files of windIO 1 that say so have it in degrees, as windIO 2."""
+"""Largest plausible twist, rad: windIO 1 files with a larger value give it in degrees, as in windIO 2."""
 
 SAME = 1e-9
-"""Grid points nearer than this, of the length, are one."""
+"""Grid points closer than this fraction of the length coincide."""
 
 
 class Layout(NamedTuple):
-    """What a version says where: the elements, and what turns its angles into degrees."""
+    """Layout of a version: the elements, and the factor from its angles to degrees."""
 
     version: int
     elastic: Field
@@ -62,11 +62,11 @@ class Layout(NamedTuple):
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
-    """The blade in a windIO file.
+    """Read the blade in a windIO file.
 
     Args:
-        path: of the file.
-        mount: what is to be different; hub radius and precone are the hub's.
+        path: path of the file.
+        mount: data that override the file; hub radius and precone are those of the hub.
 
     Raises:
         CaseError: naming the file and line at fault.
@@ -148,7 +148,7 @@ def _curve(found: Field) -> PchipInterpolator:
 
 
 def _grid(found: Field) -> Array:
-    """The grid of a field: from 0 to 1, strictly rising."""
+    """The grid of a field: from 0 to 1, strictly increasing."""
     field = found.get("grid")
     grid = field.numbers()
     if len(grid) < 2:
@@ -175,7 +175,7 @@ Sections = tuple[Array, Array, Array, tuple[int, ...]]
 
 
 def _rows(elastic: Field) -> Sections:
-    """windIO 1: stations, stiffness and mass in its axes, and which of our strains are rigid."""
+    """windIO 1: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
     grids, matrices = [], []
     for key in ("stiff_matrix", "inertia_matrix"):
         found = elastic.get(key)
@@ -189,7 +189,7 @@ def _rows(elastic: Field) -> Sections:
 
 
 def _lists(elastic: Field) -> Sections:
-    """windIO 2: stations, stiffness and mass in its axes, and which of our strains are rigid."""
+    """windIO 2: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
     found = elastic.get("stiffness_matrix")
     grids = [_grid(found)]
     entries = np.zeros((len(grids[0]), 21))
@@ -208,7 +208,7 @@ def _lists(elastic: Field) -> Sections:
 
 
 def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
-    """Strains whose stiffness is zero at every station are rigid: their diagonal is 1 until they are made so.
+    """Strains whose stiffness is zero at every station are rigid; until then their diagonal is set to 1.
 
     Raises:
         CaseError: if such a strain is coupled with others.
@@ -258,7 +258,7 @@ def _checked(matrices: Array, wrong: Callable[[Array], str | None], field: Field
 
 
 def _together(grids: list[Array], matrices: list[Array]) -> tuple[Array, Array, Array]:
-    """Both on the points of both grids."""
+    """Interpolate both matrices to the union of the two grids."""
     eta = np.sort(np.concatenate(grids))
     eta = eta[np.append(True, np.diff(eta) > SAME)]
     eta[-1] = 1.0

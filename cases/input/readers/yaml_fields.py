@@ -1,4 +1,4 @@
-"""Fields of a YAML file that know the line they are on."""
+"""Fields of a YAML file with their line numbers."""
 
 from dataclasses import dataclass
 from typing import Any, cast
@@ -14,15 +14,15 @@ from .text import Text, believable, number
 Array = NDArray[np.float64]
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""libyaml's, where it is there: twenty times faster."""
+"""The loader of libyaml, if available: twenty times faster."""
 
 DEEPEST, MOST_NODES = 64, 1_000_000
-"""Of lists and keys within each other, and of all of them with their values: the largest public turbine has 300,000."""
+"""Limits on the nesting depth and on the number of nodes; the largest public turbine has 300,000 nodes."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """A node of the file and the keys that lead to it."""
+    """A node of the file and its path of keys."""
 
     text: Text
     name: str
@@ -30,14 +30,14 @@ class Field:
 
     @property
     def at(self) -> str:
-        """Where it is, for a message."""
+        """Its position, for a message."""
         return _at(self.text, self.node, self.name)
 
     def find(self, *path: str) -> "Field | None":
-        """The field under these keys; None if one of them is not there.
+        """The field under these keys; None if one of them is missing.
 
         Raises:
-            CaseError: if something on the way has no keys.
+            CaseError: if a node on the path is not a mapping.
         """
         here = self
         for key in path:
@@ -51,7 +51,7 @@ class Field:
         """The field under these keys.
 
         Raises:
-            CaseError: naming the first key that is not there.
+            CaseError: naming the first missing key.
         """
         here = self
         for key in path:
@@ -65,15 +65,15 @@ class Field:
         """A finite number.
 
         Raises:
-            CaseError: if it is none.
+            CaseError: if it is not a finite number.
         """
         return _number(self.text, self.node, self.name)
 
     def word(self) -> str:
-        """What stands there.
+        """The value as text.
 
         Raises:
-            CaseError: if that is a list or has keys.
+            CaseError: if it is a list or a mapping.
         """
         if not isinstance(self.node, yaml.ScalarNode):
             raise CaseError(f"{self.at}: one word is needed: correct it")
@@ -83,7 +83,7 @@ class Field:
         """A list of finite numbers, (n,).
 
         Raises:
-            CaseError: naming the line of the first that is none.
+            CaseError: naming the line of the first invalid item.
         """
         return np.array([_number(self.text, node, self.name) for node in self._items()])
 
@@ -91,7 +91,7 @@ class Field:
         """A list of lists of ``width`` finite numbers, (n, width).
 
         Raises:
-            CaseError: naming the line of the first that is not so.
+            CaseError: naming the line of the first invalid row.
         """
         rows = [Field(self.text, f"{self.name}[{k}]", node) for k, node in enumerate(self._items())]
         for row in rows:
@@ -101,7 +101,7 @@ class Field:
         return np.array([row.numbers() for row in rows]).reshape(-1, width)
 
     def item(self, k: int) -> str:
-        """Where item ``k`` of a list is, for a message."""
+        """Position of item ``k`` of a list, for a message."""
         return _at(self.text, self._items()[k], self.name)
 
     def _items(self) -> list[yaml.Node]:
@@ -143,11 +143,11 @@ def fields(text: Text) -> Field:
 
 
 def _bounded(text: Text, whole: str) -> None:
-    """Refuse what libyaml's composer, which calls itself for each level, would crash on, or fill the memory with.
+    """Reject files that would crash libyaml's recursive composer or exhaust memory.
 
     Raises:
         CaseError: naming the line.
-        yaml.YAMLError: it is not YAML.
+        yaml.YAMLError: if the file is not YAML.
     """
     depth = 0
     for count, event in enumerate(yaml.parse(whole, Loader=LOADER)):
@@ -159,10 +159,10 @@ def _bounded(text: Text, whole: str) -> None:
 
 
 class _Reusing(yaml.SafeLoader):
-    """Lets an anchor be defined again, as YAML 1.2 does (§ 6.9.2); an alias means the last one before it."""
+    """Loader that allows an anchor to be redefined, as in YAML 1.2 (§ 6.9.2); an alias refers to the latest one."""
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """The next node, its anchor free again."""
+        """Compose the next node after releasing its anchor."""
         if not self.check_event(yaml.AliasEvent):
             self.anchors.pop(self.peek_event().anchor, None)  # pyright: ignore[reportAttributeAccessIssue]
         return super().compose_node(parent, index)
