@@ -1,4 +1,4 @@
-"""Schema of a mechanism's file: the terms of ``core.multibody``; unknown keys are rejected; descriptions give the units.
+"""Schema of a mechanism's file, in terms of ``core.multibody``; unknown keys are rejected; descriptions give the units.
 
 Bodies and joints are tables by name, ``[bodies.hub]``; data for a coordinate are keyed by its name,
 ``shaft.rz = {rate = 30.0}`` under ``[motions]``; springs, bushings and beams are lists, ``[[springs]]``.

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 TURN, FINE = np.radians(1.0), 65
-"""Limit on the rotation of the tangent between two stations, points per interval to evaluate it, and most divisions."""
+"""Limit on the rotation of the tangent between two stations, and points per interval (also the most divisions)."""
 
 
 class Axis(NamedTuple):

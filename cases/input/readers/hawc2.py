@@ -1,4 +1,4 @@
-"""HAWC2's structural files (``st``): 19 columns, or 30 with fully populated stiffness; curve and twist from an htc's c2_def.
+"""HAWC2's structural files (``st``), 19 columns, or 30 with full stiffness matrices; curve and twist from c2_def in an htc.
 
 HAWC2's blade axes are x to the leading edge, y downwind, z along the blade; offsets are from the half-chord line, in
 axes rotated by c2_def's twist, and ``pitch`` is the angle from these to the principal bending axes, both positive from
