@@ -1,1 +1,1 @@
-"""One run against an earlier one: the history of runs and the gate."""
+"""Comparison of a run with an earlier one: the history of runs and the gate."""

@@ -1,9 +1,9 @@
-"""One run against an earlier one: what moved, what got worse, what is gone; and what took longer, which decides nothing.
+"""Comparison of a run with an earlier one: moved, worse and missing answers, and timings, which are informational.
 
-Cells are the same where case, code, rotor speed and mode are. What counts against a run: a miss that was none before
-(including that of a cell that was not there), an answer that is gone, a wider target, a seeded fault that is not detected any
-more. Moved frequencies are listed, and count only if that is asked for: who improves a discretisation moves them and is
-right to. Measured data are no answers: they are counted, and nothing about them counts against a run.
+Cells are identified by case, code, rotor speed and mode. A run fails for a new miss (including that of a new cell), a
+missing answer, a wider target, or a seeded fault that is no longer detected. Moved frequencies are listed and fail a run
+only on request, since an improved discretisation also moves them. Measured data are not answers: they are counted but
+cannot fail a run.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,27 +15,27 @@ from ..judge.results import Verdict
 from .history import Caught, Entry, Key, Point
 
 MOVED = 1e-9
-"""Relative change above which a frequency has moved."""
+"""Relative change above which a frequency counts as moved."""
 
 RUNS = 20
-"""Earlier runs on the same machine that show how much times vary, at most."""
+"""Maximum number of earlier runs on the same machine used to estimate the variation of times."""
 
 RANK: dict[Verdict, int] = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 3, "fail": 4}
-"""How bad a verdict is; the others are none. ``measured`` is not among them: data are not judged."""
+"""Severity of a verdict; other verdicts are not answers. ``measured`` is absent: data are not judged."""
 
 MISS = RANK["inconclusive"]
 
 
 @dataclass(frozen=True)
 class Change:
-    """A cell in two runs; ``before`` is None for one that was not there."""
+    """A cell in two runs; ``before`` is None for a new cell."""
 
     before: Point | None
     after: Point
 
     @property
     def moved(self) -> float | None:
-        """Relative change of the frequency; None where there are not two."""
+        """Relative change of the frequency; None unless both runs have one."""
         if self.before is None or not self.before.frequency or self.after.frequency is None:
             return None
         return self.after.frequency / self.before.frequency - 1.0
@@ -43,7 +43,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Gone:
-    """An answer that is there no more, and what stands in its place: the verdict on that code at that speed, or nothing."""
+    """A missing answer and its replacement: the verdict on that code at that speed, or nothing."""
 
     point: Point
     instead: Verdict | None
@@ -51,14 +51,14 @@ class Gone:
 
 @dataclass(frozen=True)
 class Timing:
-    """What one code's solutions took in both runs; only those that both have.
+    """Times of one code in both runs, for the solutions that both have.
 
     Attributes:
-        code: its name.
-        before: seconds in all.
-        after: likewise.
-        ratios: after over before, blade by blade and speed by speed: lower quartile, median, upper quartile.
-        earlier: least and most seconds in all, in earlier runs on the machine of this one; None where there are not two.
+        code: name of the code.
+        before: total time in the earlier run, s.
+        after: total time in the later run, s.
+        ratios: after over before per blade and speed: lower quartile, median, upper quartile.
+        earlier: least and most total time in earlier runs on the same machine, s; None with fewer than two.
     """
 
     code: str
@@ -69,7 +69,7 @@ class Timing:
 
     @property
     def noise(self) -> bool:
-        """Whether the change is no larger than what times do by themselves."""
+        """Whether the change is within the usual variation of times."""
         if self.earlier:
             return self.earlier[0] <= self.after <= self.earlier[1]
         return self.ratios[0] <= 1.0 <= self.ratios[2]
@@ -77,20 +77,20 @@ class Timing:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One run against another.
+    """Comparison of two runs.
 
     Attributes:
         before: the earlier run.
-        after: the later.
-        moved: cells whose frequency moved, most first.
+        after: the later run.
+        moved: cells whose frequency moved, largest change first.
         worse: cells with a worse verdict, worst first.
-        loosened: cells that are held to a wider target.
-        measured: how many measured points the later run has.
-        better: cells with a better one.
-        gone: answers that are there no more.
+        loosened: cells with a wider target.
+        measured: number of measured points in the later run.
+        better: cells with a better verdict.
+        gone: missing answers.
         new: cells with an answer that had none.
-        uncaught: seeded faults that were caught and are not now; all of them if none is tried any more.
-        timings: by code; they decide nothing.
+        uncaught: seeded faults that are no longer caught; all of them if none is run any more.
+        timings: times by code; informational.
         missed: seeded faults that this run does not detect.
     """
 
@@ -109,24 +109,24 @@ class Comparison:
 
     @property
     def versions(self) -> dict[str, tuple[str, str]]:
-        """What was run in another version: name → before, after; ``none`` where it was not there."""
+        """Changed versions: name → before, after; ``none`` if absent."""
         names = dict.fromkeys([*self.before.versions, *self.after.versions])
         pairs = {n: (self.before.versions.get(n, "none"), self.after.versions.get(n, "none")) for n in names}
         return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
 
     def passed(self, strict: bool = False) -> bool:
-        """Whether nothing got worse; ``strict``: nor moved."""
+        """Whether nothing got worse; with ``strict``, also whether nothing moved."""
         worse = self.worse or self.loosened or self.gone or self.uncaught or self.missed
         return not (worse or (strict and self.moved))
 
 
 def nothing(after: Entry) -> Entry:
-    """What a first run is compared with: no cells, so that every miss counts."""
+    """The baseline of a first run: no cells, so that every miss counts."""
     return Entry("nothing", "", after.machine, after.versions, ())
 
 
 def within(entry: Entry, other: Entry) -> Entry:
-    """What ``entry`` has of the cases that ``other`` has."""
+    """``entry`` restricted to the cases of ``other``."""
     cases = {p.case for p in other.cells}
     return replace(
         entry,
@@ -142,12 +142,12 @@ def compare(
     tolerance: float = MOVED,
     missed: Sequence[str] = (),
 ) -> Comparison:
-    """What became of ``before`` in ``after``.
+    """Compare the run ``after`` with the earlier run ``before``.
 
     Args:
-        missed: names of faults, see ``results.Control``.
-        earlier: runs from which the noise of times is taken, where they are of the same machine.
-        tolerance: relative change above which a frequency has moved.
+        missed: names of undetected faults, see ``results.Control``.
+        earlier: runs used to estimate the variation of times, if from the same machine.
+        tolerance: relative change above which a frequency counts as moved.
     """
     old = {p.key: p for p in before.cells}
     changes = [Change(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
@@ -172,13 +172,13 @@ def compare(
 
 
 def _worse(change: Change) -> bool:
-    """Whether the verdict is worse; of a cell that had none, whether it is a miss."""
+    """Whether the verdict is worse; for a new cell, whether it is a miss."""
     then, now = change.before, RANK.get(change.after.verdict, 0)
     return now > RANK[then.verdict] if then and then.verdict in RANK else now >= MISS
 
 
 def _loosened(change: Change) -> bool:
-    """Whether the target is wider than it was, so that the same difference passes more easily."""
+    """Whether the target is wider than before."""
     then, now = change.before.target if change.before else None, change.after.target
     return then is not None and now is not None and now > then * (1 + 1e-12)
 
@@ -190,9 +190,9 @@ def _better(change: Change) -> bool:
 
 
 def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
-    """A code that gives no answer at a speed has one cell there, of mode 0, that says so.
+    """Missing answers. A code without an answer at a speed has one cell there, of mode 0, with the reason.
 
-    An answer that is now called a measurement is gone: it was evidence, and is none any more.
+    An answer that has become a measurement counts as missing: it is no longer evidence.
     """
     answered = {p.key for p in now if p.frequency is not None and p.verdict != "measured"}
     verdicts: dict[Key, Verdict] = {p.key: p.verdict for p in now}
@@ -202,7 +202,7 @@ def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
 
 
 Solution = tuple[str, str, float]
-"""Code, case, rotor speed: what one time belongs to."""
+"""Code, case, rotor speed: key of a time."""
 
 
 def _seconds(entry: Entry) -> dict[Solution, float]:

@@ -1,8 +1,8 @@
-"""What runs found, commit by commit: a file with one JSON object a line, kept beside the code or as a build's artifact.
+"""History of results by commit: a file with one JSON object per line, kept with the code or as a build artifact.
 
-A line is appended in one write, under a lock on the file itself (portalocker: the system's own lock, on Windows too, and no
-lock file left behind), so that jobs that end together do not mix their lines. A line that was cut short, by a full disk or a
-killed job, spoils no other: the next one starts anew, and ``read`` says which lines it left out.
+A line is appended in one write, under a lock on the file itself (portalocker: the system's lock, also on Windows,
+without a lock file), so that concurrent jobs do not mix their lines. A truncated line, after a full disk or a killed
+job, does not affect the others: the next one starts on a new line, and ``read`` reports the lines it skipped.
 """
 
 import os
@@ -36,7 +36,7 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
 
     @property
     def key(self) -> "Key":
-        """What makes it the same cell in another run."""
+        """Key that identifies the cell in another run."""
         return self.case, self.code, self.omega, self.mode
 
 
@@ -45,7 +45,7 @@ Key = tuple[str, str, float, int]
 
 
 class Caught(msgspec.Struct, frozen=True, array_like=True):
-    """Who noticed one deliberate fault in core, in one case at one speed (rad/s); an array in the file."""
+    """Detections of one seeded fault in one case at one speed (rad/s); an array in the file."""
 
     control: str
     case: str
@@ -58,12 +58,12 @@ class Entry:
     """One run.
 
     Attributes:
-        commit: of the code that was run; anything that names a state of it.
-        date: when the entry was made: ISO 8601, UTC.
-        machine: in words, what its timings can be compared with.
+        commit: commit of the code that was run, or any other name of its state.
+        date: time of the entry: ISO 8601, UTC.
+        machine: description of the machine; timings are comparable on equal machines.
         versions: package or code → version.
         cells: in the run's order.
-        controls: likewise.
+        controls: in the run's order.
     """
 
     commit: str
@@ -76,14 +76,14 @@ class Entry:
 
 @dataclass(frozen=True)
 class History:
-    """Entries in the file's order, oldest first, and the numbers of lines that were cut short and are left out."""
+    """Entries in the file's order, oldest first, and the numbers of truncated lines that were skipped."""
 
     entries: tuple[Entry, ...]
     torn: tuple[int, ...] = ()
 
 
 def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None) -> Entry:
-    """A run as one entry: by default made now, on this machine."""
+    """Convert a run to an entry; by default dated now, on this machine."""
     return Entry(
         commit=commit,
         date=(date or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds"),
@@ -110,15 +110,15 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
 
 
 def this_machine() -> str:
-    """Kind of system and processor, and how many; not its name on the network, which is nobody's business."""
+    """System, processor type and number of processors; without the host name, for privacy."""
     return f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors"
 
 
 def append(path: Path, new: Entry) -> None:
-    """Add one line to a history, which is made if there is none.
+    """Append one line to a history; create the file if it does not exist.
 
     Raises:
-        OSError: if the file cannot be written, or not wholly.
+        OSError: if the line cannot be written completely.
     """
     line = msgspec.json.encode(new) + b"\n"
     with path.open("a+b", buffering=0) as file:
@@ -126,7 +126,7 @@ def append(path: Path, new: Entry) -> None:
         try:
             if size := file.seek(0, os.SEEK_END):
                 file.seek(size - 1)
-                if file.read(1) != b"\n":  # the last line was cut short
+                if file.read(1) != b"\n":  # the last line is truncated
                     line = b"\n" + line
             if file.write(line) != len(line):
                 raise OSError(0, "the line was cut short: is the disk full?", str(path))
@@ -135,11 +135,11 @@ def append(path: Path, new: Entry) -> None:
 
 
 def read(path: Path) -> History:
-    """A history; lines that were cut short are left out, and named.
+    """Read a history; truncated lines are skipped and listed.
 
     Raises:
         OSError: if the file cannot be read.
-        ValueError: naming file and line, if a whole line is not what this version writes.
+        ValueError: if a complete line is not in the format of this version; the message names file and line.
     """
     entries: list[Entry] = []
     torn: list[int] = []
