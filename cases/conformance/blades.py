@@ -1,4 +1,4 @@
-"""What conformance is judged by: simple blades with closed forms or printed numbers, and the properties a blade may have."""
+"""Blades for conformance checks, with closed forms or printed numbers, and the properties that a blade may have."""
 
 from dataclasses import dataclass, replace
 
@@ -15,16 +15,16 @@ LENGTH, MASS, EI = 2.0, 3.0, 48.0
 """With these √(EI / m L⁴) is 1 rad/s, so that frequencies in rad/s are the dimensionless ones of the literature."""
 
 SHEAR, SHORT = 100.0, 20.0
-"""Of the short beam: shear stiffness in EI / L², slenderness; as a solid of ordinary material has them. Shear does 4 % to its
-first frequency. Were it ten times softer, the clamp would keep a solid's sections from warping over most of its length."""
+"""Shear stiffness in EI / L² and slenderness of the short beam, typical of a solid. Shear changes its first frequency by
+4 %. In a ten times softer solid, the clamp would restrain warping over most of its length."""
 
 TURN = 0.5
 """rad, of the principal axes within the coupled section."""
 
 
 EA = 160_000 * EI / LENGTH**2
-"""Slenderness 400: stretch, Coriolis and rotary inertia then do less than 0.05 % to what closed forms are asked for, and solid
-elements, whose equations grow ill-conditioned as its fourth power, still have digits to spare."""
+"""Slenderness 400: stretch, Coriolis and rotary inertia change the frequencies with closed forms by less than 0.05 %, and
+solid elements, whose condition number grows with its fourth power, still have enough digits."""
 
 
 def _beam(name: str, EI_y: float, EI_z: float) -> Blade:
@@ -43,14 +43,14 @@ WITH_TIP_MASS = replace(
 STUBBY = uniform_blade(
     "stubby beam", LENGTH, 0.0, EA=3e4, GJ=200.0, EI_y=EI, EI_z=EI, mass=MASS, I_y=MASS * EI / 3e4, I_z=MASS * EI / 3e4
 )
-"""Slenderness 50, inertia of the sections to match: each effect of ``core.effects`` shows at ``FAST``, by 0.7 % at least."""
+"""Slenderness 50, with matching section inertia: each effect of ``core.effects`` is at least 0.7 % at ``FAST``."""
 
 FAST = 10.0
 """rad/s."""
 
 
 def coupled_plank() -> Blade:
-    """The plank's principal axes of bending turned within the section, so that its planes couple; the same frequencies."""
+    """The plank with principal bending axes rotated in the section: coupled planes, same frequencies."""
     c, s = np.cos(TURN), np.sin(TURN)
     turn, stiffness = np.array([[c, -s], [s, c]]), PLANK.stiffness.copy()
     both = slice(BEND_Y, BEND_Z + 1)
@@ -59,7 +59,7 @@ def coupled_plank() -> Blade:
 
 
 def short_beam(shear: float = np.inf) -> Blade:
-    """A short beam, soft in shear if wanted (``shear`` in EI / L²)."""
+    """A short beam, optionally soft in shear (``shear`` in EI / L²)."""
     EA, GA, I = (SHORT / LENGTH) ** 2 * EI, shear * EI / LENGTH**2, MASS * (LENGTH / SHORT) ** 2
     stiff = {"EA": EA, "GJ": 200.0, "EI_y": EI, "EI_z": EI, "GA_y": GA, "GA_z": GA}
     return uniform_blade("short beam", LENGTH, 0.0, mass=MASS, I_y=I, I_z=I, **stiff)
@@ -74,8 +74,8 @@ CANTILEVER = np.array(
 """β² of ``cos β cosh β = −1`` (Rayleigh, *The Theory of Sound*, 1877, §174): frequencies of the cantilever at rest, rad/s."""
 
 WRIGHT_SPEED, WRIGHT = 6.0, 7.3604
-"""First flapwise frequency of the turning beam without a hub (Wright et al., J. Appl. Mech. 49, 1982, 197–202, Table 3a).
-Chordwise it is √(ω² − Ω²): the same tension, and spin softening (inextensible)."""
+"""First flapwise frequency of the rotating beam without a hub (Wright et al., J. Appl. Mech. 49, 1982, 197–202, Table 3a).
+The chordwise frequency is √(ω² − Ω²): the same tension, and spin softening (inextensible)."""
 
 TIP_AT_REST = 1.5573
 """First frequency with a point mass as heavy as the beam at its tip: 1 + 1/(cos β cosh β) = β (tan β − tanh β)."""
@@ -100,11 +100,11 @@ def timoshenko() -> float:
 
 
 def cornered() -> tuple[Blade, float]:
-    """The beam with a right angle in the plane of rotation at half its length, and its first frequency in that plane at rest.
+    """The beam with a right angle in the plane of rotation at half its length, and its first in-plane frequency at rest.
 
-    Two cantilevers' halves of length a, neither of which stretches: the outer one rides along its own line on the end of the
-    inner, ``EI w₁‴ = −m a ω² w₁``; turning and moment pass the corner. Inner: C (cosh − cos) + D (sinh − sin); outer, at rest
-    across its line at the corner: A sin + B sinh + E (cos − cosh), free at its end.
+    Two inextensible halves of length a: the outer one moves along its axis with the end of the inner one,
+    ``EI w₁‴ = −m a ω² w₁``; rotation and moment are continuous at the corner. Inner: C (cosh − cos) + D (sinh − sin);
+    outer, without transverse displacement at the corner: A sin + B sinh + E (cos − cosh), free at its end.
     """
     half = 0.5 * LENGTH
     curve = np.array([[0.0, 0.0, 0.0], [half, 0.0, 0.0], [half, half, 0.0]])
@@ -127,12 +127,12 @@ def cornered() -> tuple[Blade, float]:
 
 
 SPEED = 3.0
-"""rad/s: near the beam's first frequency at rest, so that what the rotation does is large."""
+"""rad/s: near the beam's first frequency at rest, so that the effects of rotation are large."""
 
 
 @dataclass(frozen=True)
 class Property:
-    """Something a blade has, and the same blade without it; so large that at ``omega`` (rad/s) dropping it shows."""
+    """A property of a blade, and the same blade without it; large enough that dropping it shows at ``omega`` (rad/s)."""
 
     name: str
     having: Blade
@@ -148,7 +148,7 @@ def _along(blade: Blade, stations: int = 13) -> Blade:
 
 
 def _arc(axis: int) -> Blade:
-    """The beam bent, without stress, to an arc of radius 2 L in the direction of ``axis``."""
+    """The beam with a stress-free shape of an arc of radius 2 L in the direction of ``axis``."""
     blade, radius = _along(BEAM), 2 * LENGTH
     curve = np.zeros((len(blade.stations), 3))
     curve[:, 0] = radius * np.sin(blade.stations / radius)
@@ -168,7 +168,7 @@ def _twisted() -> Blade:
 
 
 def _joined(row: int, column: int) -> Blade:
-    """Two strains coupled, by six tenths of what would make the section unstable."""
+    """Two strains coupled by 0.6 of the value that would make the section unstable."""
     stiffness = BEAM.stiffness.copy()
     both = 0.6 * np.sqrt(stiffness[:, row, row] * stiffness[:, column, column])
     stiffness[:, row, column] = stiffness[:, column, row] = both
@@ -176,7 +176,7 @@ def _joined(row: int, column: int) -> Blade:
 
 
 def _body(mass: float, moment: float = 0.0, offset: float = 0.0) -> Array:
-    """A rigid body's inertia (6, 6) with its centre off along y; ``moment`` about y and z through it."""
+    """Inertia (6, 6) of a rigid body with its centre offset along y; ``moment`` about y and z through the centre."""
     out = np.diag([mass, mass, mass, 2 * moment, moment, moment])
     out[0, 5] = out[5, 0] = -mass * offset
     out[2, 3] = out[3, 2] = mass * offset
@@ -206,11 +206,11 @@ PROPERTIES = (
     Property("shear flexibility", short_beam(SHEAR), short_beam(), 0.0),
     Property("springs at the root", replace(BEAM, root=np.array([np.inf] * 4 + [5 * EI / LENGTH] * 2))),
 )
-"""What a blade may have; a code that takes it must not drop it."""
+"""Properties that a blade may have; a code that accepts such a blade must not drop them."""
 
 
 def shaft() -> tuple[Blade, float]:
-    """The beam, soft in torsion, and its first torsional frequency at rest, rad/s: π/2 √(GJ / I) / L, its second mode."""
+    """The beam, soft in torsion, and its first torsional frequency at rest, rad/s: π/2 √(GJ / I) / L (second mode)."""
     stiffness, frequency = BEAM.stiffness.copy(), 10.0
     polar = BEAM.mass[0, TORSION, TORSION]
     stiffness[:, TORSION, TORSION] = polar * (frequency * LENGTH / (np.pi / 2)) ** 2

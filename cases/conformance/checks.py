@@ -1,4 +1,4 @@
-"""What conformance asks: one function a question, which returns, or says what is wrong."""
+"""Conformance checks of a code for blades: each function returns, or raises an error that describes the fault."""
 
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -21,24 +21,24 @@ Array = NDArray[np.float64]
 Ask = Callable[[Code], None]
 
 NEAR = 1e-3
-"""Relative agreement asked for, extrapolated from the two coarsest levels; or the code's own bracket if that is wider."""
+"""Required relative agreement after extrapolation from the two coarsest levels, or the code's error bound if wider."""
 
 ROUNDING = 1e-6
-"""Relative, at the most, where two answers of one code to the same numbers must be the same."""
+"""Largest relative difference between two answers of one code to the same numbers."""
 
 FEWEST = 5
-"""Digits with which a code's answers can still be held to ``NEAR``."""
+"""Fewest digits of a code's answers with which ``NEAR`` can be checked."""
 
 DROPPED, VISIBLE = 0.25, 5e-3
-"""How near an answer must be, as a share of what dropping a thing does; how much, relative, that must do to be asked for."""
+"""Required agreement as a fraction of the change due to a dropped property; least relative change that is checked."""
 
 
 class BrokenError(AssertionError):
-    """A code that does not do what every code must; one line says what it did."""
+    """A code that fails a check; one line describes its behaviour."""
 
 
 class NotForItError(Exception):
-    """A question that the code declines, or that says nothing about it, with the reason."""
+    """A check that the code declines or that does not apply to it, with the reason."""
 
 
 def _keep(true: Any, message: str) -> None:
@@ -56,12 +56,12 @@ def _close(found: Any, exact: Any, what: str, within: float) -> None:
 
 
 def _rounding(code: Code) -> float:
-    """Relative, of two answers: half a unit of the last digit each, where the first digit is 1."""
+    """Relative rounding of two answers: half a unit of the last digit each, for a first digit of 1."""
     return 10.0 ** (1 - digits(code))
 
 
 def _same(code: Code) -> float:
-    """The same for answers to the same numbers, where conditioning does not matter."""
+    """The same for answers to the same numbers, which conditioning does not affect."""
     return min(_rounding(code), ROUNDING)
 
 
@@ -72,7 +72,7 @@ def _ask(code: Code, blade: Blade, omega: float, level: int, count: int = 4) -> 
 
 
 def _limit(code: Code, blade: Blade, omega: float, levels: tuple[int, int] = (0, 1)) -> tuple[Array, Modes, float]:
-    """Frequencies (m,) extrapolated by the declared order from two levels, the finer's modes, their own bracket."""
+    """Frequencies (m,) extrapolated by the declared order from two levels, the finer modes, and their error bound."""
     coarse, fine = (_ask(code, blade, omega, level) for level in levels)
     m = min(len(coarse.frequencies), len(fine.frequencies))
     limit = fine.frequencies[:m]
@@ -98,7 +98,7 @@ def _is(code: Code, blade: Blade, omega: float, exact: float, axis: int | None =
 
 
 def declares(code: Code) -> None:
-    """What the adapter says of itself."""
+    """The declarations of the adapter are valid."""
     _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
     _keep(code.title.strip(), "title: empty")
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
@@ -115,7 +115,7 @@ def declares(code: Code) -> None:
 
 
 def refuses(code: Code) -> None:
-    """``unsupported`` and ``solve`` say the same."""
+    """``unsupported`` and ``solve`` agree."""
     reasons = [(p, code.unsupported(p.having)) for p in PROPERTIES]
     for p, reason in reasons:
         if reason is None:
@@ -144,7 +144,7 @@ def turning(code: Code) -> None:
 
 
 def counts(code: Code) -> None:
-    """Numbers of modes."""
+    """The requested number of modes is returned."""
     few, many = (_ask(code, BEAM, known.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
         f = modes.frequencies
@@ -156,7 +156,7 @@ def counts(code: Code) -> None:
 
 
 def repeats(code: Code) -> None:
-    """Nothing is left over from another call."""
+    """No state remains from another call."""
     first = _ask(code, BEAM, known.SPEED, 0)
     _ask(code, replace(BEAM, hub_radius=1.0), 1.0, 1)
     again = _ask(code, BEAM, known.SPEED, 0)
@@ -195,7 +195,7 @@ def order(code: Code) -> None:
 
 
 def units(code: Code) -> None:
-    """Lengths in feet, masses in pounds, times in minutes: the same, to the digits that the code declares."""
+    """Lengths in feet, masses in pounds, times in minutes: the same to the declared digits of the code."""
     length, mass, rate = 1 / 0.3048, 1 / 0.45359237, 60.0
     power = np.add.outer([0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1])
     other = replace(
@@ -210,7 +210,7 @@ def units(code: Code) -> None:
 
 
 def quarter_pitch(code: Code) -> None:
-    """Pitch by 90° is the other plane."""
+    """A pitch of 90° exchanges the planes."""
     pitched, plain = (_ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
     _close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with planes swapped", _same(code))
     for axis in (1, 2):
@@ -264,7 +264,7 @@ def tip_mass_weighs(code: Code) -> None:
 
 
 def tip_mass_pulls(code: Code) -> None:
-    """Turning: its centrifugal force is the tip's tension."""
+    """Rotating: its centrifugal force is the tip's tension."""
     _is(code, known.WITH_TIP_MASS, known.TIP_SPEED, known.TIP_TURNING, axis=2)
 
 
@@ -296,7 +296,7 @@ def _stubby(effects: Effects) -> Array:
 
 @cache
 def _with_and_without(name: str, effects: Effects) -> tuple[Array, Array]:
-    """Core's frequencies of the blades that have a property, and lack it."""
+    """Core's frequencies of the blades with and without a property."""
     (one,) = (p for p in PROPERTIES if p.name == name)
     having, lacking = (solve.mesh_modes(b, one.omega, 30, 4, effects=effects) for b in (one.having, one.lacking))
     return having.frequencies, lacking.frequencies
@@ -307,7 +307,7 @@ def _far(found: Array, other: Array) -> float:
 
 
 def effects(code: Code) -> None:
-    """Each effect by turns, at a speed where leaving it out is seen, and which not every code can reach."""
+    """Each effect in turn, at a speed where its omission shows; not every code can reach this speed."""
     try:
         found, _, bracket = _limit(code, known.STUBBY, known.FAST, (-2, -1))
     except CodeError as error:
@@ -318,7 +318,7 @@ def effects(code: Code) -> None:
         kept = getattr(code.effects, name)
         try:
             change = _far(_stubby(replace(code.effects, **{name: not kept})), here)
-        except UnstableError:  # as without geometric stiffness: then no answer is wrong enough
+        except UnstableError:  # for instance without geometric stiffness: the effect cannot be checked
             continue
         if bracket > DROPPED * change:
             raise NotForItError(f"its own bracket, {bracket:.1%}, hides {name}")
@@ -329,7 +329,7 @@ def effects(code: Code) -> None:
 
 
 def keeps(one: Property, code: Code) -> None:
-    """A property is not dropped without a word; told from two coarse levels."""
+    """A property is not silently dropped; checked with two coarse levels."""
     found, _, bracket = _limit(code, one.having, one.omega)
     having, lacking = _with_and_without(one.name, code.effects)
     change = _far(having, lacking)

@@ -1,4 +1,4 @@
-"""What conformance asks of a code for mechanisms: closed forms, symmetries, and refusals that are kept."""
+"""Conformance checks of a code for mechanisms: closed forms, symmetries, and consistent refusals."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -17,7 +17,7 @@ Array = NDArray[Any]
 Ask = Callable[[MechanismCode], None]
 
 NEAR = 1e-7
-"""Of eigenvalues, relative to the largest: nothing is discretised, but a code may take differences."""
+"""Tolerance on eigenvalues, relative to the largest: no discretisation error, but a code may use finite differences."""
 
 G, LENGTH, MASS = 9.81, 0.7, 3.0
 
@@ -39,7 +39,7 @@ def _ask(code: MechanismCode, mechanism: mb.Mechanism, guess: Mapping[str, float
 
 
 def _are(found: MechanismModes, expected: Any, what: str) -> None:
-    """Eigenvalues as expected, one of each conjugate pair, in whatever order."""
+    """Check the eigenvalues, one of each conjugate pair, in any order."""
     wanted = np.asarray(expected, np.complex128)
     said = f"{what}: {_list(found.values)} 1/s, expected {_list(wanted)}"
     _keep(len(found.values) == len(wanted), said)
@@ -68,7 +68,7 @@ def pendulum() -> mb.Mechanism:
 
 
 def hinged(kind: str) -> mb.Mechanism:
-    """A slender rod on a flap or lag hinge half its length from the rotor's axis, which turns at 5 rad/s."""
+    """A slender rod on a flap or lag hinge at half its length from the axis of a rotor at 5 rad/s."""
     end = mb.at(LENGTH / 2, axis="-y" if kind == "flap" else "z")
     rod = mb.inertia(MASS, (0.0, MASS * LENGTH**2 / 12, MASS * LENGTH**2 / 12), (LENGTH / 2, 0.0, 0.0))
     return mb.Mechanism(
@@ -82,7 +82,7 @@ def hinged(kind: str) -> mb.Mechanism:
 
 
 def declares(code: MechanismCode) -> None:
-    """What the adapter says of itself."""
+    """The declarations of the adapter are valid."""
     _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
     _keep(code.title.strip(), "title: empty")
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
@@ -95,7 +95,7 @@ def declares(code: MechanismCode) -> None:
 
 
 def refuses(code: MechanismCode) -> None:
-    """``unsupported_mechanism`` and ``solve_mechanism`` say the same."""
+    """``unsupported_mechanism`` and ``solve_mechanism`` agree."""
     base = pendulum()
     bushing = mb.Beam("ground", "bob", mb.bushing(np.eye(4), np.eye(6)))
     asked = {
@@ -120,7 +120,7 @@ def refuses(code: MechanismCode) -> None:
 
 
 def hangs(code: MechanismCode) -> None:
-    """√(g/l), and its steady state from a guess beside it."""
+    """√(g/l), and the steady state from a guess near it."""
     found = _ask(code, pendulum(), {"hinge.rz": 0.3})
     _are(found, [1j * np.sqrt(G / LENGTH)], "pendulum")
     _keep(found.coordinates == ("hinge.rz",), f"coordinates: {found.coordinates}, expected ('hinge.rz',)")
@@ -204,7 +204,7 @@ def branches(code: MechanismCode) -> None:
 
 
 def _parallelogram(springs: bool = False) -> mb.Mechanism:
-    """A bar that hangs level from two massless cranks: three times overdetermined in space."""
+    """A horizontal bar on two massless cranks: three redundant constraints in space."""
     across, down = mb.at(1.0), mb.at(0.0, -LENGTH, 0.0)
     names = ("A", "B", "C", "D")
     return mb.Mechanism(
@@ -221,7 +221,7 @@ def _parallelogram(springs: bool = False) -> mb.Mechanism:
 
 
 def closes(code: MechanismCode) -> None:
-    """The bar of a parallelogram moves without turning: √(g/l), wherever its mass centre lies."""
+    """The bar of a parallelogram moves without rotation: √(g/l), for any position of its mass centre."""
     found = _ask(code, _parallelogram(), {"A.rz": 0.2, "B.rz": 0.2, "C.rz": -0.2})
     _are(found, [1j * np.sqrt(G / LENGTH)], "parallelogram")
 
@@ -242,7 +242,7 @@ def curves(code: MechanismCode) -> None:
 
 
 def reversed_joint(code: MechanismCode) -> None:
-    """A joint given from child to parent, bodies in another order: the coordinate counts the other way, λ is the same."""
+    """A joint from child to parent and a different order of bodies: the coordinate changes sign, λ is the same."""
     ways = []
     for ends in (("ground", "bob"), ("bob", "ground")):
         joint = mb.Joint("hinge", "revolute", *ends)
@@ -259,7 +259,7 @@ def reversed_joint(code: MechanismCode) -> None:
 
 
 def repeats(code: MechanismCode) -> None:
-    """Nothing is left over from another call."""
+    """No state remains from another call."""
     first = _ask(code, hinged("flap"))
     _ask(code, hinged("lag"))
     again = _ask(code, hinged("flap"))
@@ -282,7 +282,7 @@ def periodic(code: MechanismCode) -> None:
 
 
 def falls(code: MechanismCode) -> None:
-    """A mass that nothing holds has no steady state."""
+    """An unsupported mass under gravity has no steady state."""
     loose = mb.Mechanism(
         (mb.Body("mass", mb.inertia(MASS, 0.1)),),
         (mb.Joint("rail", "prismatic", "ground", "mass", mb.at(axis="y"), mb.at(axis="y")),),

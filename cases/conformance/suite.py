@@ -1,4 +1,4 @@
-"""What an adapter must pass before its answers are worth comparing: for those who write one, and for every one of ours.
+"""Conformance suite for adapters, those of this package and of third parties.
 
 In a third party's own tests, with pytest::
 
@@ -9,9 +9,9 @@ In a third party's own tests, with pytest::
             pytest.skip(outcome.reason)
         assert outcome.verdict == "pass", outcome.reason
 
-On the command line: ``southwell conform NAME``. Every check either holds the code to a closed form, a printed number or a
-symmetry (``conformance_checks``), or, for what a code may drop without a word, asks whether its answer is nearer to
-core's with it than without.
+On the command line: ``southwell conform NAME``. A check compares the code with a closed form, a printed number or a
+symmetry (``conformance_checks``), or, for a property that a code might silently drop, tests whether its answer is closer
+to core's with the property than without.
 """
 
 from collections.abc import Callable
@@ -29,12 +29,12 @@ from .checks import BrokenError, NotForItError
 
 @dataclass(frozen=True)
 class Check:
-    """One law.
+    """One conformance check.
 
     Attributes:
-        name: a few words.
-        law: what must be true.
-        ask: raises ``BrokenError`` or ``NotForItError``, or returns if the code keeps the law.
+        name: short name.
+        law: the requirement.
+        ask: raises ``BrokenError`` or ``NotForItError``, or returns if the code meets the requirement.
         runs: whether it needs the code installed.
     """
 
@@ -49,7 +49,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a check; a reason for all but ``pass``."""
+    """The result of a check, with a reason for all but ``pass``."""
 
     check: Check
     verdict: Literal["pass", "fail", "not applicable", "not run"]
@@ -57,7 +57,7 @@ class Outcome:
 
 
 def judge(code: Code | MechanismCode, check: Check) -> Outcome:
-    """Ask one thing of a code. Whatever it raises, unless it declines the blade with a reason, is a failure."""
+    """Run one check on a code. Any exception is a failure, unless the code declines the blade with a reason."""
     if check.runs and code.version() is None:
         return Outcome(check, "not run", f"not installed: {code.hint}")
     try:
@@ -99,7 +99,7 @@ CHECKS = (
     Check("effects", "effects declared are kept, and no others", checks.effects),
     *(Check(f"keeps {p.name}", "refused, or not dropped", partial(checks.keeps, p)) for p in PROPERTIES),
 )
-"""Every check of a code for blades, in the order in which failures are best read."""
+"""All checks of a code for blades, in the order most useful for reading failures."""
 
 FOR_MECHANISMS = (
     Check(
@@ -126,7 +126,7 @@ FOR_MECHANISMS = (
     Check("periodic equations", "refused", mechanism.periodic),
     Check("no steady state", "refused", mechanism.falls),
 )
-"""Every check of a code for mechanisms."""
+"""All checks of a code for mechanisms."""
 
 EVERY = (*CHECKS, *FOR_MECHANISMS)
-"""All of them; a worker is told which by number."""
+"""All checks; a worker receives their indices."""

@@ -1,4 +1,4 @@
-"""All checks asked of a foreign code in a process of its own; a check that ends it fails, and the others go on in a new one."""
+"""Checks of a foreign code in a separate process; a check that ends the process fails, and a new process runs the rest."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from ...references.protocol.process import Failure, Limits, converse, one_line
 from .suite import CHECKS, EVERY, Check, Outcome, judge
 
 LIMITS = Limits(seconds=600.0)
-"""Of one check, which is several solutions."""
+"""Limits of one check, which runs several solutions."""
 
 
 class _Judged(Struct, frozen=True, forbid_unknown_fields=True):
@@ -22,15 +22,15 @@ class _Judged(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMITS) -> list[Outcome]:
-    """What came of checks, in their order.
+    """Run checks on a code and return the results in the same order.
 
     Args:
-        name: of the code, or its import path.
-        checks: those of ``suite.EVERY`` that are asked.
-        limits: of each check.
+        name: name of the code, or its import path.
+        checks: checks to run, from ``suite.EVERY``.
+        limits: limits of each check.
 
     Raises:
-        UnknownCodeError: if there is no such code.
+        UnknownCodeError: if the code is unknown.
     """
     done: list[Outcome] = []
     where = registry.address(name)
@@ -63,7 +63,7 @@ def _answer(request: Any) -> Iterator[Reply]:
         try:
             outcome = judge(code, EVERY[number])
             yield {"verdict": outcome.verdict, "reason": outcome.reason}
-        except BaseException as error:  # an exit, too
+        except BaseException as error:  # also SystemExit
             yield blunder(error)
 
 
