@@ -41,7 +41,7 @@ FACTORS = {
     "tc_offst_mult": "tc_offst",
 }
 ROOTS = {1: [np.inf] * 6, 4: [np.inf, np.inf, np.inf, np.inf, 0.0, 0.0]}
-"""Root directions fixed by hub_conn: 1 all, 4 pinned-free: flap and lag slopes are free."""
+"""Root stiffness (6,) by hub_conn: 1 clamped, 4 pinned-free: flap and lag slopes are free."""
 
 
 def is_one(text: Text) -> bool:

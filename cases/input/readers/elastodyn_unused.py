@@ -1,4 +1,4 @@
-"""Quantities in ElastoDyn's files that a blade's modes do not use: damping, shapes, aerodynamics, teeter, initial state."""
+"""Quantities in ElastoDyn's files that modes do not use: damping, shapes, aerodynamics, teeter, initial state."""
 
 import math
 

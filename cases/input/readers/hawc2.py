@@ -1,4 +1,4 @@
-"""HAWC2's structural files (``st``), 19 columns, or 30 with full stiffness matrices; curve and twist from c2_def in an htc.
+"""HAWC2's structural files (``st``): 19 columns, or 30 with full stiffness matrices; curve and twist from c2_def.
 
 HAWC2's blade axes are x to the leading edge, y downwind, z along the blade; offsets are from the half-chord line, in
 axes rotated by c2_def's twist, and ``pitch`` is the angle from these to the principal bending axes, both positive from
@@ -52,7 +52,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     """Read the blade in a structural file, or that of an htc's body with c2_def and a name beginning with "blade".
 
     Args:
-        path: path of either file. Without an htc (``mount.main``) the half-chord line is straight along r and untwisted.
+        path: path of either file. Without an htc (``mount.main``) the half-chord line is straight and untwisted.
         mount: ``subset`` selects set and subset if the file has several.
 
     Raises:
