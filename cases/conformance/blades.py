@@ -100,7 +100,7 @@ def timoshenko() -> float:
 
 
 def cornered() -> tuple[Blade, float]:
-    """The beam with a right angle in the plane of rotation at half its length, and its first in-plane frequency at rest.
+    """The beam with a right angle in the plane of rotation at midspan, and its first in-plane frequency at rest.
 
     Two inextensible halves of length a: the outer one moves along its axis with the end of the inner one,
     ``EI w₁‴ = −m a ω² w₁``; rotation and moment are continuous at the corner. Inner: C (cosh − cos) + D (sinh − sin);
@@ -132,7 +132,7 @@ SPEED = 3.0
 
 @dataclass(frozen=True)
 class Property:
-    """A property of a blade, and the same blade without it; large enough that dropping it shows at ``omega`` (rad/s)."""
+    """A property of a blade, and the blade without it; large enough that dropping it shows at ``omega`` (rad/s)."""
 
     name: str
     having: Blade

@@ -1,4 +1,4 @@
-"""Checks of a foreign code in a separate process; a check that ends the process fails, and a new process runs the rest."""
+"""Checks of a foreign code in a separate process; a check that ends the process fails, a new process runs the rest."""
 
 import json
 from collections.abc import Iterator, Sequence
