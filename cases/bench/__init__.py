@@ -1,1 +1,1 @@
-"""What a frequency costs: core and the other codes side by side."""
+"""Cost of a frequency: core compared with the other codes."""

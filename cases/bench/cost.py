@@ -1,8 +1,8 @@
-"""What a frequency costs: core and the other codes on one cantilever, side by side, and core as the elements multiply.
+"""Cost of a frequency: core and the other codes on one cantilever, and core with increasing numbers of elements.
 
-Every code has a process of its own with one thread of linear algebra; in each round the processes work one after another, so
-that whatever else the machine does falls on all of them alike. Figures are medians over the rounds, and what is compared are
-their ratios.
+Every code runs in a separate process with one thread of linear algebra. In each round the processes run one after
+another, so that other load on the machine affects all of them equally. Times are medians over the rounds; their ratios
+are compared.
 """
 
 import resource
@@ -89,10 +89,10 @@ class Bench:
 
 
 def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
-    """Measure; ``say`` is told what is being done.
+    """Run the benchmark; ``say`` is called with progress messages.
 
     Raises:
-        UnknownCodeError: a name that no code has.
+        UnknownCodeError: if a name is unknown.
     """
     exact = _answer(EXACT, OMEGA, registry.code(EXACT).levels[-1])[1]
     return Bench(
@@ -101,15 +101,15 @@ def bench(say: Callable[[str], None], names: Sequence[str] = CODES) -> Bench:
 
 
 def write(path: Path, found: Bench) -> None:
-    """Keep what was measured, as JSON."""
+    """Write the results as JSON."""
     atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Bench:
-    """What ``write`` kept.
+    """Read a file written by ``write``.
 
     Raises:
-        msgspec.DecodeError: if the file is not such a one.
+        msgspec.DecodeError: if the format is invalid.
     """
     return msgspec.json.decode(read_bytes(path), type=Bench)
 
@@ -230,5 +230,5 @@ def _grown(elements: int) -> Growth:
 
 
 def _peak() -> int:
-    """The most memory this process has had, bytes."""
+    """Peak memory of this process, bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
