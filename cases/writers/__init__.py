@@ -1,1 +1,1 @@
-"""Blades written for other programs: BeamDyn and ElastoDyn. A ``Blade`` comes in; text goes out, with what it cannot hold."""
+"""Writers of blade files for other programs: BeamDyn and ElastoDyn."""

@@ -1,4 +1,4 @@
-"""BeamDyn's main and blade file, written."""
+"""Writer of BeamDyn's main and blade files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,17 +20,18 @@ Array = NDArray[np.float64]
 
 
 CARRIED = (DAMPING,)
-"""Names of the unused quantities that are written again."""
+"""Names of the unused quantities that are carried over."""
 
 
 def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
-    """Write the main file at ``path`` and, beside it, the blade file; returns what ElastoDyn's main file must say.
+    """Write the main file at ``path`` and the blade file next to it; return the mounting for ElastoDyn's main file.
 
-    A twist and a curve between stations are as BeamDyn makes them, a natural spline in z. ``given`` is what the blade's own
-    file holds beyond it; of that, what ``CARRIED`` names is written.
+    Between stations BeamDyn interpolates twist and curve by a natural spline in z. ``given`` are the unused quantities of
+    the blade's original file; those in ``CARRIED`` are written.
 
     Raises:
-        CaseError: naming what the format cannot hold: rigid strains, root joints, tip masses, kinks, curves that turn back.
+        CaseError: if the format does not support a property: rigid strains, root joints, tip masses, kinks, curves that
+            turn back.
     """
     lacks = {
         "rigid strains": bool(np.isinf(blade.stiffness).any()),
@@ -54,7 +55,7 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
 
 
 def moved(blade: Blade) -> float:
-    """How far BeamDyn's spline through the stations moves them along the axis, at most, of the length."""
+    """Largest displacement of stations along the axis by BeamDyn's spline, as a fraction of the length."""
     return float(np.abs(_axis(blade).arc - blade.stations).max() / blade.length)
 
 
@@ -66,7 +67,7 @@ def _axis(blade: Blade) -> Axis:
 
 
 def blade_file(path: Path) -> Path:
-    """The blade file beside a main file at ``path``."""
+    """Path of the blade file of a main file at ``path``."""
     return path.with_name(f"{path.stem}_blade{path.suffix or '.dat'}")
 
 

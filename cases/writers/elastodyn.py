@@ -1,4 +1,4 @@
-"""ElastoDyn's blade file, written: sections, and the mode shapes that are computed from them.
+"""Writer of ElastoDyn's blade file: sections, and the mode shapes computed from them.
 
 Damping and PitchAxis are no properties of a blade here; they are written as the blade's own ElastoDyn file has them, else 0.
 """
@@ -22,20 +22,20 @@ Array = NDArray[np.float64]
 
 
 CARRIED = (DAMPING, "PitchAxis")
-"""Names of the unused quantities that are written again."""
+"""Names of the unused quantities that are carried over."""
 
 
 def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] = ()) -> Mount:
-    """Write the blade file, and return what the main file must say for it to be read again.
+    """Write the blade file, and return the mounting that the main file must contain.
 
     Args:
-        blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia: what the format can hold.
-        path: of the file.
+        blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia, as the format requires.
+        path: path of the file.
         omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.elastodyn_shapes``).
-        given: what the blade's own file holds beyond it; of that, what ``CARRIED`` names is written.
+        given: unused quantities of the blade's original file; those in ``CARRIED`` are written.
 
     Raises:
-        CaseError: naming what the format cannot hold, or a mode that is not found.
+        CaseError: if the format does not support a property of the blade, or a mode is not found.
     """
     diagonal = np.diagonal(blade.stiffness, axis1=1, axis2=2)
     off = ~np.eye(6, dtype=bool)
