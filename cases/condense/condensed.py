@@ -1,4 +1,4 @@
-"""A compressed model: its segments and where its root is; kept as JSON, and its modes with names."""
+"""A compressed model: its segments and the pose of its root, stored as JSON, and its named modes."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,7 +43,7 @@ def modes(blade: Condensed, omega: float, count: int, allow_large_strain: bool =
     """The lowest modes at ``omega`` rad/s, with their relative uncertainties; see ``core.condense.compressed.segment_modes``.
 
     Raises:
-        CaseError: no stable steady state at this speed, or one of large strain.
+        CaseError: if there is no stable steady state at this speed, or its strain is large.
     """
     try:
         return segment_modes(blade.segments, blade.root, omega, count, allow_large_strain=allow_large_strain)
@@ -76,7 +76,7 @@ def body(s: Segment) -> tuple[float, Array, Array]:
 
 
 def write(path: Path, blade: Condensed) -> None:
-    """Keep a compressed model as JSON, matrices row by row, SI."""
+    """Write a compressed model as JSON, matrices row by row, SI units."""
     pieces = [{key: value.tolist() for key, value in vars(s).items()} for s in blade.segments]
     record = {"name": blade.name, "root": blade.root.tolist(), "segments": pieces}
     atomic.write(path, msgspec.json.format(msgspec.json.encode(record)) + b"\n")
@@ -96,10 +96,10 @@ class _Kept(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def read(path: Path) -> Condensed:
-    """What ``write`` kept.
+    """Read a file written by ``write``.
 
     Raises:
-        CaseError: no such file, not such a one, or a matrix of the wrong size.
+        CaseError: if the file does not exist, its format is invalid, or a matrix has the wrong size.
     """
     try:
         kept = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)

@@ -28,7 +28,7 @@ NEAR = ties.ON_SECTION
 
 @dataclass(frozen=True)
 class Condensation:
-    """What came of a file.
+    """Result of the condensation of a file.
 
     Attributes:
         told: what it says.
@@ -44,10 +44,10 @@ class Condensation:
 
 
 def condense(path: Path) -> Condensation:
-    """What a file says, and the compressed model that comes of it.
+    """Condense the matrices that a file references.
 
     Raises:
-        CaseError: naming the file and field at fault.
+        CaseError: naming the file and the invalid field.
     """
     with files.reading(path):
         return _condense(path)

@@ -1,7 +1,7 @@
-"""FE condensation shown: solids as 20 complex stiffness elements and rigid bodies, against what is known of them.
+"""Worked example of FE condensation: solids as 20 complex stiffness elements and rigid bodies, against references.
 
-A tapered, twisted blade of steel against its own modes as a whole solid, by scikit-fem and by CalculiX; the paper's
-cantilever as a solid against Timoshenko's exact frequencies; and what rigid ties do to torsion.
+A tapered, twisted blade of steel against the modes of the complete solid, by scikit-fem and by CalculiX; the paper's
+cantilever as a solid against Timoshenko's exact frequencies; and the effect of rigid ties on torsion.
 """
 
 from collections.abc import Callable, Sequence
@@ -107,7 +107,7 @@ def example(
     across: tuple[int, int] = solids.ACROSS,
     segments: int = 20,
 ) -> tuple[Example, Drawn]:
-    """Condense and compare; ``say`` is told what is being done.
+    """Condense and compare; ``say`` is called with progress messages.
 
     Raises:
         CaseError: without scikit-fem there are no solids.
@@ -166,15 +166,15 @@ def differences(values: Sequence[float], of: Sequence[float] | NDArray[np.float6
 
 
 def write(path: Path, found: Example) -> None:
-    """Keep what was computed, as JSON."""
+    """Write the results as JSON."""
     atomic.write(path, msgspec.json.format(msgspec.json.encode(found)) + b"\n")
 
 
 def read(path: Path) -> Example:
-    """What ``write`` kept.
+    """Read a file written by ``write``.
 
     Raises:
-        msgspec.DecodeError: if the file is not such a one.
+        msgspec.DecodeError: if the format is invalid.
     """
     return msgspec.json.decode(read_bytes(path), type=Example)
 

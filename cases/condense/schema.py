@@ -1,4 +1,4 @@
-"""What a file for ``southwell condense`` may say: whose matrices, which nodes, where the sections are; unknown keys refused."""
+"""Schema of a file for ``southwell condense``: matrices, nodes and sections; unknown keys are rejected."""
 
 from typing import Annotated, Literal
 
