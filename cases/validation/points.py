@@ -1,4 +1,4 @@
-"""One measured point beside the simulation."""
+"""A measured point and the simulated value."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ RPM = np.pi / 30.0
 
 @dataclass(frozen=True)
 class Point:
-    """One measured point beside what the model gives there, both in Hz."""
+    """A measured point and the simulated value, both in Hz."""
 
     line: str
     rpm: float
