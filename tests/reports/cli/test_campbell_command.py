@@ -65,14 +65,14 @@ def beam(tmp_path: Path) -> Path:
     ],
 )
 def test_wrong_input_is_told_in_one_line(
-    arguments: str, progress: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    arguments: str, phrase: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     status, out, err = southwell(arguments, capsys)
     assert (status, out) == (2, "")
     assert err.startswith("southwell: ")
     assert err.count("\n") == 1
-    assert progress in err
+    assert phrase in err
     assert not list(tmp_path.iterdir())
 
 
@@ -241,10 +241,10 @@ def test_a_bad_load_is_one_line(
 ) -> None:
     table = tmp_path / "load.csv"
     table.write_text(f"{','.join(LOAD)}\n{rows}")
-    status, _, progress = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
+    status, _, err = southwell(f"campbell {beam} --load {table} -o {tmp_path / 'out'}", capsys)
     assert status == 2
-    assert progress.count("\n") == 1
-    assert all(word in progress for word in words)
+    assert err.count("\n") == 1
+    assert all(word in err for word in words)
 
 
 def test_several_processes_give_the_same_numbers(
