@@ -33,6 +33,26 @@ def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], st
     assert (done.returncode, done.stderr.count("\n")) == (status, errors), done.stderr
 
 
+def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Path) -> None:
+    folder = tmp_path / "a b\nü'$x"
+    folder.mkdir()
+    line = "env -u HOME southwell verify rotating-cable --codes southwell-equation --faults none --workers 1 --out ."
+    done = subprocess.run(
+        ["bash", "-c", line.replace("southwell verify", f"'{sys.executable}' -m southwell verify")],
+        cwd=folder,
+        env={**os.environ, "TMPDIR": str(tmp_path / "missing")},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, (folder / "results.jsonl").exists()) == (0, True), done.stderr
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    done = shell(f"southwell verify rotating-cable --out '{tmp_path / 'file' / 'out'}'")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+
+
 def test_a_defect_of_the_program_has_a_status_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
