@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from southwell.cases.input import readers
+from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.tests.support.blade_files import BLADES as DATA
 from southwell.tests.support.blade_files import same, samples, written
@@ -25,3 +26,10 @@ def test_numbers_without_a_point_in_their_exponent_are_numbers(tmp_path: Path) -
     path.write_text(path.read_text().replace("9000000000.0", "9e9"))
     assert "9e9" in path.read_text()
     same(readers.read(path), readers.read(written(tmp_path / "c.yml", samples()[0])))
+
+
+def test_a_hub_of_another_unit_is_refused(tmp_path: Path) -> None:
+    data = samples()[0]
+    data["components"]["hub"] = {"outer_shape_bem": {"diameter": 4e6}}
+    with pytest.raises(CaseError, match=r"hub_radius: 2e\+06 m: beyond 10000 m: another unit"):
+        readers.read(written(tmp_path / "b.yaml", data))
