@@ -12,8 +12,8 @@ from ...references.protocol import registry
 from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import Answer
 from ..verify import columns
-from .core import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 from .seeding import Fault, Trial
+from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 
 Asked = tuple[float, int, int]
 

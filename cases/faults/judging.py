@@ -10,8 +10,8 @@ from ..judge import pairing, verdict
 from ..judge.pairing import Pair
 from ..judge.uncertainty import Estimate
 from ..verify import cells, published_tables, reference, refinement
-from .core import FAST, PARK
 from .seeding import Fault, Seam, Trial
+from .trials import FAST, PARK
 
 OPENFAST = Trial("nrel-5mw", (0.0,), ())
 BMODES = Trial("windpact-1.5/bmodes", (6.283185307179586,), ())

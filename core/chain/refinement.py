@@ -186,10 +186,10 @@ def _coarser(meshes: Meshes, last: Modes) -> Array | None:
         bias = meshes.bias(n // 4, coarse)
     except _FAILURES:
         return None
-    few, more = coarse.modes.frequencies, half.modes.frequencies
+    few, more = coarse.modes.frequencies[:m], half.modes.frequencies[:m]
     if len(few) < m or len(more) < m:
         return None
-    return accuracy.estimate(np.array([few, more, last.frequencies]), meshes.order).of_finest + np.abs(bias)
+    return accuracy.estimate(np.array([few, more, last.frequencies]), meshes.order).of_finest + np.abs(bias[:m])
 
 
 def _from_default(meshes: Meshes, last: Modes, fastest: float) -> Array:

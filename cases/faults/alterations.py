@@ -1,0 +1,178 @@
+"""Alterations of core, each a function from what core has right to what is wrong."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
+from ...core.chain.steady import Steady
+from ...core.effects import Effects
+from ...core.element.discretize import Chain
+from ..verify import core_faults, core_solver
+
+Balance = Callable[..., Steady]
+
+
+def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
+    """Core omits effects without declaring it."""
+
+    def make(right: Balance) -> Balance:
+        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
+            return right(body, omega, gravity, replace(model, **lacks), guess)
+
+        return wrong
+
+    return make
+
+
+def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
+    """Spin softening is multiplied by ``factor``; effects in ``lacks`` are also omitted."""
+
+    def make(right: Balance) -> Balance:
+        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
+            state = right(body, omega, gravity, replace(model, **lacks), guess)
+            return replace(state, pencil=core_faults.softened(body, state, omega, factor))
+
+        return wrong
+
+    return make
+
+
+def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
+    """The linearised matrices are altered."""
+
+    def make(right: Balance) -> Balance:
+        def wrong(*args: Any, **kwargs: Any) -> Steady:
+            state = right(*args, **kwargs)
+            return replace(state, pencil=alter(state.pencil))
+
+        return wrong
+
+    return make
+
+
+def chained(alter: Callable[[Chain, Blade], Chain]) -> Callable[[Any], Any]:
+    """The chain is altered after discretisation."""
+
+    def make(right: Any) -> Any:
+        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Chain:
+            return alter(right(blade, *args, **kwargs), blade)
+
+        return wrong
+
+    return make
+
+
+def bladed(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
+    """A function receives a different blade."""
+
+    def make(right: Any) -> Any:
+        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Any:
+            return right(alter(blade), *args, **kwargs)
+
+        return wrong
+
+    return make
+
+
+def valued(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
+    """A property along the blade is altered: ``alter(values, blade, s)``."""
+
+    def make(right: Any) -> Any:
+        def wrong(blade: Blade, s: Any) -> Any:
+            return alter(right(blade, s), blade, s)
+
+        return wrong
+
+    return make
+
+
+def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
+    """Core uses a different rotor speed."""
+
+    def make(right: Any) -> Any:
+        def wrong(blade: Blade, omega: float, *args: Any, **kwargs: Any) -> Any:
+            return right(blade, alter(omega), *args, **kwargs)
+
+        return wrong
+
+    return make
+
+
+def whole_end(chain: Chain, blade: Blade) -> Chain:
+    """The last element's whole mass at the tip, instead of its half."""
+    lumps = chain.lumps.copy()
+    lumps[-1] += lumps[-1] - blade.tip_mass
+    return replace(chain, lumps=lumps)
+
+
+def scaled_tip(factor: float) -> Callable[[Chain, Blade], Chain]:
+    """The tip body's inertia times ``factor``."""
+
+    def alter(chain: Chain, blade: Blade) -> Chain:
+        lumps = chain.lumps.copy()
+        lumps[-1] += (factor - 1.0) * blade.tip_mass
+        return replace(chain, lumps=lumps)
+
+    return alter
+
+
+def mirrored_tip(chain: Chain, blade: Blade) -> Chain:
+    """The tip body's inertia reflected in the x–z plane."""
+    lumps, flip = chain.lumps.copy(), np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    lumps[-1] += flip @ blade.tip_mass @ flip - blade.tip_mass
+    return replace(chain, lumps=lumps)
+
+
+def scaled_beyond(mass: Any, blade: Blade, s: Any, factor: float, beyond: float) -> Any:
+    """Mass per length (k, 6, 6) times ``factor`` where ``s`` exceeds the fraction ``beyond`` of the length."""
+    return mass * np.where(np.asarray(s) > beyond * blade.length, factor, 1.0)[:, None, None]
+
+
+def swapped_axes(stiffness: Any, *_: Any) -> Any:
+    """Section stiffness (k, 6, 6) with y and z exchanged."""
+    order = [0, 2, 1, 3, 5, 4]
+    return stiffness[:, order][:, :, order]
+
+
+def swapped_coupling(stiffness: Any, *_: Any) -> Any:
+    """Section stiffness (k, 6, 6) with torsion coupled to the other bending."""
+    out = stiffness.copy()
+    out[:, TORSION, [BEND_Y, BEND_Z]] = stiffness[:, TORSION, [BEND_Z, BEND_Y]]
+    out[:, [BEND_Y, BEND_Z], TORSION] = stiffness[:, [BEND_Z, BEND_Y], TORSION]
+    return out
+
+
+def scaled_coupling(factor: float) -> Callable[[Any, Blade, Any], Any]:
+    """The coupling of torsion and flapwise bending times ``factor``."""
+
+    def alter(stiffness: Any, *_: Any) -> Any:
+        out = stiffness.copy()
+        out[:, TORSION, BEND_Y] *= factor
+        out[:, BEND_Y, TORSION] *= factor
+        return out
+
+    return alter
+
+
+def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any]:
+    """The stiffness of one strain times ``factor``."""
+
+    def alter(stiffness: Any, *_: Any) -> Any:
+        out = stiffness.copy()
+        out[:, strain, strain] *= factor
+        return out
+
+    return alter
+
+
+def negative(matrix: Any) -> Any:
+    """A block-tridiagonal matrix with the opposite sign."""
+    return replace(matrix, diagonal=-matrix.diagonal, upper=-matrix.upper, lower=-matrix.lower)
+
+
+def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:
+    """Where core's columns get their modes, with another blade."""
+    return core_solver, "mesh_modes", bladed(alter)
