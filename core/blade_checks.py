@@ -22,6 +22,9 @@ ROOT_TOLERANCE = 1e-9
 MAX_ROOT_OFFSET = 0.2
 """Largest distance of the curve's first point from the x axis, as a fraction of the length."""
 
+MIN_LENGTH, MAX_LENGTH = 1e-6, 1e4
+"""Limits of the length, m; the second also of the hub radius. Beyond them a length is in another unit."""
+
 ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
 """Largest difference between the length of the curve and the stations: fractions of the interval and of the blade's length.
 
@@ -94,8 +97,15 @@ def _stations(blade: "Blade") -> None:
             f"stations: number {k} ({blade.stations[k]:g} m) is not greater than the one before it "
             f"({blade.stations[k - 1]:g} m): sort them and drop duplicates"
         )
-    if not np.isfinite(blade.hub_radius) or blade.hub_radius < 0:
-        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: a distance from the rotor's axis; give 0 or more")
+    if not MIN_LENGTH <= blade.stations[-1] <= MAX_LENGTH:
+        raise BladeError(
+            f"length: {blade.stations[-1]:g} m: not between {MIN_LENGTH:g} and {MAX_LENGTH:g} m: another unit? correct it"
+        )
+    if not 0.0 <= blade.hub_radius <= MAX_LENGTH:
+        raise BladeError(
+            f"hub_radius: {blade.hub_radius:g} m: a distance from the rotor's axis, 0 to {MAX_LENGTH:g} m: another unit? "
+            "correct it"
+        )
     for name in ("precone", "pitch"):
         if not np.isfinite(getattr(blade, name)):
             raise BladeError(f"{name}: {getattr(blade, name)}: not a finite number; give an angle in radians")

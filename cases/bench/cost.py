@@ -127,7 +127,7 @@ def _side_by_side(say: Callable[[str], None], names: Sequence[str], exact: tuple
                 error[name] = _error(pools[name].submit(_answer, name, OMEGA).result(Limits.seconds)[1], exact)
             except (BrokenProcessPool, TimeoutError, CodeError) as why:
                 found.remove(name)
-                notes[name] = f"it gave no answer: {type(why).__name__}: {why}"
+                notes[name] = f"no answer: {type(why).__name__}: {why}"
         enough = {name: _enough(pools["core"], error[name], exact) for name in found[1:]}
         runs = [(name, ELEMENTS) for name in found]
         runs += [("core", n) for n in sorted({n for n in enough.values() if n} - {ELEMENTS})]
@@ -175,7 +175,7 @@ def _error(frequencies: tuple[float, ...], exact: tuple[float, ...]) -> float:
 def _absent(code: Description | None) -> str:
     """Why a code is not timed; empty if it is."""
     if code is None:
-        return "not among the codes known here"
+        return "not a known code"
     return code.failure.reason if code.failure else "" if code.version else code.hint
 
 

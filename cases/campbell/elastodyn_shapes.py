@@ -70,7 +70,7 @@ def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polyn
         CaseError: if the tip does not move.
     """
     if abs(shape[-1]) < 1e-6 * np.abs(shape).max(initial=0.0) or not shape[-1]:
-        raise CaseError(f"{mode}: its tip does not move: a polynomial that is 1 at the tip cannot describe it")
+        raise CaseError(f"{mode}: its tip does not move, so no polynomial that is 1 at the tip describes it")
     wanted = shape / shape[-1]
     basis = np.stack([x**k - x**6 for k in POWERS[:-1]], axis=1)
     some, *_ = np.linalg.lstsq(basis, wanted - x**6, rcond=None)
@@ -101,7 +101,7 @@ def principal(blade: Blade) -> Blade:
     tip = blade.tip_mass[0, 0]
     return replace(
         blade,
-        name=f"{blade.name}, as ElastoDyn knows it",
+        name=f"{blade.name}, in ElastoDyn's terms",
         stiffness=section_stiffness(np.inf, np.inf, values[n, flap], values[n, 1 - flap]),
         mass=section_mass(blade.mass[:, 0, 0]),
         twist=np.zeros(len(blade.stations)),

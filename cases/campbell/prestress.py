@@ -39,5 +39,5 @@ def load(path: Path, blade: Blade) -> Array:
     table = read_table(path, LOAD)
     at = table[LOAD[0]]
     if at[0] != 0.0 or at[-1] != 1.0 or (np.diff(at) <= 0).any():
-        raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows ascend from the root, 0, to the tip, 1")
+        raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows must ascend from 0 (root) to 1 (tip)")
     return np.stack([np.interp(blade.stations / blade.length, at, table[name]) for name in LOAD[1:]], axis=-1)

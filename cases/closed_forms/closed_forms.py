@@ -90,9 +90,9 @@ FORMS: tuple[ClosedForm, ...] = (
         "A mass on two springs on a turntable",
         r"\left(\frac{k_x}{m} - \Omega^2 - \omega^2\right) \left(\frac{k_y}{m} - \Omega^2 - \omega^2\right) "
         r"= 4 \Omega^2 \omega^2",
-        "the classical unsymmetrical rotor in turning axes",
-        "Both branches are coupled by the Coriolis force. Between the speeds that equal the springs' own frequencies the mass "
-        "runs away without oscillating; beyond the second it is stable again, held by the Coriolis force alone.",
+        "the classical unsymmetrical rotor in rotating axes",
+        "Both branches are coupled by the Coriolis force. Between the two natural frequencies at rest the mass diverges "
+        "without oscillation; above the second it is stable again, because of the Coriolis force alone.",
         ("slower", "faster"),
         np.linspace(0.1, 9.9, 50),
         (np.sqrt(pendulums.KX / pendulums.MASS), np.sqrt(pendulums.KY / pendulums.MASS)),
@@ -102,13 +102,13 @@ FORMS: tuple[ClosedForm, ...] = (
     ),
     ClosedForm(
         "pendulum",
-        "A pendulum in a turning plane",
+        "A pendulum in a rotating plane",
         r"\omega^2 = \frac{g}{l} - \Omega^2 \;\text{hanging}, \qquad \omega = \Omega \sin\theta \;\text{or}\; "
         r"\Omega \sqrt{1 + 3 \cos^2\theta} \;\text{on the cone}\; \cos\theta = \frac{g}{l \Omega^2}",
         "textbook",
-        "At the critical speed the bob leaves the axis; the steady cone is found by core, from a guess of 57°. With the "
-        "plane's rate prescribed it swings at Ω sin θ; turning freely, by conservation of momentum, faster.",
-        ("rate prescribed", "turning freely"),
+        "At the critical speed the bob leaves the axis. Core finds the steady cone from a guess of 57°. If the rate of the "
+        "plane is prescribed, the pendulum oscillates at Ω sin θ; if the plane rotates freely, it oscillates faster.",
+        ("rate prescribed", "free rotation"),
         np.concatenate([np.linspace(0.0, 3.0, 11), np.linspace(3.25, 8.0, 20)]),
         (np.sqrt(pendulums.G / pendulums.LENGTH),),
         pendulums.pendulum_values,
@@ -120,8 +120,8 @@ FORMS: tuple[ClosedForm, ...] = (
         "Nutation of a heavy symmetric top",
         r"\omega^2 = \Omega^2 - 2 \frac{mgl}{I_1} \cos\theta + \left(\frac{mgl}{I_1 \Omega}\right)^2",
         "Landau and Lifshitz, Mechanics, §35",
-        "Steady precession at Ω, tilted by 0.6 rad, with the spin that this needs. The fast top precesses slowly and "
-        "nutates fast.",
+        "Steady precession at Ω with a tilt of 0.6 rad and the spin that this requires. A top that spins fast precesses slowly "
+        "and nutates fast.",
         ("nutation",),
         np.linspace(0.8, 8.0, 25),
         (),
@@ -131,11 +131,11 @@ FORMS: tuple[ClosedForm, ...] = (
     ),
     ClosedForm(
         "double-pendulum",
-        "A double pendulum in a turning plane",
+        "A double pendulum in a rotating plane",
         r"\omega^2 = \left(2 \mp \sqrt{2}\right) \frac{g}{l} - \Omega^2",
-        "textbook; the centrifugal term by the same matrix as the mass",
-        "Equal masses and lengths, hanging, the plane's rate prescribed. The slower mode reaches zero where the bobs leave the "
-        "axis; beyond, hanging is no longer stable.",
+        "textbook; the centrifugal matrix is Ω² times the mass matrix",
+        "Equal masses and lengths, hanging; the rate of the plane is prescribed. The slower frequency reaches zero where the "
+        "bobs leave the axis; above that speed the hanging position is unstable.",
         ("slower", "faster"),
         np.linspace(0.0, 5.6, 29),
         (
@@ -151,9 +151,9 @@ FORMS: tuple[ClosedForm, ...] = (
         "A slider-crank on a turntable",
         r"\omega^2 = \frac{k + \Omega^2 \left[m_s (r + l)\, r \left(1 + \frac{r}{l}\right) "
         r"+ \tfrac12 m_l\, r\, l \left(1 + \frac{r}{l}\right)^2\right]}{\tfrac13 (m_r + m_l)\, r^2}",
-        "one coordinate, by the potential of the spring and of the centrifugal forces",
-        "Crank, rod and slider in line outwards, a torsion spring at the crank; the table turns at a prescribed rate. The "
-        "closed loop leaves one freedom, which the centrifugal force stiffens: Southwell's form with nothing left over.",
+        "one coordinate, from the potential of the spring and of the centrifugal forces",
+        "Crank, rod and slider in a radial line, a torsion spring at the crank; the rate of the table is prescribed. The "
+        "closed loop leaves one degree of freedom, which the centrifugal force stiffens: Southwell's relation is exact.",
         ("crank",),
         np.linspace(0.0, 10.0, 21),
         (),
@@ -166,10 +166,10 @@ FORMS: tuple[ClosedForm, ...] = (
         "A parallelogram linkage on a turntable",
         r"\omega^2 = \frac{k + \tfrac12 \Omega^2 c \cos\theta}{\tfrac13 (m_A + m_D)\, a^2 + m_B\, a^2}, \qquad "
         r"k (\theta - \theta_0) + \tfrac12 \Omega^2 c \sin\theta = 0, \quad c = (m_B + m_D)\, a\, b",
-        "one coordinate, by the potential of the spring and of the centrifugal forces",
-        "A four-bar loop in a plane, three times overdetermined in space; a torsion spring at the crank, the table driven "
-        "about the same pivot. The faster it turns, the further the linkage is drawn out, so the frequency falls first "
-        "and then rises; the steady angle is core's own, from a guess six degrees off.",
+        "one coordinate, from the potential of the spring and of the centrifugal forces",
+        "A planar four-bar loop, with three redundant constraints in space; a torsion spring at the crank, the table driven "
+        "about the same pivot. The linkage extends as it rotates faster, so the frequency first falls and then rises. Core "
+        "finds the steady angle from a guess six degrees away.",
         ("crank",),
         np.linspace(0.0, 7.0, 29),
         (),
@@ -182,8 +182,8 @@ FORMS: tuple[ClosedForm, ...] = (
         "A spinning ring",
         r"\omega = \frac{n}{n^2 + 1} \left| \pm (n^2 - 1) \sqrt{\Omega^2 + (n^2 + 1) \frac{EI}{\mu R^4}} - 2 \Omega \right|",
         "G. F. Carrier, Quarterly of Applied Mathematics 3 (1945) 235",
-        f"A loop of {linkages.ARCS} curved beam elements. Turning splits each pair of modes into a wave that runs forward and "
-        "one that runs backward. The form is of an inextensible ring of Euler and Bernoulli; what is left is discretisation.",
+        f"A loop of {linkages.ARCS} curved beam elements. Rotation splits each pair of modes into a forward and a backward "
+        "wave. The closed form is for an inextensible Euler–Bernoulli ring; the difference is the discretisation error.",
         ("n = 2, forward", "n = 2, backward", "n = 3, forward", "n = 3, backward"),
         np.linspace(0.0, 1.5, 4),
         (),

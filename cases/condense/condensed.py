@@ -21,7 +21,7 @@ from ..input.names import Name
 
 Array = NDArray[np.float64]
 
-CHANGED = "was the file changed? condense again"
+CHANGED = "was the file edited? condense again"
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def read(path: Path) -> Condensed:
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise CaseError(f"{path}: {error}: not segments that `southwell condense` wrote; condense again") from error
+        raise CaseError(f"{path}: {error}: not written by `southwell condense`; condense again") from error
     sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []
     for k, piece in enumerate(kept.segments):

@@ -63,7 +63,7 @@ def _condense(path: Path) -> Condensation:
             f"give {len(spec.sections) - 1}"
         )
     if spec.segments and (spec.stiffness is not None or spec.mass is not None):
-        raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one a segment")
+        raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one per segment")
     frames = _frames(path, spec)
     try:
         models, pieces = _apart(path, spec, frames) if spec.segments else _in_place(path, spec, frames)
@@ -76,7 +76,7 @@ def _condense(path: Path) -> Condensation:
 def _in_place(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
     whole = read(path, "", spec, spec, spec.units)
     if whole.mass is None:
-        raise CaseError(f"{path}: mass: missing: name the file of a mass matrix: without it nothing vibrates")
+        raise CaseError(f"{path}: mass: missing: name the file of a mass matrix")
     tied = [_tie(spec, whole, frames, k) for k in range(len(frames))]
     return [whole], condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
 
@@ -98,7 +98,7 @@ def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, whole: Whole,
     tied = np.union1d(a.freedoms, b.freedoms)
     if piece.body is not None:
         if whole.mass is not None:
-            raise CaseError(f"{path}: {field}body: the mass is given twice, as a matrix too: give one of them")
+            raise CaseError(f"{path}: {field}body: the mass is also given as a matrix: give one of them")
         J = _body(path, field, piece.body, METRES[spec.units], a.frame)
     elif whole.mass is None:
         raise CaseError(f"{path}: {field}mass: missing: name the file of a mass matrix, or give body")
@@ -120,8 +120,8 @@ def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Ar
     principal = np.linalg.eigvalsh(moments if moments.ndim == 2 else np.diag(moments))
     if principal[0] <= 0 or 2 * principal[2] > (1 + 1e-6) * principal.sum():
         raise CaseError(
-            f"{path}: {field}body.moments: {body.moments}: no body has these, each being positive and at most the sum of the "
-            "other two: about the centre, in the file's units?"
+            f"{path}: {field}body.moments: {body.moments}: not physically possible (each must be positive and at most the "
+            "sum of the other two): give them about the centre, in the file's units"
         )
     free = inertia(kilograms * body.mass, moments, metres * np.array(body.centre))
     lever = sp.adjoint(frame)
@@ -159,7 +159,7 @@ def _axis(path: Path, field: str, spec: Axis) -> Array:
     vector = np.array(spec)
     length = np.linalg.norm(vector)
     if not length:
-        raise CaseError(f"{path}: {field}: {list(spec)}: no direction: give a vector, or x, y or z")
+        raise CaseError(f"{path}: {field}: {list(spec)}: not a direction: give a vector, or x, y or z")
     return vector / length
 
 
@@ -169,7 +169,7 @@ def _root(path: Path, spec: CondenseFile, first: Array) -> Array:
     z = _axis(path, "rotor", spec.rotor)
     if abs(x @ z) > NEAR:
         raise CaseError(
-            f"{path}: rotor: not square to the span: give the rotor's axis; cone is in the sections' places"
+            f"{path}: rotor: not perpendicular to the span: give the rotor axis; precone is part of the sections' positions"
         )
     hub = sp.inverse(sp.pose(np.column_stack([x, np.cross(z, x), z]), np.zeros(3)))
     out = hub @ first
@@ -194,7 +194,7 @@ def _tie(spec: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> T
         return ties.average(whole.model, on, frames[k], name, np.ones(len(on)))
     if whole.mass is None:
         raise CondensationError(
-            f"weights: 'mass matrix': {whole.model.name} has none with it: give one, or even weights"
+            f"weights: 'mass matrix': {whole.model.name} has no mass matrix: give one, or use even weights"
         )
     return ties.average(whole.model, on, frames[k], name, whole.mass[on][:, on].toarray())
 

@@ -113,7 +113,7 @@ def example(
         CaseError: without scikit-fem there are no solids.
     """
     if hexahedra.version() is None:
-        raise CaseError(f"--example: scikit-fem: not found: the solids are its; {hexahedra.HINT}")
+        raise CaseError(f"--example: scikit-fem is not installed, and the solids need it; {hexahedra.HINT}")
     versions = {"scikit-fem": hexahedra.version() or ""}
     bricks = solids.twisted(layers, across)
     say("the blade's segments in place")
@@ -182,10 +182,10 @@ def read(path: Path) -> Example:
 def _at_speed(
     say: Callable[[str], None], bricks: Bricks, pieces: dict[str, list[Segment]], omega: float, versions: dict[str, str]
 ) -> Speed:
-    say(f"the whole solid at {omega:g} rad/s by scikit-fem")
+    say(f"whole solid at {omega:g} rad/s by scikit-fem")
     clamp = clamped(solids.ROOT)
     whole = hexahedra.modes(bricks, solids.STEEL, omega, MODES + 1, clamp)
-    say(f"the whole solid at {omega:g} rad/s by CalculiX")
+    say(f"whole solid at {omega:g} rad/s by CalculiX")
     try:
         theirs = calculix.modes(bricks, solids.STEEL, omega, MODES + 1, clamp).frequencies
         versions["CalculiX"] = calculix.version() or ""

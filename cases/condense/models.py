@@ -96,7 +96,7 @@ def _load(folder: Path, spec: str | Matrix, what: str) -> Exported:
         )
     except FileNotFoundError:
         raise CaseError(
-            f"{path}: no such file: it is looked for beside the file that names it; correct the name"
+            f"{path}: no such file: paths are relative to the file that names them; correct the name"
         ) from None
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
@@ -116,14 +116,14 @@ def _places(path: Path) -> dict[int, Array]:
     ids = _integers(path, "id", columns["id"])
     values, times = np.unique(ids, return_counts=True)
     if (times > 1).any():
-        raise CaseError(f"{path}: id: {values[times.argmax()]} is given {times.max()} times: a node has one place")
+        raise CaseError(f"{path}: id: {values[times.argmax()]} is given {times.max()} times: a node has one position")
     return dict(zip(ids.tolist(), np.column_stack([columns[c] for c in NODES[1:]]), strict=True))
 
 
 def _integers(path: Path, column: str, values: Array) -> NDArray[np.intp]:
     wrong = (values != np.round(values)) | (np.abs(values) >= LARGEST_ID)
     if wrong.any():
-        raise CaseError(f"{path}: {column}: {values[wrong.argmax()]:g}: it is a label: give a whole number")
+        raise CaseError(f"{path}: {column}: {values[wrong.argmax()]:g}: labels are whole numbers: correct it")
     return values.astype(np.intp)
 
 
@@ -132,7 +132,7 @@ def _named(
 ) -> Exported:
     if len(matrix.nodes):
         if listed is not None:
-            raise CaseError(f"{path}: {field}freedoms: {matrix.name} names its own: take freedoms out")
+            raise CaseError(f"{path}: {field}freedoms: {matrix.name} names its own: remove freedoms")
         return matrix
     if listed is None:
         raise CaseError(
@@ -195,6 +195,6 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
         motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"
         raise CaseError(
             f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({left[k]:.1e} of "
-            "the forces in it): supports left in it, or nodes not where the matrix has them (order, units)? export it free"
+            "the forces in it): supports in it, or wrong node positions (order, units)? export it unconstrained"
         )
     return float(left.max())

@@ -18,21 +18,21 @@ class Matrix(Struct, frozen=True, forbid_unknown_fields=True):
     """One matrix of a file that has several."""
 
     file: str
-    matrix: Annotated[str, Meta(description="a *MATRIX's TYPE, or a DMIG's name: KAAX")]
+    matrix: Annotated[str, Meta(description="TYPE of a *MATRIX, or name of a DMIG, as in KAAX")]
 
 
 class Body(Struct, frozen=True, forbid_unknown_fields=True):
-    """A segment's mass, where there is no mass matrix; in the unit of the file and the model's axes."""
+    """Mass of a segment without a mass matrix, in the units of the file and the axes of the model."""
 
     mass: Annotated[float, Meta(gt=0)]
     centre: Three
     moments: Annotated[
-        list[float | list[float]], Meta(description="of inertia about the centre: three principal ones, or 3×3")
+        list[float | list[float]], Meta(description="moments of inertia about the centre: three principal ones, or 3×3")
     ]
 
 
 class Model(Struct, frozen=True, forbid_unknown_fields=True):
-    """A finite element model as another code exported it."""
+    """A finite element model exported by another code."""
 
     stiffness: str | Matrix | None = None
     mass: str | Matrix | None = None
@@ -40,14 +40,14 @@ class Model(Struct, frozen=True, forbid_unknown_fields=True):
     freedoms: Annotated[
         str | tuple[Freedom, ...] | None,
         Meta(
-            description="of a matrix that does not name them: those of each node, node after node as in the CSV of nodes; "
-            "or a CSV of node, freedom, row by row"
+            description="degrees of freedom of a matrix that does not name them: those of each node, in the order of the CSV "
+            "of nodes; or a CSV of node, freedom, one line per row"
         ),
     ] = None
 
 
 class Piece(Model, frozen=True, forbid_unknown_fields=True):
-    """One segment's own model; what it does not say is the file's."""
+    """The model of one segment; missing keys are those of the file."""
 
     body: Body | None = None
 
@@ -70,12 +70,12 @@ class CondenseFile(Model, frozen=True, forbid_unknown_fields=True, kw_only=True)
     ]
     segments: tuple[Piece, ...] = ()
     title: Annotated[str, Meta(description="one line")] = ""
-    source: Annotated[str, Meta(description="where the matrices come from")] = ""
-    tie: Annotated[Kind, Meta(description="of sections that say nothing else")] = "average"
-    root: Annotated[Kind, Meta(description="of the first section")] = "rigid"
+    source: Annotated[str, Meta(description="source of the matrices")] = ""
+    tie: Annotated[Kind, Meta(description="default tie of the sections")] = "average"
+    root: Annotated[Kind, Meta(description="tie of the first section")] = "rigid"
     weights: Annotated[
         Literal["mass", "mass matrix", "even"],
-        Meta(description="what each node of a section stands for in an average tie: see core.ties.average"),
+        Meta(description="weight of each node of a section in an average tie: see core.ties.average"),
     ] = "mass"
     units: Annotated[
         Literal["m kg s", "mm t s"],
@@ -83,7 +83,7 @@ class CondenseFile(Model, frozen=True, forbid_unknown_fields=True, kw_only=True)
     ] = "m kg s"
     hub_radius: Annotated[
         Annotated[float, Meta(ge=0)] | None,
-        Meta(description="m, from the rotor's axis to the first section; none: as it lies"),
+        Meta(description="m, from the rotor axis to the first section; none: as in the model"),
     ] = None
     span: Annotated[Axis, Meta(description="from the root to the tip")] = "x"
-    rotor: Annotated[Axis, Meta(description="the rotor's axis, the way it turns")] = "z"
+    rotor: Annotated[Axis, Meta(description="rotor axis, in the sense of rotation")] = "z"

@@ -23,11 +23,12 @@ from ...core.blade import (
     twist_at,
     uniform_blade,
 )
+from ...core.blade_checks import MAX_LENGTH
 from ...core.space import spatial as sp
 from . import files
 from .errors import CaseError, nearest
 from .readers.sections import FromFile, Mounted, Sections
-from .readers.source import LONGEST, Unused, unused
+from .readers.source import Unused, unused
 
 POISSON = 0.3
 """Poisson's ratio for the torsional stiffness of a dimensionless beam, which does not affect its bending."""
@@ -40,7 +41,7 @@ def _positive(description: str) -> Meta:
 class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     """A uniform beam from its material and cross-section."""
 
-    length: Annotated[float, Meta(gt=0, le=LONGEST, description="from root to tip, m")]
+    length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="from root to tip, m")]
     E: Annotated[float, _positive("Young's modulus, Pa")]
     G: Annotated[float, _positive("shear modulus, Pa")]
     density: Annotated[float, _positive("kg/m³")]
@@ -48,7 +49,7 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     I_y: Annotated[float, _positive("second moment of area about y, resisting flapwise motion, m⁴")]
     I_z: Annotated[float, _positive("second moment of area about z, resisting chordwise motion, m⁴")]
     J: Annotated[float, _positive("torsion constant, m⁴")]
-    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
     rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
 
     def blade(self, name: str, folder: Path) -> Blade:
@@ -97,8 +98,8 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
     """A blade from a table of stations along its span: a CSV file next to the case file; ``#`` starts a comment."""
 
     file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
-    length: Annotated[float, Meta(gt=0, le=LONGEST, description="from root to tip, m")]
-    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+    length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="from root to tip, m")]
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
     bending_factor: Annotated[float, _positive("multiplies both bending stiffnesses of the table, dimensionless")] = 1.0
     mass_factor: Annotated[float, _positive("multiplies masses and moments of inertia of the table, dimensionless")] = (
         1.0

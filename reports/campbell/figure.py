@@ -121,7 +121,7 @@ def _below(diagram: Campbell, units: Units) -> str:
     mesh = f"accuracy {wanted.accuracy:g}" if wanted.elements is None else f"{wanted.elements} elements"
     words = [f"{len(wanted.speeds)} speeds, {mesh}"]
     if len(diagram.tracks.omega) > len(wanted.speeds):
-        words[0] += f", {len(diagram.tracks.omega) - len(wanted.speeds)} speeds between where modes meet"
+        words[0] += f", {len(diagram.tracks.omega) - len(wanted.speeds)} intermediate speeds where modes come close"
     if wanted.operating:
         low, high = (o * units.speeds for o in wanted.operating)
         words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * wanted.margin:.3g} %")

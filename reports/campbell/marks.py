@@ -189,5 +189,5 @@ def legend(diagram: Campbell) -> list[Line2D]:
             label = f"{kind} of modes"
             out.append(Line2D([], [], ls="", marker=marker, ms=size, mfc="none", mec=INK, mew=1.0, label=label))
     if diagram.tracks.doubts:
-        out.append(Line2D([], [], ls="", marker="$?$", ms=6, color=RED, label="not clear which mode goes on"))
+        out.append(Line2D([], [], ls="", marker="$?$", ms=6, color=RED, label="continuation ambiguous"))
     return out

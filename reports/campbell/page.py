@@ -51,7 +51,7 @@ def write(
         "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed", user_results),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
     }
-    close = encounters.draw(diagram, units, f"{name}: where modes meet")
+    close = encounters.draw(diagram, units, f"{name}: modes that come close")
     if close:
         drawn["encounters"] = close
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]

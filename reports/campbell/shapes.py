@@ -132,19 +132,19 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
 def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
     """The table of ElastoDyn's coefficients: of the principal blade, and for comparison of the unchanged blade."""
     rows = []
-    for kind, group in (("for ElastoDyn", found), ("of the blade as it is", other)):
+    for kind, group in (("for ElastoDyn", found), ("of the given blade", other)):
         for p in group:
             numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
             frequency = certain(p.frequency * units.frequencies, p.uncertainty)
             rows.append((WANTED[p.mode], kind, frequency, *numbers, f"{100 * p.largest:.2f} %", f"{p.condition:.0f}"))
     head = ("shape", "which", units.frequency, *[f"x{'⁰¹²³⁴⁵⁶'[n]}" for n in POWERS], "fit error", "condition")
     note = (
-        f"φ(x) = Σ c xᵏ over the fraction x of the flexible blade, {units.at(omega)}; φ(1) = 1: the coefficients, as printed, "
-        "add up to 1. For ElastoDyn: of the blade without twist, pitch, torsion, shear, stretch, offsets and sectional "
-        "inertia, since ElastoDyn applies the structural twist to the shapes itself; of the blade as it is: displacement "
-        "out of the plane of rotation (flap) or in it (edge). Positive is ElastoDyn's positive deflection of the tip, "
-        "whichever way the mode was drawn. Fit error: largest, in parts of the tip's displacement; condition: how many "
-        "times an error of the shape can be larger in a coefficient."
+        f"φ(x) = Σ c xᵏ over the fraction x of the flexible blade, {units.at(omega)}. φ(1) = 1: the printed coefficients add "
+        "up to 1. For ElastoDyn: shapes of the blade without twist, pitch, torsion, shear, stretch, offsets and sectional "
+        "inertia, because ElastoDyn applies the structural twist to the shapes itself. Of the given blade: displacement out "
+        "of the plane of rotation (flap) or in it (edge). Positive is ElastoDyn's positive tip deflection. Fit error: the "
+        "largest, relative to the tip displacement; condition: the largest factor by which an error of the shape grows in a "
+        "coefficient."
     )
     return Sheet("ElastoDyn mode shapes", head, tuple(rows), note)
 

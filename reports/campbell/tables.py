@@ -107,11 +107,11 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for t in range(diagram.tracks.count):
         mine = {m.per_rev: m for m in diagram.margins if m.track == t}
-        fields = [_margin(mine[n]) if mine else "not followed so far" for n in wanted.per_rev]
+        fields = [_margin(mine[n]) if mine else "not tracked to here" for n in wanted.per_rev]
         rows.append((diagram.label_over(t, low, high), *fields))
     note = (
-        f"How far a mode is above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
-        f"(far: ten times). {TOO_NEAR}: nearer than {100 * wanted.margin:.3g} % at some speed; a change of sign: they meet."
+        f"Distance of each mode above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
+        f"(far: 1000 % or more). {TOO_NEAR}: less than {100 * wanted.margin:.3g} % at some speed; a change of sign: a crossing."
     )
     return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in wanted.per_rev]), tuple(rows), note)
 
@@ -135,14 +135,14 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
             certain(r.frequency * units.frequencies, r.uncertainty),
         ]
         if r.apart is not None:
-            row.append(f"{TOO_NEAR} within" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
+            row.append(f"{TOO_NEAR} inside" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
         rows.append(tuple(row))
-    head = ["mode", "meets", units.speed_label, units.frequency_label]
+    head = ["mode", "crosses", units.speed_label, units.frequency_label]
     note = ""
     if diagram.wanted.operating:
         head.append("from the operating range")
-        note = "Last column: the speed's distance from the nearer end of the operating range, in parts of that end."
-    return Sheet("Where a mode meets n per revolution", tuple(head), tuple(rows), note)
+        note = "Last column: distance of the speed from the nearer end of the operating range, relative to that end."
+    return Sheet("Crossings of n per revolution", tuple(head), tuple(rows), note)
 
 
 def _encounters(diagram: Campbell, units: Units) -> Sheet:
@@ -156,24 +156,25 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
                 certain(e.frequency * units.frequencies, e.uncertainty, 5),
                 gap(e, units) if e.kind == "veering" else _narrower(e, units),
                 f"{lower} × {upper}",
-                f"{100 * e.exchanged:.0f} %" + ("" if e.whole else ", the rest beyond the speeds or others in between"),
+                f"{100 * e.exchanged:.0f} %"
+                + ("" if e.whole else " (incomplete: ends at the range of speeds or at another encounter)"),
                 f"{spoken(e.before[0])} → {spoken(e.after[0])}",
             )
         )
     head = (
-        "what",
+        "kind",
         units.speed_label,
         units.frequency_label,
         f"gap, {units.frequency}",
         "modes",
         "exchanged",
-        "the lower first",
+        "lower mode",
     )
     note = (
-        "Veering: two modes come near, trade shapes and part; a crossing's gap, if it has one, is narrower than given. "
-        "Exchanged: of the shapes, from one side to the other; last: the kinetic energy of the first mode, before → after."
+        "Veering: two modes approach, exchange their shapes and separate. The gap of a crossing is an upper bound. "
+        "Exchanged: the part of the shapes that is exchanged. Lower mode: its kinetic energy, before → after."
     )
-    return Sheet("Modes that meet", head, tuple(rows), note)
+    return Sheet("Modes that come close", head, tuple(rows), note)
 
 
 def _narrower(e: Encounter, units: Units) -> str:
@@ -194,9 +195,11 @@ def _doubts(diagram: Campbell, units: Units) -> Sheet:
         for d in diagram.tracks.doubts
     )
     step = f"{diagram.tracks.smallest * units.speeds:.3g} {units.speed}"
-    head = ("mode", units.speed_label, units.frequency_label, "MAC with the one taken", "with another")
-    note = f"Which mode goes on is not clear even with the smallest step, {step}: the one taken may be the wrong one."
-    return Sheet("Not clear", head, rows, note)
+    head = ("mode", units.speed_label, units.frequency_label, "MAC of the mode chosen", "of another")
+    note = (
+        f"The continuation of these modes is ambiguous even at the smallest step, {step}: the mode chosen may be wrong."
+    )
+    return Sheet("Ambiguous tracking", head, rows, note)
 
 
 def terminal(sheet: Sheet) -> Table:
@@ -261,21 +264,21 @@ def verdict(diagram: Campbell, units: Units) -> str:
     """The verdict on the margins in one line."""
     wanted = diagram.wanted
     if wanted.operating is None:
-        return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so none is judged."
+        return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so no margin is judged."
     low, high = wanted.operating
     over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
     broken = [m for m in diagram.margins if not m.kept]
     judged = {m.track for m in diagram.margins}
     rest = [diagram.label_over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
-    but = f" Not judged, since not followed over all of it: {', '.join(rest)}." if rest else ""
+    but = f" Not judged, because not tracked over the whole range: {', '.join(rest)}." if rest else ""
     if not broken:
         every = "Every other mode" if rest else "Every mode"
-        return f"{every} keeps {100 * wanted.margin:.3g} % from n per revolution over {over}.{but}"
+        return f"{every} stays at least {100 * wanted.margin:.3g} % away from every n per revolution at {over}.{but}"
     said = []
     for t in dict.fromkeys(m.track for m in broken):
         mine = [m for m in broken if m.track == t]
         met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
         near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
-        words = [f"meets {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
+        words = [f"crosses {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
         said.append(f"{diagram.label_over(t, low, high)} {' and '.join(w for w in words if w)}")
-    return f"{TOO_NEAR} Over {over}, {'; '.join(said)}.{but}"
+    return f"{TOO_NEAR} At {over}, {'; '.join(said)}.{but}"

@@ -68,7 +68,7 @@ def figure(variations: Sequence[Variation]) -> Figure:
                 if place == len(variations) - 1:
                     axes.set_xlabel(RPM.speed_label)
             left.set_title(label(variation), size=9, pad=8)
-        below = "Park et al. (2010), Fig. 3: their blade is unpublished, these stand in for it; ×: the largest change it states"
+        below = "Park et al. (2010), Fig. 3: their blade is unpublished, these are substitutes; ×: its largest stated change"
         title(out, "Natural frequencies of a rotating wind-turbine blade", below)
     return out
 

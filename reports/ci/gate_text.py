@@ -50,10 +50,10 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
     """Title and rows of each non-empty table; those that can fail the gate come first."""
     every = [
         ("Worse", [_change(c) for c in found.worse]),
-        ("Held to a wider target than before", [_loosened(c) for c in found.loosened]),
+        ("Wider target than before", [_loosened(c) for c in found.loosened]),
         ("Gone", _gone(found.gone)),
         ("Seeded faults that are no longer detected", [_uncaught(c) for c in found.uncaught]),
-        ("Seeded faults that this run must catch, and does not", [{"fault": name} for name in found.missed]),
+        ("Required seeded faults that are not detected", [{"fault": name} for name in found.missed]),
         ("Moved", [_change(c) for c in found.moved]),
         ("Better", [_change(c) for c in found.better]),
         ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
@@ -64,7 +64,7 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
 
 def _times(found: Comparison) -> str:
     same = found.before.machine == found.after.machine
-    return "Timings (informational)" + ("" if same else "; not the same machine, or not known to be")
+    return "Timings (informational)" + ("" if same else "; on different or unknown machines")
 
 
 def _place(point: Point) -> Row:
@@ -126,7 +126,7 @@ def _uncaught(control: Caught) -> Row:
         "fault": control.control,
         "case": control.case,
         "speed, rad/s": f"{control.omega:.6g}",
-        "was caught by": ", ".join(control.caught),
+        "was detected by": ", ".join(control.caught),
     }
 
 
@@ -176,7 +176,7 @@ def annotations(found: Comparison, folder: Path) -> list[str]:
     standing = [p for p in found.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
     rows = [("error", p.case, text) for p, text in _by_column([(c.after, _became(c)) for c in found.worse])]
     rows += [
-        ("error", r["case"], f"{r['code']}: {r['answers']} answers gone, now {r['now']}") for r in _gone(found.gone)
+        ("error", r["case"], f"{r['code']}: {r['answers']} answers missing, now {r['now']}") for r in _gone(found.gone)
     ]
     for control, case in dict.fromkeys((c.control, c.case) for c in found.uncaught):
         rows.append(("error", case, f"{control}: a fault in core that is no longer detected"))

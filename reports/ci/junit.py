@@ -69,14 +69,14 @@ def _regressions(root: Element, found: Comparison) -> None:
     for gone in found.gone:
         p: Point = gone.point
         test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega), 0.0)
-        _failed(test, "gone", f"the answer {p.frequency!r} rad/s is there no more; now {gone.instead or 'nothing'}")
+        _failed(test, "gone", f"the answer {p.frequency!r} rad/s is missing; now {gone.instead or 'nothing'}")
     for control in found.uncaught:
         _lost(suite, control)
 
 
 def _lost(suite: Element, control: Caught) -> None:
     test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s", 0.0)
-    _failed(test, "not caught", f"was caught by {', '.join(control.caught)}; no code detects it now")
+    _failed(test, "not caught", f"was detected by {', '.join(control.caught)}; no code detects it now")
 
 
 def _name(code: str, mode: int, family: str, omega: float) -> str:

@@ -20,17 +20,15 @@ if TYPE_CHECKING:
 MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
 
 HELP = (
-    f"{MARK}(solve, name, lacks, levels, order, unsupported, cases, target, known): a test of a solver for every blade, speed "
-    f"and mode; it takes the fixture {FIXTURE} and calls its check()"
+    f"{MARK}(solve, name, lacks, levels, order, unsupported, cases, target, known): test a solver on every blade, speed "
+    f"and mode; the test uses the fixture {FIXTURE} and calls its check()"
 )
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the command line options."""
     group = parser.getgroup("southwell", "natural frequencies of rotating blades")
-    group.addoption(
-        "--southwell-cases", metavar="A,B", help="only these cases, or case/blade, of those that the tests have"
-    )
+    group.addoption("--southwell-cases", metavar="A,B", help="only these cases (or case/blade) of those in the tests")
     group.addoption(
         "--southwell-target", metavar="X", type=float, help="largest relative difference, instead of the cases'"
     )
@@ -71,7 +69,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         return
     mark = metafunc.definition.get_closest_marker(MARK)
     if mark is None:
-        raise pytest.UsageError(f"{metafunc.definition.nodeid}: takes {FIXTURE}, and has no mark {MARK}(solve=…)")
+        raise pytest.UsageError(f"{metafunc.definition.nodeid}: uses {FIXTURE} but has no mark {MARK}(solve=…)")
     chosen = _chosen(metafunc.config, mark, metafunc.definition.nodeid)
     metafunc.parametrize(FIXTURE, chosen, ids=[c.name for c in chosen], indirect=True)
 

@@ -160,7 +160,7 @@ class Report:
             command=self._command(),
             settings=rows("settings", Setting),
             plan=self._plan(),
-            unfinished=what if self.planned else "it is not known what was to be run",
+            unfinished=what if self.planned else "the plan of the run is unknown",
         )
 
     def _plan(self) -> "tuple[Planned, ...]":

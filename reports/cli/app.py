@@ -44,7 +44,7 @@ COMMANDS = (
         "verification.validation_page:command",
         "Compare models of measured rotors with their measurements.",
     ),
-    (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify takes answers from."),
+    (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
     (VERIFY, "bench", "verification.bench:command", "Measure the run time of core and of the other codes."),
     (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
     (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),

@@ -18,7 +18,7 @@ DAY = 86_400.0
 
 app = App(
     name="cache",
-    help="Show, check or empty the store of answers that verify takes answers from.",
+    help="Show, check or empty the store of answers that verify reuses.",
     result_action="return_value",
 )
 

@@ -63,7 +63,7 @@ def command(
     if example or file == EXAMPLE:
         if file not in (None, EXAMPLE) or omega or rpm:
             other = file if file not in (None, EXAMPLE) else f"--omega {omega}" if omega else f"--rpm {rpm}"
-            raise CaseError(f"--example: with {other}: it has its own blade and speeds: leave one of them out")
+            raise CaseError(f"--example: with {other}: the example has its own blade and speeds: leave one of them out")
         return _example(_folder(out))
     if file is None:
         raise CaseError("file: missing: give a TOML file that names matrices, nodes and sections, or --example")

@@ -84,7 +84,7 @@ def command(
         console.print(escape(_main_file(left)), soft_wrap=True)
     not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[chosen]), console)
     if chosen == "beamdyn" and (moved := beamdyn.moved(subjects[0].blade)) > KEPT:
-        message = f"not held: the curve between stations; BeamDyn's spline moves stations by {moved:.2g} of the length"
+        message = f"the curve between stations changes: BeamDyn's spline moves stations by {moved:.2g} of the length"
         console.print(f"{message}: give more stations where it bends", style="yellow", markup=False, soft_wrap=True)
     for name in _unknown(subjects[0].unused, chosen):
         console.print(f"not given or zero, written as 0: {name}", style="yellow", markup=False, soft_wrap=True)

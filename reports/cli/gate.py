@@ -72,7 +72,7 @@ def command(
     run = found(folder)
     after = history.entry(run, str(folder))
     if commit and not against:
-        raise CaseError(f"--commit {commit}: of which history? Give it by --against")
+        raise CaseError(f"--commit {commit}: no history: give its file by --against")
     before, earlier = _before(against, commit) if against else (nothing(after), ())
     if partial:
         before = within(before, after)

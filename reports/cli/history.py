@@ -98,4 +98,6 @@ def _checked_out() -> str:
     try:
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
     except (OSError, subprocess.CalledProcessError) as error:
-        raise CaseError("--commit: missing, and the current folder is no Git checkout: say what was run") from error
+        raise CaseError(
+            "--commit: missing, and the current folder is not a Git checkout: name the commit that was run"
+        ) from error

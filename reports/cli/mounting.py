@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from ...cases.input.errors import CaseError
 from ...cases.input.readers import Mount
-from ...cases.input.readers.source import LONGEST
+from ...core.blade_checks import MAX_LENGTH, MIN_LENGTH
 
 
 @Parameter(name="*")
@@ -61,8 +61,8 @@ class Mounting:
         Raises:
             CaseError: naming the invalid option.
         """
-        for option, value, least in (("--length", self.length, 1e-9), ("--hub-radius", self.hub_radius, 0.0)):
-            if value is not None and not least <= value <= LONGEST:
+        for option, value, least in (("--length", self.length, MIN_LENGTH), ("--hub-radius", self.hub_radius, 0.0)):
+            if value is not None and not least <= value <= MAX_LENGTH:
                 raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
         if self.pitch is None and self.pitch_convention != "southwell":
             raise CaseError(f"--pitch-convention {self.pitch_convention}: no pitch is given: add --pitch")

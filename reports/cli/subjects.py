@@ -75,9 +75,7 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
         return [Subject(found.blade, speeds, RPM, about, found.source.notes, found.source.unused)]
     case = select(name)
     if mount != Mount():
-        raise CaseError(
-            f"{name}: a case says itself how its blade sits on the hub: leave out --main, --length and the like"
-        )
+        raise CaseError(f"{name}: a case defines how its blade is mounted: leave out --main, --length and the like")
     out = []
     for variant, setting in zip(case.variants, settings(case), strict=True):
         facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)

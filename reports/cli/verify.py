@@ -123,7 +123,7 @@ def command(
     chosen = [_changed(_chosen(name, decks), given) for name in dict.fromkeys(case or everything())]
     if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
         raise UsageError(
-            "--rpm, --omega, --length and the like are for blade files: a case says its own speeds and mounting"
+            "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
         )
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
@@ -163,7 +163,7 @@ def command(
         if not stopped:
             kept.remove()
             return summary.status(run)
-    what = f"{len(run.cells)} cells are kept" if run.cells else "nothing was finished yet"
+    what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
 
@@ -252,7 +252,7 @@ def _store(fresh: bool) -> Store | None:
     try:
         return Store(store.path())
     except OSError as error:
-        print(f"southwell: answers are neither taken from the store nor kept in it: {_said(error)}", file=sys.stderr)
+        print(f"southwell: the store of answers is not used: {_said(error)}", file=sys.stderr)
         return None
 
 

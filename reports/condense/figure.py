@@ -45,9 +45,9 @@ def stages(bricks: Bricks, cuts: NDArray[np.intp], segments: Sequence[Segment], 
         frames.append(frames[-1] @ s.undeformed)
     n = len(segments)
     titles = (
-        f"Finite element model: {np.prod(bricks.counts)} hexahedra, {freedoms} freedoms",
+        f"Finite element model: {np.prod(bricks.counts)} hexahedra, {freedoms} degrees of freedom",
         f"{n + 1} sections, each tied to a frame",
-        f"Compressed model: {n} rigid bodies, {n} complex stiffness elements, {6 * n} freedoms",
+        f"Compressed model: {n} rigid bodies, {n} complex stiffness elements, {6 * n} degrees of freedom",
     )
     seen = _project(bricks.corners)[0].reshape(-1, 2)
     low, high = seen.min(0) - 0.04 * np.ptp(seen[:, 1]), seen.max(0) + 0.04 * np.ptp(seen[:, 1])

@@ -63,22 +63,23 @@ def example(found: Example, figure: str, command: str) -> str:
     codes = ", ".join(f"{name} {said}" for name, said in found.versions.items())
     text = f"""# From a solid to {n} rigid bodies and springs
 
-Park et al. (2010) start from finite elements: the model is cut at sections, all freedoms but the motions of those sections
-are eliminated, and what is left between two of them is one complex stiffness element (6×6, fully coupled) and one rigid body.
+Park et al. (2010) start from finite elements: the model is cut at sections, all degrees of freedom except the motions of those
+sections are eliminated, and each part between two sections becomes one complex stiffness element (6×6, fully coupled) and one
+rigid body.
 
-- {_verdict(worst <= TARGET)} The {n} elements keep the five lowest frequencies of a tapered, twisted solid blade within
-  **{_size(worst)}**, at rest and turning (target {_size(TARGET)}).
-- {_verdict(bar <= EXACT_TARGET)} Those of a prismatic solid cantilever are within **{_size(bar)}** of Timoshenko's exact ones
-  (target {_size(EXACT_TARGET)}).
+- {_verdict(worst <= TARGET)} The {n} elements reproduce the five lowest frequencies of a tapered, twisted solid blade within
+  **{_size(worst)}**, at rest and rotating (target {_size(TARGET)}).
+- {_verdict(bar <= EXACT_TARGET)} The frequencies of a prismatic solid cantilever are within **{_size(bar)}** of Timoshenko's
+  exact ones (target {_size(EXACT_TARGET)}).
 
 ![A solid blade, its sections, and the compressed model]({figure})
 
 ## The blade against the whole solid
 
 Steel, 1 m long on a hub of 0.3 m, chord 160 to 80 mm, thickness 24 to 8 mm, twist 30° to 0. The whole solid is solved twice:
-with {found.hexahedra} hexahedra of 27 nodes ({found.freedoms} freedoms) by scikit-fem, and of 20 nodes by CalculiX.
-CalculiX leaves out Coriolis forces, so its column is compared with the compressed model without them. Frequencies in
-rad/s; differences are the compressed model's.
+with {found.hexahedra} hexahedra of 27 nodes ({found.freedoms} degrees of freedom) by scikit-fem, and of 20 nodes by CalculiX.
+CalculiX neglects Coriolis forces, so its column is compared with the compressed model without them. Frequencies are in
+rad/s; the differences are those of the compressed model.
 """
     for s in found.speeds:
         text += f"\n**{RAD_S.at(s.omega).capitalize()}**\n\n{_table(_blade(s, found.versions))}\n"
@@ -87,21 +88,21 @@ rad/s; differences are the compressed model's.
 
 ## Rigid or average ties
 
-A rigid tie makes a section follow its frame: neither warping nor Poisson's contraction is left, and a short segment becomes
-too stiff. An average tie lets the frame follow the section's mean motion; a segment cut off alone then is too soft, the
-shorter it is for its chord the more, its ends being loaded otherwise than by neighbours. Condensed in place, between its
-neighbours, it is neither. On a flat bar (4 : 1) one chord long, torsion with rigid ties is {_ratio(found)} times as stiff as
-with average ones.
+A rigid tie makes a section follow its frame. It suppresses warping and Poisson contraction, so a short segment becomes too
+stiff. An average tie makes the frame follow the mean motion of the section. A segment condensed alone is then too soft, because
+its ends are not loaded as they are by neighbouring segments; the error grows as the segment becomes shorter relative to its
+chord. A segment condensed in place, between its neighbours, has neither error. For a flat bar (4 : 1) one chord long, the
+torsional stiffness with rigid ties is {_ratio(found)} times that with average ties.
 
 {_table(_ties(found))}
 
-Rigid ties are right where a section is really held: the clamped root, a flange, a bulkhead. Everywhere else take average ones,
-and cut in place if the whole model is at hand.
+Use rigid ties where the section is stiffened: at the clamped root, a flange or a bulkhead. Use average ties everywhere else,
+and condense in place if the whole model is available.
 
 ## The cantilever against Timoshenko
 
-The paper's cantilever as a square solid bar, {n} segments each condensed alone, at rest. Exact: Huang (1961) with Cowper's
-(1966) shear coefficient. Every frequency comes twice, once in each plane; the worse is shown.
+The paper's cantilever as a square solid bar at rest, with {n} segments, each condensed alone. Exact: Huang (1961) with Cowper's
+(1966) shear coefficient. Each frequency occurs twice, once in each plane; the larger difference is shown.
 
 {_table(_cantilever(found))}
 
@@ -121,21 +122,22 @@ def own(
     if spec:
         lines = [spec.spec.title, f"Source: {spec.spec.source}." if spec.spec.source else ""]
         text += "".join(f"{line}\n\n" for line in lines if line)
-        how = "each from a model of its own" if spec.spec.segments else "cut in place from one model"
+        how = "each condensed from its own model" if spec.spec.segments else "condensed in place from one model"
         text += (
-            f"{spec.freedoms} freedoms condensed to {6 * n}; segments {how}. "
-            f"Rigid motions of the finite element model leave {spec.resisted:.0e} of the forces in it unbalanced.\n\n"
+            f"{spec.freedoms} degrees of freedom condensed to {6 * n}; segments {how}. "
+            f"Residual force of the finite element model in a rigid motion: {spec.resisted:.0e}, relative.\n\n"
         )
     text += f"Mass {total:.6g} kg, length {length:.6g} m, first section at {blade.root[0, 3]:.6g} m from the rotor's axis.\n\n"
     text += """## Segments
 
-Centre of mass and stiffness in the axes of each segment's first frame. Stiffness: the diagonal of the 6×6, wrench on the second
-frame by its motion seen from the first; N/m, then N m/rad.
+Centre of mass and stiffness in the axes of each segment's first frame. Stiffness: the diagonal of the 6×6 matrix that
+maps the motion of the second frame relative to the first to the wrench on the second; N/m, then N m/rad.
 
 """
     text += _table([_segment(k, blade) for k in range(n)])
     text += (
-        "\n\nEvery 6×6 is symmetric and positive definite: six motions are resisted, the six rigid ones are free.\n\n"
+        "\n\nEvery 6×6 matrix is symmetric and positive definite: the six relative motions are resisted, the six rigid motions "
+        "are free.\n\n"
     )
     text += f"## Modes, {units.frequency}\n\n"
     text += _table(_modes(blade, found, units))
@@ -170,10 +172,10 @@ def _remarks(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Unit
             zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True), 1
         )
     ]
-    few = " Fewer than four segments do not tell." if len(blade.segments) < 4 else ""
+    few = " It cannot be estimated from fewer than four segments." if len(blade.segments) < 4 else ""
     return [
-        "± relative: of the number of segments, told from a half and a quarter of them. What the finite element model is "
-        f"worth, its mesh and its ties, is not in it.{few}",
+        "± relative: uncertainty due to the number of segments, estimated from a half and a quarter of them. Errors of the "
+        f"finite element model, its mesh and its ties are not included.{few}",
         *(f"{line}." for line in remarks(rows, None, units)),
     ]
 
@@ -186,7 +188,7 @@ def _segment(k: int, blade: Condensed) -> dict[str, str]:
     row = {"segment": f"{k + 1}", "length, m": f"{np.linalg.norm(s.undeformed[:3, 3]):.5g}", "mass, kg": f"{mass:.5g}"}
     row["centre, m"] = ", ".join(f"{v:.4g}" for v in np.where(np.abs(centre) < 1e-9, 0.0, centre))
     row |= {name: f"{v:.4g}" for name, v in zip(FORCES, np.diagonal(s.stiffness), strict=True)}
-    return row | {"lowest eigenvalue, unit diagonal": f"{lowest:.1e}"}
+    return row | {"lowest eigenvalue (scaled to unit diagonal)": f"{lowest:.1e}"}
 
 
 def _blade(s: Speed, versions: dict[str, str]) -> list[dict[str, str]]:
@@ -213,7 +215,7 @@ def _ties(found: Example) -> list[dict[str, str]]:
         off = differences(rest.apart.get(how, rest.condensed), rest.whole)
         row = {"segment tied": label}
         for n, value in zip(found.lengths, found.torsion[how], strict=True):
-            row[f"bar of {n} chord{'s' * (n > 1)}: GJ over St Venant's"] = f"{value:.3f}"
+            row[f"bar of {n} chord{'s' * (n > 1)}: GJ / St Venant's"] = f"{value:.3f}"
         row["cantilever"] = (
             _percent(_extreme(differences(found.cantilever[how], np.repeat(found.exact, 2))))
             if how in found.cantilever
@@ -245,8 +247,9 @@ def _torsion(found: Example) -> str:
     (a,), (b,) = at
     solid, ours = last.whole[b] - first.whole[a], last.condensed[b] - first.condensed[a]
     return (
-        "A complex stiffness element is linear in its own axes: steady tension stiffens its bending, but not its torsion, as\n"
-        f"it does in a solid. Turning raises the solid's first torsion by {solid:.1f} rad/s, the elements' by {ours:.1f}."
+        "A complex stiffness element is linear in its own axes: unlike in a solid, steady tension stiffens its bending, but\n"
+        f"not its torsion. Rotation raises the first torsional frequency of the solid by {solid:.1f} rad/s, that of the\n"
+        f"elements by {ours:.1f}."
     )
 
 

@@ -130,7 +130,7 @@ def results_page() -> str:
     """The site's page of results, from the stored rows and run times."""
     return f"""# Results
 
-What `make verify` finds. A row is a blade, a column a code or a published table; [how to read a
+Results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
 verdict](reading-a-verdict.md) explains the signs. The column *core, velocity transformation* checks core's fast solver against
 the method of Park et al. (2010).
 

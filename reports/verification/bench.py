@@ -19,11 +19,12 @@ FILE = "bench.json"
 SEEN = 2**20
 """Smallest peak memory of a process, in bytes, that is significant."""
 
-ABOUT = f"""One thread a process, medians over rounds in which the codes take turns. The uniform cantilever with {ELEMENTS}
-elements, the {COUNT} lowest modes, from the blade to the modes: one speed ({OMEGA:g} rad/s), and {len(SWEEP)} speeds, the
-time divided by {len(SWEEP)}. *× core* is a code's time over core's. The error is the largest of the six lowest frequencies
-against the exact beam's, at one speed. Equal elements are not equal accuracy: the last columns have the fewest elements with
-which core is as accurate as that code, and the code's time over core's with those, for one speed and in the sweep."""
+ABOUT = f"""One thread per process; medians over rounds in which the codes take turns. The case is the uniform cantilever with
+{ELEMENTS} elements and the {COUNT} lowest modes, timed from the blade to the modes at one speed ({OMEGA:g} rad/s) and in a
+sweep of {len(SWEEP)} speeds (time per speed). *× core* is the time relative to core's. The error is the largest error of the
+six lowest frequencies relative to the exact beam, at one speed. Equal numbers of elements do not give equal accuracy: the last
+columns have the smallest number of elements with which core is as accurate as that code, and the times relative to core's with
+that number, at one speed and in the sweep."""
 
 
 def command(*, out: Path = Path("southwell-report")) -> int:
@@ -70,9 +71,7 @@ def render(found: Bench) -> str:
     core = next(t for t in found.timings if t.code == "core")
     codes = _table([_row(t, core) for t in found.timings])
     growth = _table([_grown(g) for g in found.growth])
-    return (
-        f"{ABOUT}\n\n{codes}\n\nCore at one speed as the elements multiply:\n\n{growth}\n\n{exponents(found.growth)}\n"
-    )
+    return f"{ABOUT}\n\n{codes}\n\nCore at one speed with more elements:\n\n{growth}\n\n{exponents(found.growth)}\n"
 
 
 def exponents(growth: tuple[Growth, ...]) -> str:
@@ -104,7 +103,7 @@ def _row(t: Timing, core: Timing) -> dict[str, str]:
         return row | {
             "one speed": f"○ not run: {t.note}",
             "× core": "",
-            "a speed of the sweep": "",
+            "sweep, per speed": "",
             "× core in the sweep": "",
             "error": "",
             "as accurate": "",
@@ -114,7 +113,7 @@ def _row(t: Timing, core: Timing) -> dict[str, str]:
     return row | {
         "one speed": f"{1e3 * t.single:.1f} ms",
         "× core": f"{t.single / core.single:.1f}",
-        "a speed of the sweep": f"{1e3 * t.sweep / len(SWEEP):.1f} ms",
+        "sweep, per speed": f"{1e3 * t.sweep / len(SWEEP):.1f} ms",
         "× core in the sweep": f"{t.sweep / core.sweep:.1f}",
         "error": f"{100 * (t.error or 0.0):.1g} %",
         "as accurate": f"core, {t.equal.elements} elements" if t.equal else "",

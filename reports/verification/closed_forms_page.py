@@ -74,11 +74,12 @@ def _rows(found: Sequence[Found]) -> list[dict[str, str]]:
 
 _HEAD = """# Closed forms
 
-Core takes any mechanism, so it can be held to every one that is known in closed form. Those here turn, and each shows
-something that a solver which only knows blades could not: critical speeds, a steady state away from the guess, loops. The
-numbers and figures are made when this page is; the tests have more (a rotating slot, a compound pendulum, a portal frame).
+Core solves any mechanism, so it can be compared with every mechanism that has a closed-form solution. All of these rotate, and
+each has a feature that no blade has: critical speeds, a steady state far from the guess, or closed loops. The numbers and
+figures are computed when this page is written. The tests contain more closed forms (a rotating slot, a compound pendulum, a
+portal frame).
 
-Lines: the closed form. Points: core. Below: the relative difference of the eigenvalues."""
+Lines: closed form. Points: core. Below them: the relative difference of the eigenvalues."""
 
 
 def _section(form: ClosedForm) -> str:

@@ -16,7 +16,7 @@ def headline(run: Run) -> str:
     if missed:
         return f"**Negative controls not detected: {missed}.**"
     left = len(run.controls) - len(tried)
-    rest = f"; {left} were not run, for want of a code" if left else ""
+    rest = f"; {left} were not run, because a code is missing" if left else ""
     return f"Negative controls: {len(tried)} of {len(tried)} seeded faults, run through the whole pipeline, are detected{rest}."
 
 

@@ -9,7 +9,7 @@ from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
-    "measured data, which confirm and contradict nothing": lambda c: c.role == "measured",
+    "measured data (neither confirm nor contradict)": lambda c: c.role == "measured",
     "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
     "printed tables": lambda c: c.role == "table",
     "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
@@ -45,7 +45,7 @@ def verdict(run: Run) -> str:
     if missing:
         return f"No: {missing} answer is missing." if missing == 1 else f"No: {missing} answers are missing."
     if counts["inconclusive"]:
-        return f"Nothing contradicts core, but {counts['inconclusive']} of the answers cannot tell."
+        return f"Nothing contradicts core; inconclusive answers: {counts['inconclusive']}."
     return "Nothing contradicts core."
 
 

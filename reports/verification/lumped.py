@@ -64,8 +64,8 @@ def sentence(found: Taken) -> str:
     """One sentence: how much of the paper's error is due to lumping."""
     percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
     return (
-        f"Lumping the mass makes up {percent} of the error of chordwise modes 1 to {len(found.shares)} at {PAPER} "
-        "elements; the rest comes from a beam stiffness that is linear in the parent body's frame."
+        f"With {PAPER} elements, lumping the mass causes {percent} of the error of chordwise modes 1 to {len(found.shares)}; "
+        "the rest is due to a beam stiffness that is linear in the parent body's frame."
     )
 
 

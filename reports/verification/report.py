@@ -31,7 +31,7 @@ FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
 
 LARGEST: dict[Verdict, str] = {
     "known difference": "Largest known difference",
-    "pass": "Largest difference that passes",
+    "pass": "Largest difference among passes",
 }
 """Further verdicts that the headline names, worst first."""
 
@@ -243,7 +243,7 @@ def measured(run: Run, case: str, unit: Units) -> str:
             f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
             f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
             "measured against core": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
-            "what it says of the model": plain(c.reason),
+            "model error": plain(c.reason),
         }
         for c in sorted(cells, key=lambda c: (c.code, c.mode, c.omega))
     ]

@@ -63,7 +63,7 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
 def legend() -> str:
     """The legend of ``matrix``."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    return f"largest difference from core in % (as 2e-14: relative; 1.4 of 2: held to a wider target); {signs}"
+    return f"largest difference from core in % (2e-14: relative; 1.4 of 2: target of 2 %); {signs}"
 
 
 def controls(run: Run) -> Table:

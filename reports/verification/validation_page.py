@@ -97,8 +97,8 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
 _HEAD = f"""# Measured rotors
 
 A measurement is not a code. It does not confirm or contradict core; it shows how far the *model* is from the rotor. The
-comparison error E = S − D holds the model's error and three uncertainties: of the numerical solution (u_num), of the inputs
-(u_input), and of the data (u_D). With u_val² = u_num² + u_input² + u_D², the model's error is visible where |E| exceeds
+comparison error E = S − D contains the model error and three uncertainties: of the numerical solution (u_num), of the inputs
+(u_input), and of the data (u_D). With u_val² = u_num² + u_input² + u_D², the model error is visible where |E| exceeds
 {COVERAGE:g} u_val (ASME V&V 20-2009, sec. 1-5). All values are in Hz."""
 
 _SANDIA = f"""## The Sandia 34 m vertical-axis test bed
@@ -112,13 +112,13 @@ _ASSUMED = sandia34.data()["uncertainty"]
 
 _MODEL = f"""### What the model assumes
 
-- The guys are rigid: the tower's top is free only in yaw. The tower's modes are therefore too high.
-- The inputs' uncertainty is not published. Assumed, as one standard uncertainty:
+- The guy wires are rigid: the tower top is free only in yaw. The frequencies of the tower modes are therefore too high.
+- The uncertainty of the inputs is not published. Assumed, as one standard uncertainty:
   {100 * _ASSUMED["stiffness"]:g} % of all stiffness, {100 * _ASSUMED["mass"]:g} % of all mass.
-- The source's mass matrices put the mass centre across the chord, where the profile is not thick enough for it. Stiffness and
-  mass are those of one material, so the model has the mass centre at the tension centre. The change to either reading
-  of the printed number enters u_input.
-- u_num is from the change when every element is halved, extrapolated with order {comparison.ORDER}; from the interpolation
-  between the speeds at which the model is solved ({", ".join(f"{rpm:g}" for rpm in comparison.SPEEDS)} rpm); and half the
-  distance of two modes where a measured line may be either.
-- u_D is {comparison.data()["uncertainty"]:g} Hz: half the least scatter of repeated measurements at one speed."""
+- The mass matrices of the source place the mass centre outside the profile, across the chord. Stiffness and mass are those of
+  one material, so the model has the mass centre at the tension centre. The change to either reading of the printed number is
+  part of u_input.
+- u_num contains the change when every element is halved, extrapolated with order {comparison.ORDER}; the error of the
+  interpolation between the speeds at which the model is solved ({", ".join(f"{rpm:g}" for rpm in comparison.SPEEDS)} rpm); and
+  half the distance between two modes where a measured line may be either of them.
+- u_D is {comparison.data()["uncertainty"]:g} Hz: half the smallest scatter of repeated measurements at one speed."""

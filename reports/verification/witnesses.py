@@ -79,7 +79,7 @@ def headline(run: Run) -> str:
     low, many = len(counted[least]), max(len(found) for found in counted.values())
     who = "; ".join(engines(group) for group in counted[least])
     span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
-    return f"Independent groups that agree, for each blade: {span}; who shares an engine or a theory counts once."
+    return f"Independent groups that agree, for each blade: {span}; codes that share an engine or a theory count once."
 
 
 def missing(run: Run) -> list[str]:

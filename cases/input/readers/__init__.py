@@ -18,7 +18,6 @@ from ....core.blade import Blade
 from .. import files
 from ..errors import CaseError
 from ..names import LONGEST, named
-from . import source
 from .source import Mount, Reading, Source, Unused
 
 __all__ = ["FORMATS", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
@@ -59,9 +58,6 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(
             f"{path}: name: {found.blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters"
         )
-    for what, size in (("length", found.blade.length), ("hub_radius", found.blade.hub_radius)):
-        if size > source.LONGEST:
-            raise CaseError(f"{path}: {what}: {size:g} m: beyond {source.LONGEST:g} m: another unit? correct it")
     for what, angle, most in (("precone", found.blade.precone, 90.0), ("pitch", found.blade.pitch, 180.0)):
         if abs(np.degrees(angle)) > most:
             raise CaseError(

@@ -15,9 +15,10 @@ from msgspec.structs import replace as changed
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError
+from ....core.blade_checks import MAX_LENGTH
 from .. import files
 from ..errors import CaseError, FilesMissingError
-from .source import LONGEST, Unused
+from .source import Unused
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -133,7 +134,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
     rigid: Annotated[
         tuple[Literal["axial", "shear_y", "shear_z", "torsion"], ...], Meta(description="rigid strains")
     ] = ()
-    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="from the rotor's axis to the root, m")] = 0.0
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used.
@@ -175,8 +176,8 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     main: Annotated[
         str | None, Meta(description="main file that says how it is mounted, from the case file's folder")
     ] = None
-    length: Annotated[float, Meta(gt=0, le=LONGEST, description="m, where no file says it")] | None = None
-    hub_radius: Annotated[float, Meta(ge=0, le=LONGEST, description="m, where no file says it")] | None = None
+    length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="m, where no file says it")] | None = None
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="m, where no file says it")] | None = None
     subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
     multipliers: Annotated[
         tuple[Positive, Positive, Positive] | None,

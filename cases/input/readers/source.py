@@ -6,9 +6,6 @@ from pathlib import Path
 
 from ....core.blade import Blade
 
-LONGEST = 1e4
-"""Upper limit of a blade's length and a hub's radius, m."""
-
 
 @dataclass(frozen=True)
 class Unused:

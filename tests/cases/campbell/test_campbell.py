@@ -263,20 +263,20 @@ def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
     assert set(page) == {
         "Modes",
         "Margins in the operating range",
-        "Where a mode meets n per revolution",
-        "Modes that meet",
+        "Crossings of n per revolution",
+        "Modes that come close",
     }
     modes_ = page["Modes"].rows
     assert modes_[2][0] == "flap 2"
     assert float(modes_[2][2]) == pytest.approx(30.0 / (2 * np.pi), abs=5e-5)
     assert modes_[2][6:] == ("3.000", "< 0.0001 %")
-    (met,) = page["Modes that meet"].rows
+    (met,) = page["Modes that come close"].rows
     assert met[0] == "veering"
     assert float(met[1]) == pytest.approx(np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi, abs=1e-3)
-    resonances = page["Where a mode meets n per revolution"].rows
+    resonances = page["Crossings of n per revolution"].rows
     assert len(resonances) == len(veering.resonances)
-    text = markdown(page["Where a mode meets n per revolution"])
-    assert text.count("**✘ within**") == sum(r.apart == 0 for r in veering.resonances) > 0
+    text = markdown(page["Crossings of n per revolution"])
+    assert text.count("**✘ inside**") == sum(r.apart == 0 for r in veering.resonances) > 0
 
 
 def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
@@ -288,8 +288,8 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
 
     found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
     phrase = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
-    assert "Not judged, since not followed over all of it: " in phrase
-    (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Not clear")
+    assert "Not judged, because not tracked over the whole range: " in phrase
+    (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Ambiguous tracking")
     assert sheet.rows[0][0] == "edge 1"
     assert sheet.rows[0][3] == "none"
     assert "?" in texts(draw(found, RAD_S, "jump"))
@@ -297,11 +297,11 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
 
 def test_the_answer_in_one_line() -> None:
     assert verdict(diagram(margin=0.05, per_rev=(1,)), RAD_S) == (
-        "Every mode keeps 5 % from n per revolution over 1 to 2 rad/s."
+        "Every mode stays at least 5 % away from every n per revolution at 1 to 2 rad/s."
     )
     phrase = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P
-    assert phrase == "✘ Over 1.1 to 2 rad/s, flap 1 meets 2P; edge 1 meets 2P and comes within 10 % of 3P."
-    assert "none is judged" in verdict(diagram(operating=None), RAD_S)
+    assert phrase == "✘ At 1.1 to 2 rad/s, flap 1 crosses 2P; edge 1 crosses 2P and comes within 10 % of 3P."
+    assert "no margin is judged" in verdict(diagram(operating=None), RAD_S)
 
 
 def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:

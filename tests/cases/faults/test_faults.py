@@ -141,7 +141,7 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
     assert summary.status(good) == 0
     headline = reported.headline(good)
     assert headline.startswith("Negative controls: 1 of 1 seeded faults")
-    assert headline.endswith("detected; 1 were not run, for want of a code.")
+    assert headline.endswith("detected; 1 were not run, because a code is missing.")
     blind = replace(good, controls=(control(caught=()),))
     assert summary.status(blind) == 1
     assert "not detected: no hub radius" in reported.headline(blind)

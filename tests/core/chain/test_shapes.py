@@ -125,7 +125,7 @@ def test_shapes_for_elastodyn_exclude_twist() -> None:
 
 def test_a_blade_without_the_modes_that_elastodyn_needs_is_reported() -> None:
     stiff = uniform_blade("stiff", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=1e10, mass=1.2)
-    with pytest.raises(CaseError, match="stiff, as ElastoDyn knows it: no edge 1 among the lowest modes"):
+    with pytest.raises(CaseError, match="stiff, in ElastoDyn's terms: no edge 1 among the lowest modes"):
         polynomials(stiff, 0.0, 12)
 
 

@@ -1,5 +1,6 @@
 """A reference curve must begin at the root and have the arc length of its stations; rounding in files is tolerated."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -174,3 +175,19 @@ def test_a_table_that_ends_within_rounding_of_the_tip_is_complete(tmp_path: Path
 def test_angles_are_finite(name: str) -> None:
     with pytest.raises(BladeError, match=f"{name}: nan"):
         Blade(**{**vars(tapered()), name: np.nan})
+
+
+@pytest.mark.parametrize("length", [1e30, 2e4, 1e-7, 1e-30])
+@pytest.mark.filterwarnings("error")
+def test_a_length_in_another_unit_is_refused(length: float) -> None:
+    """Before the curve is splined, which loses all digits with such numbers."""
+    s = length * np.array([0.0, 0.5, 1.0])
+    with pytest.raises(BladeError, match=r"length: .* m: not between 1e-06 and 10000 m: another unit"):
+        blade(s, np.stack([s, 0 * s, 0 * s], axis=1))
+
+
+@pytest.mark.parametrize("radius", [-1.0, 2e4, np.inf, np.nan])
+def test_a_hub_radius_in_another_unit_is_refused(radius: float) -> None:
+    s = np.array([0.0, 5.0, 10.0])
+    with pytest.raises(BladeError, match=r"hub_radius: .* m: a distance from the rotor's axis, 0 to 10000 m"):
+        replace(blade(s, np.stack([s, 0 * s, 0 * s], axis=1)), hub_radius=radius)

@@ -184,7 +184,7 @@ def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, 
 @pytest.mark.parametrize(
     ("mark", "phrase"),
     [
-        ("", "takes southwell_cell, and has no mark southwell"),
+        ("", "uses southwell_cell but has no mark southwell"),
         ("@pytest.mark.southwell()", "missing 1 required positional argument: 'solve'"),
         ("@pytest.mark.southwell(solve=print, colour=1)", "unexpected keyword argument 'colour'"),
         ('@pytest.mark.southwell(solve=print, lacks=("weight",))', "weight"),

@@ -354,7 +354,7 @@ def test_interrupted_before_anything_is_finished_there_is_no_report(
     monkeypatch.setattr(matrix, "run", interrupt)
     status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
     assert (status, out, err.count("\n")) == (130, "", 1)
-    assert err.startswith("southwell: interrupted: nothing was finished yet; run the same `southwell verify` again")
+    assert err.startswith("southwell: interrupted: no cell was finished; run the same `southwell verify` again")
     assert not (tmp_path / "out" / "report.md").exists()
 
 

@@ -75,7 +75,7 @@ def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
         ([], "Nothing was compared."),
         (["not run", "not applicable"], "Nothing was compared."),
         (["pass", "known difference", "not run"], "Nothing contradicts core."),
-        (["pass", "inconclusive"], "Nothing contradicts core, but 1 of the answers cannot tell."),
+        (["pass", "inconclusive"], "Nothing contradicts core; inconclusive answers: 1."),
         (["pass", "inconclusive", "fail", "fail"], "No: 2 answers contradict core."),
     ],
 )
@@ -259,5 +259,5 @@ def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> Non
 def test_the_lumped_mass_is_answered_if_the_run_has_it(tmp_path: Path) -> None:
     levels = lumping(load("park-cantilever").variants[0].blade)
     text = matrix_report.write(replace(samples.run(), levels=levels), tmp_path).read_text()
-    assert "Lumping the mass makes up 33 %, 70 %, 80 % of the error" in text
+    assert "lumping the mass causes 33 %, 70 %, 80 % of the error" in text
     assert (tmp_path / "figures" / "lumped-mass.svg").exists()
