@@ -1,4 +1,4 @@
-# make verify | make test | make lint | make bench | make condense | make readme | make docs | make clean
+# make verify | make test | make test-slow | make lint | make bench | make condense | make readme | make docs | make clean
 # All that is needed is Python 3.11 or later; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -12,15 +12,19 @@ HERE := .venv/here
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: verify test lint bench condense readme docs clean
+.PHONY: verify test test-slow lint bench condense readme docs clean
 
 # the report takes up the page of closed forms
 verify: $(INSTALLED)
 	$(BIN)/southwell closed-forms --out reports/out
 	$(BIN)/southwell verify --out reports/out
 
+# a few minutes; what takes longer is in test-slow
 test: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadfile
+	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
+
+test-slow: $(INSTALLED)
+	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check

@@ -99,19 +99,30 @@ def _is(code: Code, blade: Blade, omega: float, exact: float, axis: int | None =
 
 def declares(code: Code) -> None:
     """The declarations of the adapter are valid."""
-    _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
+    _keep(
+        code.name and not set(code.name) & set(" ,:/\n"),
+        f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
+    )
     _keep(code.title.strip(), "title: empty")
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
     _keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
-    _keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: a whole number, 0 if spectral")
+    _keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: not a whole number (0: spectral)")
     declared = digits(code)
-    _keep(isinstance(declared, int) and declared >= FEWEST, f"digits: {declared!r}: a whole number, {FEWEST} at least")
+    _keep(
+        isinstance(declared, int) and declared >= FEWEST,
+        f"digits: {declared!r}: not a whole number of at least {FEWEST}",
+    )
     steps = np.divide(code.levels[1:], code.levels[:-1])
-    _keep(len(steps) >= 2 and (steps >= 1.4).all(), f"levels: {code.levels}: three at least, each 1.4 times the last")
+    _keep(
+        len(steps) >= 2 and (steps >= 1.4).all(),
+        f"levels: {code.levels}: at least three are needed, each at least 1.4 times the previous one",
+    )
     version = code.version()
-    _keep(version is None or version.strip(), "version: empty; None if the code is not installed")
-    _keep(version is not None or code.hint.strip(), "hint: empty, and the code is not installed: how to get it?")
-    _keep(code.unsupported(BEAM) is None, f"unsupported: {code.unsupported(BEAM)}: a uniform beam is the least")
+    _keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
+    _keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
+    _keep(
+        code.unsupported(BEAM) is None, f"unsupported: {code.unsupported(BEAM)}: every code must accept a uniform beam"
+    )
 
 
 def refuses(code: Code) -> None:
@@ -120,14 +131,14 @@ def refuses(code: Code) -> None:
     for p, reason in reasons:
         if reason is None:
             continue
-        _keep(reason.strip() and "\n" not in reason, f"{p.name}: unsupported: {reason!r}: not one line that says why")
+        _keep(reason.strip() and "\n" not in reason, f"{p.name}: unsupported: {reason!r}: not one line with the reason")
         try:
             code.solve(p.having, 0.0, code.levels[0], 1)
         except CodeError:
             continue
-        raise BrokenError(f"{p.name}: unsupported says {reason!r}, and yet solve answers: it must raise CodeError")
+        raise BrokenError(f"{p.name}: unsupported returns {reason!r}, but solve answers: it must raise CodeError")
     if not any(reason for _, reason in reasons):
-        raise NotForItError("it takes every blade asked")
+        raise NotForItError("the code accepts all these blades")
 
 
 def at_rest(code: Code) -> None:
@@ -148,11 +159,11 @@ def counts(code: Code) -> None:
     few, many = (_ask(code, BEAM, known.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
         f = modes.frequencies
-        _keep(3 <= len(f) <= count, f"{count} modes asked for, {len(f)} given")
+        _keep(3 <= len(f) <= count, f"{count} modes requested, {len(f)} returned")
         _keep((f > 0).all() and (np.diff(f) >= 0).all(), f"frequencies: {f.tolist()}: not positive and ascending")
-        _keep(modes.omega == known.SPEED, f"Modes.omega: {modes.omega}, asked at {known.SPEED}")
-        _keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, asked for {code.levels[0]}")
-    _close(many.frequencies, few.frequencies, "the first three of eight, and of three", _same(code))
+        _keep(modes.omega == known.SPEED, f"Modes.omega: {modes.omega}, requested {known.SPEED}")
+        _keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
+    _close(many.frequencies, few.frequencies, "the first three of eight modes, and three modes", _same(code))
 
 
 def repeats(code: Code) -> None:
@@ -162,7 +173,7 @@ def repeats(code: Code) -> None:
     again = _ask(code, BEAM, known.SPEED, 0)
     same = np.array_equal(first.frequencies, again.frequencies) and np.array_equal(first.shapes, again.shapes)
     _keep(
-        same, f"the same call twice, another between: {first.frequencies.tolist()}, then {again.frequencies.tolist()}"
+        same, f"the same call before and after another: {first.frequencies.tolist()}, then {again.frequencies.tolist()}"
     )
 
 
@@ -172,9 +183,12 @@ def shapes(code: Code) -> None:
     _keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"the root moves: {shape[0].tolist()}")
     moved = np.abs(shape[:, 1:3]).max(axis=1)
     wrong = np.abs(moved / moved[-1] - known.cantilever_shape()).max()
-    _keep(wrong < 0.02, f"first shape: up to {wrong:.3f} of the tip's motion off the cantilever's: stations, or scale?")
+    _keep(
+        wrong < 0.02,
+        f"first shape: differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
+    )
     stray = np.abs(shape[:, [0, 3]]).max() / moved[-1]
-    _keep(stray < 0.05, f"first shape: stretches or twists by {stray:.3f} of what it bends: order of columns?")
+    _keep(stray < 0.05, f"first shape: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
 
 
 def order(code: Code) -> None:
@@ -212,10 +226,10 @@ def units(code: Code) -> None:
 def quarter_pitch(code: Code) -> None:
     """A pitch of 90° exchanges the planes."""
     pitched, plain = (_ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
-    _close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with planes swapped", _same(code))
+    _close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with exchanged planes", _same(code))
     for axis in (1, 2):
         same = _along(pitched, axis) == _along(plain, axis)
-        _keep(same, f"a plank pitched by 90°: other modes along {'xyz'[axis]} than one with planes swapped has")
+        _keep(same, f"a plank pitched by 90°: its modes along {'xyz'[axis]} are not those of one with exchanged planes")
 
 
 def pitch_sense(code: Code) -> None:
@@ -249,13 +263,13 @@ def torsion(code: Code) -> None:
         there = (np.abs(limit / exact - 1.0) < NEAR).any()
         _keep(
             not there,
-            f"soft shaft: of the mode at {exact:g} rad/s no rotation about the axis is given: order of columns?",
+            f"soft shaft: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
         )
-        raise NotForItError("it has no torsion")
-    _close(limit[turns[0]], exact, "soft shaft at rest, lowest that turns about its axis", NEAR)
+        raise NotForItError("the code has no torsion")
+    _close(limit[turns[0]], exact, "soft shaft at rest, lowest torsional mode", NEAR)
     shape = fine.shapes[turns[0], :, 3]
     wrong = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
-    _keep(wrong < 0.01, f"soft shaft: its rotation is {wrong:.3f} of the tip's away from a quarter of a sine")
+    _keep(wrong < 0.01, f"soft shaft: its rotation differs from a quarter sine by {wrong:.3f} of the tip's")
 
 
 def tip_mass_weighs(code: Code) -> None:
@@ -321,10 +335,10 @@ def effects(code: Code) -> None:
         except UnstableError:  # for instance without geometric stiffness: the effect cannot be checked
             continue
         if bracket > DROPPED * change:
-            raise NotForItError(f"its own bracket, {bracket:.1%}, hides {name}")
+            raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {name}")
         _keep(
             near <= DROPPED * change,
-            f"effects.{name} = {kept}: {near:.2%} from core with the effects declared; {name} makes {change:.2%}",
+            f"effects.{name} = {kept}: differs by {near:.2%} from core with these effects; {name} changes {change:.2%}",
         )
 
 
@@ -334,8 +348,11 @@ def keeps(one: Property, code: Code) -> None:
     having, lacking = _with_and_without(one.name, code.effects)
     change = _far(having, lacking)
     if change < VISIBLE:
-        raise NotForItError(f"not felt without {', '.join(code.effects.lacks())}")
+        raise NotForItError(f"no effect without {', '.join(code.effects.lacks())}")
     if bracket > DROPPED * change:
-        raise NotForItError(f"its own bracket, {bracket:.1%}, is wider than what {one.name} does")
+        raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {one.name}")
     near, far = _far(found, having), _far(found, lacking)
-    _keep(near <= DROPPED * change, f"{one.name}: {near:.2%} from the blade with it, {far:.2%} from that without")
+    _keep(
+        near <= DROPPED * change,
+        f"{one.name}: differs by {near:.2%} from the blade with it, by {far:.2%} from the blade without it",
+    )

@@ -83,15 +83,18 @@ def hinged(kind: str) -> mb.Mechanism:
 
 def declares(code: MechanismCode) -> None:
     """The declarations of the adapter are valid."""
-    _keep(code.name and not set(code.name) & set(" ,:/\n"), f"name: {code.name!r}: must be typed on a command line")
+    _keep(
+        code.name and not set(code.name) & set(" ,:/\n"),
+        f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
+    )
     _keep(code.title.strip(), "title: empty")
     _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
     _keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
     version = code.version()
-    _keep(version is None or version.strip(), "version: empty; None if the code is not installed")
-    _keep(version is not None or code.hint.strip(), "hint: empty, and the code is not installed: how to get it?")
+    _keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
+    _keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
     reason = code.unsupported_mechanism(pendulum())
-    _keep(reason is None, f"unsupported_mechanism: {reason}: a pendulum is the least")
+    _keep(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
 
 
 def refuses(code: MechanismCode) -> None:
@@ -114,9 +117,9 @@ def refuses(code: MechanismCode) -> None:
             code.solve_mechanism(mechanism, {})
         except CodeError:
             continue
-        raise BrokenError(f"{what}: unsupported_mechanism says {reason!r}, and yet solve_mechanism answers")
+        raise BrokenError(f"{what}: unsupported_mechanism returns {reason!r}, but solve_mechanism answers")
     if not declined:
-        raise NotForItError("it takes every mechanism asked")
+        raise NotForItError("the code accepts all these mechanisms")
 
 
 def hangs(code: MechanismCode) -> None:
@@ -264,7 +267,7 @@ def repeats(code: MechanismCode) -> None:
     _ask(code, hinged("lag"))
     again = _ask(code, hinged("flap"))
     same = np.array_equal(first.values, again.values) and np.array_equal(first.shapes, again.shapes)
-    _keep(same, f"the same call twice, another between: {_list(first.values)}, then {_list(again.values)}")
+    _keep(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
 
 
 def periodic(code: MechanismCode) -> None:

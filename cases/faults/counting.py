@@ -46,7 +46,7 @@ COUNTS: dict[str, tuple[Run, int]] = {
         _run(ONE, TWO, (_cell("wren", mode=2, difference=2e-3, verdict="fail"), None)), 1),
     "one whose difference is only explained": (
         _run(ONE, (_cell("wren", difference=0.1, verdict="known difference"), _origin("wren"))), 1),
-    "one that cannot tell": (
+    "an inconclusive one": (
         _run(ONE, (_cell("wren", difference=0.1, uncertainty=0.5, verdict="estimate"), _origin("wren"))), 1),
     "a table held to a wider target": (
         _run(ONE, (_cell("wren", role="table", target=2e-2, difference=1e-2), _origin("wren"))), 1),
@@ -62,7 +62,7 @@ def canaries() -> list[str]:
             wrong.append(f"groups: {what}: {found} counted, not {expected}")
     alone = short(_run(ONE, required=2))
     if [(s.groups, s.required) for s in alone] != [(1, 2)] or short(_run(ONE, TWO, required=2)):
-        wrong.append("groups: one of two required is not told as too few")
+        wrong.append("groups: one of two required is not reported as too few")
     return wrong
 
 
@@ -75,17 +75,17 @@ def _without(field: str) -> Any:
 
 
 FAULTS = (
-    _counting("every code a group", "who shares an engine or a theory counts twice", "a group",
+    _counting("every code a group", "codes that share an engine or a theory count twice", "a group",
               (witnesses, "_linked", lambda right: lambda a, b: False)),
-    _counting("rotation terms ignored", "the same rotation terms are no link", "a group",
+    _counting("rotation terms ignored", "shared rotation terms are ignored", "a group",
               (witnesses, "MATTERS", _without("rotation"))),
-    _counting("core confirms core", "who has core's discretisation or frames counts", "a group",
+    _counting("core confirms core", "codes with core's discretisation or frames count", "a group",
               (witnesses, "_kind", lambda right: lambda cell, origin: "code")),
     _counting("explained is agreed", "every witness agrees", "a group",
               (witnesses, "_worst", lambda right: lambda standings: "agrees")),
-    _counting("best mode counts", "a witness agrees if it does in any mode", "a group",
+    _counting("best mode counts", "agreement in one mode is enough", "a group",
               (witnesses, "_worst", lambda right: lambda standings: next(
                   (s for s in ("agrees", "explained", "open", "disagrees") if s in set(standings)), "agrees"))),
-    _counting("too few are enough", "no number of groups is required", "a group",
+    _counting("too few groups are accepted", "no number of groups is required", "a group",
               (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9)),
 )  # fmt: skip

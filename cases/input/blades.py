@@ -107,7 +107,8 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
     twisted: Annotated[bool, Meta(description="whether the table's twist is used")] = True
     centred: Annotated[bool, Meta(description="leave out the offset of the mass centres")] = False
     pieces: Annotated[
-        tuple[float, ...], Meta(description="ends, in fractions of length, of pieces that are as their middle is")
+        tuple[float, ...],
+        Meta(description="ends, in fractions of length, of pieces with the properties of their middle"),
     ] = ()
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
@@ -235,7 +236,5 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
                     f"{where}: {header[j]}: {cell}: not a finite number; a gap in the table? give every value"
                 )
     if len(out) < 2:
-        raise CaseError(
-            f"{path}: rows: {len(out)}: two at least are needed, as a blade's root and tip: cut short? add them"
-        )
+        raise CaseError(f"{path}: rows: {len(out)}: at least two are needed (root and tip): truncated? add them")
     return {column: out[:, j] for j, column in enumerate(header)}

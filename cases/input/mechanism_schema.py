@@ -77,7 +77,7 @@ class CoordinateSpringData(Struct, frozen=True, forbid_unknown_fields=True):
 
     stiffness: Annotated[float, Meta(description="N/m or N m/rad")] = 0.0
     damping: Annotated[float, Meta(description="N s/m or N m s/rad")] = 0.0
-    neutral: Annotated[float, Meta(description="where it pulls nothing, m or rad")] = 0.0
+    neutral: Annotated[float, Meta(description="position without force, m or rad")] = 0.0
 
 
 class SpringData(Struct, frozen=True, forbid_unknown_fields=True):
@@ -126,13 +126,15 @@ class BeamData(Struct, frozen=True, forbid_unknown_fields=True):
 class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     """How closely codes must agree with core on the same mechanism."""
 
-    modes: Annotated[int, Meta(ge=1, description="how many, from the lowest")]
+    modes: Annotated[int, Meta(ge=1, description="number of modes, from the lowest")]
     target: Annotated[
         float, Meta(gt=0, le=LOOSEST, description="largest difference: of frequencies relative, of damping ratios")
     ] = 1e-8
-    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
-    groups: Annotated[Confirmations, Meta(description="how many independent groups must agree with core")] = 1
-    lacking: Annotated[str, Meta(description="why no group is required, where none is")] = ""
+    time_limit: Annotated[
+        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
+    ] = 300.0
+    groups: Annotated[Confirmations, Meta(description="number of independent groups that must agree with core")] = 1
+    lacking: Annotated[str, Meta(description="reason if no group is required")] = ""
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
@@ -149,8 +151,8 @@ class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     bodies: Annotated[dict[Name, Any], Meta(min_length=1, description="name → BodyData")]
     joints: Annotated[dict[Name, Any], Meta(min_length=1, description="name → JointData")]
     title: Annotated[str, Meta(description="one line")] = ""
-    description: Annotated[str, Meta(description="what it shows, and what in it is assumed")] = ""
-    source: Annotated[str, Meta(description="where data come from")] = ""
+    description: Annotated[str, Meta(description="purpose and assumptions")] = ""
+    source: Annotated[str, Meta(description="source of the data")] = ""
     gravity: Annotated[Three, Meta(description="m/s², in the ground's axes")] = ORIGIN
     motions: Annotated[dict[str, dict[str, Any]], Meta(description="joint.coordinate → MotionData")] = {}
     coordinate_springs: Annotated[
@@ -159,10 +161,10 @@ class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     springs: tuple[SpringData, ...] = ()
     bushings: tuple[BushingData, ...] = ()
     beams: tuple[BeamData, ...] = ()
-    guess: Annotated[dict[str, dict[str, float]], Meta(description="joint.coordinate → where to start, m or rad")] = {}
-    independent: Annotated[tuple[str, ...], Meta(description="coordinates to vibrate; none: chosen numerically")] = ()
+    guess: Annotated[dict[str, dict[str, float]], Meta(description="joint.coordinate → initial guess, m or rad")] = {}
+    independent: Annotated[tuple[str, ...], Meta(description="independent coordinates; none: chosen numerically")] = ()
     rotor: Annotated[
-        str, Meta(description="joint.coordinate that turns at the rotor's speed, where that is varied")
+        str, Meta(description="joint.coordinate that rotates at the rotor speed, if the speed is varied")
     ] = ""
     speeds: Speeds | None = None
     compare: Compare | None = None

@@ -184,7 +184,7 @@ def _moments(value: list[float | list[float]], where: str) -> Array:
     least, middle, most = np.linalg.eigvalsh(out).tolist()
     if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
         raise CaseError(
-            f"{where}: {most:g} is more than {least:g} and {middle:g} together: no body has such; correct it"
+            f"{where}: {most:g} is more than {least:g} and {middle:g} together: not physically possible; correct it"
         )
     return out
 

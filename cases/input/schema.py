@@ -47,19 +47,23 @@ class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
 class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     """The compared modes and the target."""
 
-    modes: Annotated[int, Meta(ge=1, le=100, description="how many, from the lowest, of those that qualify")]
+    modes: Annotated[int, Meta(ge=1, le=100, description="number of modes, from the lowest, of those that qualify")]
     motions: Annotated[
         tuple[Motion, ...],
         Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
     ] = get_args(Motion)
     target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest difference, relative")] = 1e-3
     tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
-    time_limit: Annotated[float, Meta(gt=0, le=86400, description="of one solution by a foreign code, s")] = 300.0
+    time_limit: Annotated[
+        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
+    ] = 300.0
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
-        Meta(description="how many independent groups must agree with core: a number, or one for each variant by name"),
+        Meta(
+            description="number of independent groups that must agree with core: a number, or one for each variant by name"
+        ),
     ] = 1
-    lacking: Annotated[str, Meta(description="why no group is required, where none is")] = ""
+    lacking: Annotated[str, Meta(description="reason if no group is required")] = ""
 
     def required(self, label: str) -> int:
         """Number of groups that must confirm the variant ``label``."""
@@ -93,8 +97,8 @@ class CaseFile(Struct, frozen=True, forbid_unknown_fields=True):
 
     name: Typed
     title: Annotated[str, Meta(description="one line, as printed over a table")]
-    description: Annotated[str, Meta(description="what the case shows, and what in it is assumed")]
-    source: Annotated[str, Meta(description="where data and numbers come from")]
+    description: Annotated[str, Meta(description="purpose and assumptions of the case")]
+    source: Annotated[str, Meta(description="source of data and numbers")]
     blade: BladeData
     speeds: Speeds
     compare: Compare
@@ -215,7 +219,7 @@ def speed_range(text: str) -> NDArray[np.float64]:
     if not (0 <= first <= last < math.inf and 0 < step < math.inf):
         raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
     if last > FASTEST:
-        raise ValueError(f"{text!r}: {last:g} is faster than any rotor turns: another unit? give at most {FASTEST:g}")
+        raise ValueError(f"{text!r}: {last:g} is implausibly fast: another unit? give at most {FASTEST:g}")
     steps = (last - first) / step
     if steps > MOST_SPEEDS:
         raise ValueError(f"{text!r}: {steps:.3g} steps: a step too short? give at most {MOST_SPEEDS}, as in 0:30:5")

@@ -103,7 +103,7 @@ def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
         message, _, where = str(error).partition(" - at `")
         if where.startswith("key"):
             table = ".".join(filter(None, (under, where.partition("$")[2].strip("`."))))
-            raise CaseError(f"{path}: {table}: a key that is no name: {RULE}: correct it") from error
+            raise CaseError(f"{path}: {table}: a key that is not a name: {RULE}: correct it") from error
         where = where.removeprefix("$")
         raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data, kind, under)}") from error
 

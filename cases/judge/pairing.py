@@ -158,7 +158,7 @@ def _as_subspace(
 
 def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
     if not len(row):
-        return Pair(None, 0.0, "no partner: the code gave no modes")
+        return Pair(None, 0.0, "no partner: the code returned no modes")
     if mode is None or row[mode] < least:
         best = int(row.argmax())
         nearest = f"its most similar mode, at {other.frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"

@@ -330,9 +330,9 @@ def _unfinished(kinds: list[str], torn: bytes, end: Any) -> str:
     """Why the lines of a file, by kind, are not a complete run; empty if they are."""
     count = Counter(kinds)
     if kinds[:1] != ["plan"] or count["plan"] > 1:
-        return "the file does not begin with the plan of its run"
+        return "the file does not begin with the plan of the run"
     if torn or kinds[-1] != "end" or count["end"] > 1:
-        return "the file does not end with the completion record of its run"
+        return "the file does not end with the completion record of the run"
     if end != {kind: count[kind] for kind in KINDS} or count["run"] != 1:
-        return "the file has not the lines that its completion record counts"
+        return "the number of lines differs from that in the completion record"
     return ""

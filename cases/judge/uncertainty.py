@@ -60,11 +60,13 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
     """
     n, f = np.asarray(elements, float)[-3:], np.asarray(frequencies, float)[-3:]
     if not f.any():
-        return Estimate(0.0, ROUNDING, note="a frequency of zero at every refinement")
+        return Estimate(0.0, ROUNDING, note="the frequency is zero at every refinement")
     if order == 0 and len(f) >= 2:
         return Estimate(float(f[-1]), _at_least(abs(f[-1] - f[-2]) / abs(f[-1])))
     if len(f) < 3:
-        return Estimate(float(f[-1]), None, note=f"{len(f)} of 3 refinements were solved: no order of convergence")
+        return Estimate(
+            float(f[-1]), None, note=f"{len(f)} of 3 refinements were solved: the order of convergence is unknown"
+        )
     spread = float((f.max() - f.min()) / abs(f[-1]))
     scattered = Estimate(float(f[-1]), _at_least(WARY * spread))
     if spread <= NOISE:

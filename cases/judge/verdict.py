@@ -39,13 +39,13 @@ class Effect:
 def judge(difference: float, uncertainty: float | None, target: float) -> Judgement:
     """The verdict on a relative difference; ``uncertainty`` is None if unknown."""
     if uncertainty is None:
-        return "inconclusive", "uncertainty not known"
+        return "inconclusive", "unknown uncertainty"
     if abs(difference) + uncertainty <= target:
         return "pass", ""
     size = f"{percent(difference)} ± {unsigned(uncertainty)}"
     if abs(difference) - uncertainty > target:
-        return "fail", f"{size} is more than {unsigned(target)}"
-    return "inconclusive", f"{size} may or may not be within {unsigned(target)}"
+        return "fail", f"{size} exceeds {unsigned(target)}"
+    return "inconclusive", f"{size}: too uncertain for a target of {unsigned(target)}"
 
 
 def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
@@ -63,7 +63,7 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
         names = ", ".join(f"no {e.name}" for e in effects)
         return (
             "inconclusive",
-            f"{names}: size unknown, as core with all effects has no mode like it; without, core agrees",
+            f"{names}: size unknown, because core with all effects has no similar mode; core without them agrees",
         )
     if abs(shift) <= target:
         return "pass", ""
@@ -72,7 +72,7 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
     }
     causes = [f"no {name}: {change}" for name, change in changes.items()]
     together = [f"together {percent(shift)}"] if len(causes) != 1 else []
-    return "known difference", f"{', '.join(causes + together)} (core with and without); without, core agrees"
+    return "known difference", f"{', '.join(causes + together)} (change of core's answer); core without them agrees"
 
 
 def bracketed(difference: float, uncertainty: float | None, target: float) -> Judgement:
@@ -89,8 +89,10 @@ def bracketed(difference: float, uncertainty: float | None, target: float) -> Ju
     if verdict == "pass" or uncertainty is None:
         return verdict, reason
     away = -difference / (1.0 + difference)
-    bracket = f"an estimate, by its own account within {unsigned(uncertainty)}: core, {percent(away)} from it, lies"
-    return ("estimate", f"{bracket} inside") if abs(away) <= uncertainty else ("fail", f"{bracket} outside")
+    bound = f"estimate with a stated bound of {unsigned(uncertainty)}; core differs by {percent(away)},"
+    return (
+        ("estimate", f"{bound} within the bound") if abs(away) <= uncertainty else ("fail", f"{bound} beyond the bound")
+    )
 
 
 def discretised(
@@ -123,9 +125,9 @@ def discretised(
         return verdict, reason
     error = f"discretisation error of {what}: {percent(difference if size is None else size)}"
     if abs(limit) + (uncertainty or 0.0) <= target:
-        rest = f", {percent(remainder)} remain" if remainder else ""
-        return "known difference", f"{error}{rest}; refined, its limit is {percent(limit)} from the reference"
-    return "fail", f"{error}, and its refinements do not lead to the reference ({percent(limit)})"
+        rest = f", remainder {percent(remainder)}" if remainder else ""
+        return "known difference", f"{error}{rest}; its limit under refinement is {percent(limit)} from the reference"
+    return "fail", f"{error}, and its refinements do not converge to the reference ({percent(limit)})"
 
 
 def _small(effect: Effect, shift: float) -> bool:

@@ -169,7 +169,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     )
     base = reference.core.modes[i].estimate
     if base is None:
-        return replace(cell, verdict="not applicable", reason="core has no frequency to compare it with")
+        return replace(cell, verdict="not applicable", reason="core has no frequency to compare with")
     found = Validation(
         base.value,
         datum.value,
@@ -180,7 +180,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     difference, uncertainty = found.relative
     cell = replace(cell, reference=base.value, difference=difference)
     if base.uncertainty is None:
-        return replace(cell, reason=f"no statement: u_num is not known ({base.note})")
+        return replace(cell, reason=f"not judged: u_num is unknown ({base.note})")
     return replace(cell, uncertainty=uncertainty, reason=explained(found))
 
 
@@ -265,7 +265,7 @@ def _known(reference: Reference, i: int, target: float) -> Judgement:
     shift = base.value / full - 1.0 if full and base else None
     verdict, reason = known(shift, target, reference.effects[i])
     if full and reference.likeness[i] < LEAST_MAC:
-        reason = _join(reason, f"shapes with and without are alike to MAC {reference.likeness[i]:.2f} only")
+        reason = _join(reason, f"the shapes with and without have a MAC of only {reference.likeness[i]:.2f}")
     return verdict, reason
 
 
@@ -276,7 +276,7 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
     """
     wanted = reference.core.wanted
     motion = MOTIONS[int(shares(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
-    return "" if motion in motions else f"by its own declaration no mode of this code has any {motion} motion"
+    return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 
 def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: str) -> Cell:

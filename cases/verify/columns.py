@@ -110,7 +110,7 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
 def _mechanisms_only(case: str, code: Description, target: float) -> Column:
     head = Head(case, code.name, code.version or "", "code", target)
     return Column(
-        code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", "it takes mechanisms, not blades")
+        code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", "the code takes mechanisms, not blades")
     )
 
 

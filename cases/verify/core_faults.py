@@ -164,10 +164,10 @@ CORE_FAULTS = (
     CoreFault(
         "no geometric stiffness", "the centrifugal tension does not stiffen", no_geometric_stiffness, right, PLAIN
     ),
-    CoreFault("softening's sign", "spin softening is added instead of taken away", softening_reversed, right, PLAIN),
+    CoreFault("softening's sign", "spin softening is added instead of subtracted", softening_reversed, right, PLAIN),
     CoreFault(
         "frozen frame",
-        "linearised in a frame that stands still: chordwise is read as flapwise",
+        "linearised in a frame that does not rotate: chordwise is read as flapwise",
         frozen_frame,
         right,
         PLAIN,
@@ -183,12 +183,12 @@ CORE_FAULTS = (
     CoreFault("no Coriolis", "no Coriolis force", no_coriolis, right, ("yoo-shin-chordwise/delta-0",)),
     CoreFault(
         "whole end mass",
-        "lumped mass, the tip's a whole element's instead of half",
+        "the lumped mass at the tip is that of a whole element instead of a half",
         whole_end_mass,
         lumped,
         PLAIN,
         True,
     ),
-    CoreFault("no hub radius", "the root lies on the rotor's axis", no_hub, right, PLAIN),
+    CoreFault("no hub radius", "the root is on the rotor axis", no_hub, right, PLAIN),
 )
 """All faults."""

@@ -66,7 +66,7 @@ def _parts(value: Any) -> Iterator[bytes]:
         name = value.name if isinstance(value, Enum) else ""
         of = kind if isinstance(value, Enum) else value
         if "<" in of.__qualname__:
-            raise TypeError(f"{of.__qualname__}: a function without a name of its own cannot be told from another")
+            raise TypeError(f"{of.__qualname__}: an anonymous function cannot be identified")
         yield f"named {of.__module__}.{of.__qualname__}.{name}".encode()
     elif is_dataclass(value):
         yield from _tagged(_name(kind), tuple(getattr(value, f.name) for f in fields(value) if f.name != TIME))
@@ -98,7 +98,7 @@ def _state(value: Any) -> tuple[Any, ...]:
     """The state from which pickle would rebuild an object."""
     reduced = value.__reduce_ex__(2)
     if isinstance(reduced, str):
-        raise TypeError(f"{_name(type(value))}: cannot be told from another by its value")
+        raise TypeError(f"{_name(type(value))}: cannot be identified by its value")
     return reduced[1:3]
 
 

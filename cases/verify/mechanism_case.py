@@ -61,7 +61,7 @@ def case(described: Described) -> MechanismCase:
     text, path = described.text, described.path
     if text.speeds is None or text.compare is None:
         missing = "speeds" if text.speeds is None else "compare"
-        raise CaseError(f"{path}: {missing}: missing: a mechanism is a case with [speeds] and [compare]; add it")
+        raise CaseError(f"{path}: {missing}: missing: a mechanism needs [speeds] and [compare] to be a case; add it")
     if (text.compare.groups == 0) != bool(text.compare.lacking):
         raise CaseError(
             f"{path}: compare.groups: give groups = 0 and compare.lacking, the reason, together, or neither"

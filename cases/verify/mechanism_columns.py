@@ -74,7 +74,9 @@ def _reference(variant: Turning, omega: float) -> Reference:
     except (mb.MechanismError, EigenError) as error:
         raise CaseError(f"{path}: speeds: {omega:g} rad/s: {error}") from error
     if len(found.values) < variant.count:
-        raise CaseError(f"{path}: compare.modes: {variant.count}: it has {len(found.values)}: lower it")
+        raise CaseError(
+            f"{path}: compare.modes: {variant.count}: the mechanism has {len(found.values)} modes: reduce it"
+        )
     state = found.linear.state
     weight = reduced_mass(state.kinematics, state.cartesian)
     modes = MechanismModes(found.coordinates, state.q, found.values, found.shapes)
@@ -103,7 +105,7 @@ def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Wo
     if code.failure:
         return failing_work(head, code.failure)
     if not code.mechanisms:
-        return partial(_absent, head, "not applicable", "it takes blades, not mechanisms")
+        return partial(_absent, head, "not applicable", "the code takes blades, not mechanisms")
     return partial(_compared, head, variant, partial(_ask, code.asked, variant.described.guess, limits))
 
 
@@ -174,7 +176,7 @@ def _incomplete(reference: Reference, answer: MechanismModes) -> str:
     theirs = [reference.modes.coordinates.index(n) for n in answer.coordinates if n in reference.modes.coordinates]
     shapes, many = reference.modes.shapes, len(reference.modes.values)
     if np.linalg.matrix_rank(shapes[:, theirs]) < np.linalg.matrix_rank(shapes):
-        return f"coordinates {', '.join(answer.coordinates)}: these do not tell the {many} modes apart: name all"
+        return f"coordinates {', '.join(answer.coordinates)}: these do not distinguish the {many} modes: name all"
     highest = np.abs(reference.modes.values).max(initial=0.0)
     extra = len(answer.values) - many
     if extra > 0 and np.sum(np.abs(answer.values) <= highest * (1.0 + ROUNDING)) > many:

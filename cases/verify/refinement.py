@@ -129,7 +129,7 @@ def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool =
 
 def _follow(answers: Sequence[Modes], partners: Sequence[Pair], order: int, bracket: bool) -> RefinedMode:
     found = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
-    last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code gave no modes")
+    last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code returned no modes")
     history = tuple((m.elements, float(m.frequencies[k])) for m, k in found)
     if last.mode is None:
         return RefinedMode(None, last, history)

@@ -63,7 +63,7 @@ class Store:
             OSError: if the folder is not writable, or other users can write to it, or the file is not a store.
         """
         if not compiled_files.folder(file.parent.parent, file.parent.name):
-            raise OSError(f"{file.parent}: not a folder that this user, and nobody else, can write to")
+            raise OSError(f"{file.parent}: not a folder that only this user can write to")
         try:
             self.base = sqlite3.connect(file, timeout=WAITING, isolation_level=None, check_same_thread=False)
             os.chmod(file, 0o600)
@@ -127,7 +127,7 @@ class Store:
 
 def _read(checksum: bytes, text: bytes) -> Any:
     if not isinstance(text, bytes) or sha256(text).digest() != checksum:
-        raise ValueError("not as it was written")
+        raise ValueError("damaged")
     try:
         return stored.decode(msgspec.json.decode(text))
     except msgspec.DecodeError as error:

@@ -86,7 +86,7 @@ def _off(row: Given, omega: float) -> float:
 def _without_partner(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
     """The cell of a row for a mode that the case does not compare."""
     called, known = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
-    reason = f"line {row.line}: the case does not compare mode {called} here: it compares {known}"
+    reason = f"line {row.line}: the case does not compare mode {called} at this speed; it compares {known}"
     return empty(head, omega, "not applicable", reason)
 
 

@@ -122,9 +122,7 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
     (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
     columns = _header(header, f"{path}: line {first}")
     if not table:
-        raise CaseError(
-            f"{path}: no results in it, only a header: add a line for every frequency, as `0, 0.932, flapwise 1`"
-        )
+        raise CaseError(f"{path}: only a header: add a line for every frequency, as `0, 0.932, flapwise 1`")
     rows = []
     for k, cells in table:
         where = f"{path}: line {k}"
@@ -142,7 +140,7 @@ def _header(header: Sequence[str], where: str) -> _Columns:
         if column not in known:
             raise CaseError(f"{where}: unknown column {column!r}: {nearest(column, known)}")
         if header.count(column) > 1:
-            raise CaseError(f"{where}: column {column!r} is there {header.count(column)} times: once is enough")
+            raise CaseError(f"{where}: column {column!r} occurs {header.count(column)} times: give it once")
     found = []
     for what, units in (("speed", SPEED), ("frequency", (*FREQUENCY, *MEASURED))):
         mine = [column for column in header if column in units]
@@ -150,7 +148,7 @@ def _header(header: Sequence[str], where: str) -> _Columns:
             raise CaseError(f"{where}: {len(mine)} columns of {what}: give exactly one of {', '.join(units)}")
         found.append(mine[0])
     if "mode" not in header:
-        raise CaseError(f"{where}: column 'mode' is missing: which mode a frequency is of, as flapwise 1, or 3")
+        raise CaseError(f"{where}: column 'mode' is missing: name the mode of each frequency, as in flapwise 1, or 3")
     speed, frequency = found
     allowed = ("uncertainty [%]", f"uncertainty {frequency.partition(' ')[2]}")
     sure = [column for column in header if column in UNCERTAINTY]
@@ -170,7 +168,7 @@ def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaul
         if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
             wanted = "a number above 0" if least else "a number, 0 or more"
             raise CaseError(
-                f"{where}: {column}: {text!r} is not {wanted}, and at most {most:g}: correct it, with a point for decimals"
+                f"{where}: {column}: {text!r} is not {wanted}, and at most {most:g}: correct it, with a decimal point"
             )
         return float(text)
 
@@ -230,7 +228,7 @@ def check(user_results: Sequence[UserResults], variants: Sequence[Variant], code
     taken = set(codes)
     for one in user_results:
         if one.name in taken:
-            raise CaseError(f"--add {one.name}: there is a code or another file of that name: call it something else")
+            raise CaseError(f"--add {one.name}: a code or another file has this name: give another")
         taken.add(one.name)
         for row in one.rows:
             where = f"{one.path}: line {row.line}"

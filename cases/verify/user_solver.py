@@ -119,7 +119,7 @@ def _modes(omega: float, elements: int, frequencies: Any, shapes: Any, exact: bo
         raise ValueError(f"shapes: {shape.shape}, expected {(len(values), len(STATIONS), 4)}, or 3 instead of 4")
     if not shape.any(axis=(1, 2)).all() or not len(values):
         raise ValueError(
-            "no modes, or one whose shape is zero everywhere"
+            "no modes, or a mode whose shape is zero"
         )  # neither could be distinguished from an unsupported blade
     order = np.argsort(values)
     sure = np.zeros(len(values)) if exact else np.zeros(0)

@@ -93,7 +93,7 @@ def _page(
         "![Natural frequencies along rotor speed](campbell.svg)\n",
         *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
         *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
-        *(["![Where modes meet](encounters.svg)\n"] if diagram.encounters else []),
+        *(["![Modes that come close](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
         _elastodyn(diagram, k, units),
         f"## Reproduce\n\n```\n{command}\n```\n",

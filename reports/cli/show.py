@@ -38,7 +38,7 @@ MORE = ("principal axes [deg]", "mass axes [deg]", "axis x [m]", "axis y [m]", "
 """Further columns of the CSV: angles of axes from the section's y and z, empty if undefined; reference axis."""
 
 CONVENTIONS = (
-    "x along the blade, z the rotor's axis, y the direction of motion (to the leading edge); sections turn with twist and "
+    "x along the blade, z the rotor axis, y the direction of motion (to the leading edge); sections turn with twist and "
     "pitch from y towards z (leading edge downwind)"
 )
 

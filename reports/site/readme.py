@@ -115,14 +115,14 @@ def block(run: Run) -> str:
     none = unasked(run)
     return f"""{heat(run)}
 
-Each field has the worst verdict of all modes and speeds and the largest difference from core behind it (of a known
+Each field shows the worst verdict of all modes and speeds, and the largest difference from core with that verdict (for a known
 difference: from core with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
 
 ## {CASE} at {units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
 {comparison(table1, units(run, CASE))}
 
-Made by `{run.command}` with {made}.
+Written by `{run.command}` with {made}.
 """
 
 

@@ -77,7 +77,7 @@ def first(run: Run) -> list[str]:
     data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *urgent(run), *data]
-    return [answer(run), f"Worst difference of an independent answer, for its target: {_shown(run, far)}.", *data]
+    return [answer(run), f"Worst independent answer, relative to its target: {_shown(run, far)}.", *data]
 
 
 def measured(run: Run) -> str:
@@ -122,7 +122,7 @@ def rows(run: Run) -> list[dict[str, str]]:
                 {
                     "evidence": kind,
                     "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
-                    "worst, for its target": _shown(run, same or _measured(cells)),
+                    "worst, relative to target": _shown(run, same or _measured(cells)),
                     "largest known difference": _shown(run, known),
                 }
             )

@@ -58,6 +58,7 @@ print(sum(f.stats.cache_hits.values()))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda c: c[: len(c) // 2], lambda c: b"", lambda c: c[:-1] + b"\0"])
 def test_a_damaged_file_is_compiled_again(tmp_path: Path, ending: str, damage) -> None:

@@ -59,6 +59,7 @@ def computed(name: str, series: Series, datum: Datum) -> float:
     return float(family(found, COLUMN[datum.family])[datum.mode - 1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "series", "datum"), COARSE, ids=ids)
 def test_a_datum_of_a_coarse_method_is_within_its_target(name: str, series: Series, datum: Datum) -> None:
     case, _, _ = series.blade.partition("/")

@@ -103,7 +103,7 @@ def run() -> Run:
             difference=5e-3,
             uncertainty=1e-4,
             verdict="fail",
-            reason="+0.5 % ± 0.01 % is more than 0.1 %",
+            reason="+0.5 % ± 0.01 % exceeds 0.1 %",
         ),
         cell(
             **short,
@@ -112,7 +112,7 @@ def run() -> Run:
             difference=5e-4,
             uncertainty=None,
             verdict="inconclusive",
-            reason="uncertainty not known",
+            reason="unknown uncertainty",
         ),
         empty("not applicable", "gamma: one bending stiffness only", case="blade/stiff", code="gamma"),
     ]

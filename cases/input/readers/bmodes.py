@@ -109,7 +109,7 @@ def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
     if scaled:
         out.append(f"multiplied: {', '.join(f'{f} = {value(main, named, f):g}' for f in scaled)}")
     if p["sc_offst"].any():
-        out.append("shear centres lie off the axis: their line is taken for it, straight")
+        out.append("the line of shear centres is treated as the straight reference axis")
     return tuple(out)
 
 

@@ -2,8 +2,8 @@
 
 The blade is straight along the pitch axis; mass, flap and edge stiffness act there, uncoupled, in axes rotated by the
 structural twist. In OpenFAST positive twist and pitch move the leading edge upwind: a rotation about −x here. The format
-has no stretch, torsion or rotary inertia: those strains are rigid, and the sections have no moments of inertia. The
-additional columns of FAST 7 (GJStff, EAStff, FlpIner, EdgIner, and the offsets, see ``fast7_offsets``) are used if
+contains no axial or torsional stiffness and no rotary inertia: these strains are rigid, and the moments of inertia are
+zero. The additional columns of FAST 7 (GJStff, EAStff, FlpIner, EdgIner, and the offsets, see ``fast7_offsets``) are used if
 present. AdjBlMs, AdjFlSt and AdjEdSt multiply the table. A main file's BlPitch is the initial pitch of a simulation, not
 an operating point: it is listed, not used. Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005.
 """
@@ -145,7 +145,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     for name, factor in factors.items():
         if factor <= 0:
             raise CaseError(
-                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: it multiplies; give a positive number"
+                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
             )
     first = max(k for k, _ in (named[name.lower()] for name in MULTIPLIERS)) + 1
     heads = [k for k in range(first, len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "blfract"]
@@ -219,13 +219,13 @@ def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns
     said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
     given = mounted.multipliers
     out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
-    rigid = [what for what, name in (("stretch", "EAStff"), ("torsion", "GJStff")) if name not in columns]
+    rigid = [what for what, name in (("axial", "EAStff"), ("torsional", "GJStff")) if name not in columns]
     if rigid:
-        out.append(f"the format has no {' and no '.join(rigid)}: rigid; shear is rigid")
+        out.append(f"{' and '.join(rigid)} stiffness not in this format: treated as rigid; shear is rigid")
     if "FlpIner" not in columns:
-        out.append("the format has no sectional moments of inertia: none")
+        out.append("sectional moments of inertia are not in this format: zero")
     if main is not None:
-        out.append("tower, nacelle, hub and drive train of the main file are no part of a blade")
+        out.append("tower, nacelle, hub and drive train of the main file are not part of the blade")
     if main is None:
         given = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
         out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))

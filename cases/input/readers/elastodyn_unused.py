@@ -74,7 +74,7 @@ def of_main(text: Text) -> tuple[Unused, ...]:
         values = _each(text, name)
         if len({*values}) > 1:
             out += unused(
-                f"{name}(2), …", values[1:], unit, text.path, "only the first blade is read, and the others differ"
+                f"{name}(2), …", values[1:], unit, text.path, "only the first blade is read; the others differ"
             )
     if _flag(text, "TeetDOF") and 2.0 in _values(text, ("NumBl",)):
         out += unused("TeetDOF", (1.0,), "", text.path, CLAMPED)

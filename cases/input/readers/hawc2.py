@@ -89,7 +89,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(turned):.1g}°"
         )
         notes.append(
-            "sections' planes are taken across the half-chord line, swung from the blade's axes by the shortest way"
+            "section planes are perpendicular to the half-chord line, rotated from the blade axes by the smallest angle"
         )
     else:
         notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")

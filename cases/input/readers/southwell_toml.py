@@ -20,7 +20,7 @@ from .sections import describe
 from .source import Mount, Reading, Source
 
 NAME = "Southwell TOML"
-AXES = "ours: x along the blade, z the rotor's axis, y the direction of motion; nothing to convert"
+AXES = "Southwell's axes: x along the blade, z the rotor axis, y the direction of motion"
 
 
 class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
@@ -29,7 +29,7 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     name: Name
     blade: BladeData
     title: Annotated[str, Meta(description="one line")] = ""
-    source: Annotated[str, Meta(description="where the data come from")] = ""
+    source: Annotated[str, Meta(description="source of the data")] = ""
 
 
 def is_one(path: Path) -> bool:

@@ -103,7 +103,7 @@ def _layout(top: Field) -> Layout:
     if old is None:
         raise CaseError(
             f"{blade.at}: no 6×6 matrices: neither structure.elastic_properties (windIO 2) nor "
-            "elastic_properties_mb.six_x_six (windIO 1); have them computed from the layers first (as by WISDEM)"
+            "elastic_properties_mb.six_x_six (windIO 1); compute them from the layers first (for instance with WISDEM)"
         )
     axis, twist = (old.find(key) or blade.get("outer_shape_bem", key) for key in ("reference_axis", "twist"))
     already = np.abs(twist.get("values").numbers()).max() > FAR

@@ -9,6 +9,8 @@ from southwell.cases.bench.cost import Bench, Equal, Growth, Timing
 from southwell.references.protocol import registry
 from southwell.reports.verification import bench
 
+pytestmark = pytest.mark.slow
+
 MADE = Bench(
     (
         Timing("core", "", 0.02, 0.31, 1.1, 1e-7),
@@ -34,7 +36,7 @@ def test_every_code_is_timed_and_its_error_told(small: Bench) -> None:
     assert 0.0 < (core.error or 0.0) < 1e-6
     assert all(t.single and t.sweep for t in (core, closed))
     assert absent.single is None
-    assert "not among" in absent.note
+    assert "not a known code" in absent.note
     assert [g.elements for g in small.growth] == [2, 4]
 
 

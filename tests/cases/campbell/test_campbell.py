@@ -161,6 +161,7 @@ def stand_ins() -> tuple[Variation, ...]:
     return variations(elements=20)
 
 
+@pytest.mark.slow
 def test_the_papers_rises_at_20_and_30_rpm(stand_ins: tuple[Variation, ...]) -> None:
     """Park et al. (2010), Fig. 3: at most 8 % and 16.5 %. Their blade is unpublished; the surrogate's first mode is theirs."""
     for v in stand_ins[1:]:

@@ -24,6 +24,7 @@ CODE = Code()
 """
 
 
+@pytest.mark.slow
 def test_an_exit_is_a_failed_check_and_the_others_are_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "leaver.py").write_text(CODE.replace("count == 3", "False"), encoding="utf-8")
     monkeypatch.chdir(tmp_path)

@@ -41,6 +41,7 @@ def test_the_table_is_large_and_names_are_unique() -> None:
     assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAST)
 def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
     (control,) = table.run([name])
@@ -59,6 +60,7 @@ def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
     assert control.caught
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["lost column", "wide bracket", "unsupported() raises", "paired by number", "all is known", "target in percent"],
@@ -68,6 +70,7 @@ def test_one_of_each_other_kind_is_detected(name: str) -> None:
     assert control.caught
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [f.name for f in mechanisms.FAULTS])
 def test_a_fault_in_mechanisms_is_detected(name: str) -> None:
     (control,) = table.run([name])
@@ -90,6 +93,7 @@ def test_a_fault_that_does_nothing_is_missed() -> None:
     assert seeding.execute(harmless, BY_NAME.__getitem__, canaries).missed
 
 
+@pytest.mark.slow
 def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cells, "judge", lambda *_: ("pass", ""))
     monkeypatch.setattr(cells, "discretised", lambda *_: ("pass", ""))

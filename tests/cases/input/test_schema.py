@@ -193,7 +193,7 @@ BAD_TABLES = [
         ["stiffness: diagonal 4 (bending about y) at station 0 (0 m) is -3", "positive"],
     ),
     (TABLE.replace("mass [kg/m]", "mass [lb/ft]"), ["unknown column 'mass [lb/ft]': did you mean mass [kg/m]?"]),
-    (TABLE.split("\n1,0")[0], ["rows: 1: two at least"]),
+    (TABLE.split("\n1,0")[0], ["rows: 1: at least two"]),
 ]
 
 

@@ -164,6 +164,7 @@ modes = 1
 """
 
 
+@pytest.mark.slow
 def test_in_a_run_its_results_and_its_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("elastodyn_main.dat", "elastodyn_blade.dat"):
         shutil.copy(DATA / name, tmp_path)

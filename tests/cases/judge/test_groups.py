@@ -102,6 +102,7 @@ def test_too_few_groups_are_status_1_and_a_line() -> None:
     assert reported.missing(few)[0].startswith("beam: 1 of 2 required independent groups agree")
 
 
+@pytest.mark.slow
 def test_cases_require_groups_or_say_why_not() -> None:
     for name in library.names():
         if name not in library.absent():

@@ -45,8 +45,8 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
         (lambda lines: lines[1:], "does not begin with the plan"),
         (lambda lines: lines[:-1], "does not end with the completion record"),
         (lambda lines: [*lines, lines[3]], "does not end with the completion record"),
-        (lambda lines: lines[:5] + lines[6:], "has not the lines that its completion record counts"),
-        (lambda lines: lines[:5] + lines[4:], "has not the lines that its completion record counts"),
+        (lambda lines: lines[:5] + lines[6:], "the number of lines differs from that in the completion record"),
+        (lambda lines: lines[:5] + lines[4:], "the number of lines differs from that in the completion record"),
         (lambda lines: lines + lines, "does not begin with the plan"),
     ],
 )

@@ -276,6 +276,7 @@ def test_bad_input_is_one_line(folders, capsys: pytest.CaptureFixture[str], line
     assert re.search(phrase, err)
 
 
+@pytest.mark.slow
 def test_verify_writes_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "j.xml"
     line = f"verify rotating-cable --codes southwell-equation --workers 1 --out {tmp_path} --junit {file}"
@@ -298,7 +299,7 @@ def test_an_incomplete_run_does_not_pass(
         folders(f"gate {{0}}/cut.jsonl --against {{0}}/before --junit {{0}}/j.xml {strict}"), capsys
     )
     assert status == 3
-    assert out.startswith("Incomplete: the file does not end with the completion record of its run.\n")
+    assert out.startswith("Incomplete: the file does not end with the completion record of the run.\n")
     suite = ElementTree.parse(tmp_path / "j.xml").getroot()[0]
     assert (suite.get("errors"), suite.get("failures")) == ("1", "0")
     assert "Incomplete: " in (suite[0][0].get("message") or "")

@@ -186,6 +186,7 @@ def test_an_incomplete_run_is_not_what_others_are_compared_with(
     assert not (tmp_path / "h.jsonl").exists()
 
 
+@pytest.mark.slow
 def test_a_writer_waits_for_its_turn(tmp_path: Path) -> None:
     source, file = tmp_path / "source.jsonl", tmp_path / "history.jsonl"
     history.append(source, history.entry(RUN, "source", date=MADE))

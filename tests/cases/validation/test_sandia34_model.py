@@ -68,6 +68,7 @@ def by_direct_stiffness(halvings: int, count: int) -> np.ndarray:
     return frames.frequencies(elements, {base: [0, 1, 2, 3, 4, 5], top: [0, 1, 2, 3, 4]}, count)
 
 
+@pytest.mark.slow
 def test_at_rest_it_is_the_frame_of_the_direct_stiffness_method() -> None:
     """The frame's lumped mass makes an error of second order in the elements' length: extrapolated from two divisions."""
     coarse, fine = by_direct_stiffness(0, 8), by_direct_stiffness(1, 8)

@@ -63,9 +63,10 @@ def test_a_printed_number_is_not_excused_by_a_discretisation_that_leads_elsewher
     assert max(abs(c.difference or 0.0) for c in wrong) > 2.0
     known = [c for c in seeding.cells(trial) if c.verdict == "known difference" and c.role == "table"]
     assert len(known) == 1
-    assert "refined, its limit is" in known[0].reason
+    assert "its limit under refinement is" in known[0].reason
 
 
+@pytest.mark.slow
 def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
     found = {c.family: c for c in of("lost")}
     assert found["flapwise"].verdict == "fail"
@@ -74,11 +75,13 @@ def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
     assert summary.status(run("LOST")) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", ["wide", "wide-once"])
 def test_a_code_cannot_declare_itself_unsure_and_be_believed(code: str) -> None:
     assert {c.verdict for c in of(code)} == {"inconclusive"}
 
 
+@pytest.mark.slow
 def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     cells = of("bracket")
     assert {c.verdict for c in cells} == {"estimate"}
@@ -88,6 +91,7 @@ def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     assert evidence.answer(alone).startswith("Nothing was compared.")
 
 
+@pytest.mark.slow
 def test_a_mode_that_the_code_has_twice_is_no_agreement() -> None:
     """One at the right frequency, and one of nearly the same shape 30 % above it: which is its answer?"""
     cells = of("ghosts")
@@ -96,6 +100,7 @@ def test_a_mode_that_the_code_has_twice_is_no_agreement() -> None:
     assert summary.status(run("GHOSTS")) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", ["wandering", "backwards"])
 def test_refinements_that_are_none_are_a_failure(code: str) -> None:
     """Else the same number of elements is a division by zero, and a falling one an order of convergence."""
@@ -105,10 +110,12 @@ def test_refinements_that_are_none_are_a_failure(code: str) -> None:
     assert cell.reason.endswith("not refined")
 
 
+@pytest.mark.slow
 def test_a_frequency_of_zero_is_a_failure() -> None:
     assert of("zero")[0].verdict == "fail"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("code", "phrase"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
 )
@@ -120,6 +127,7 @@ def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) 
     assert any(c.verdict == "pass" for c in run("BLOWS", "NO_VERSION", "ZERO").cells)
 
 
+@pytest.mark.slow
 def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
     status, out, _ = southwell(asked, capsys)

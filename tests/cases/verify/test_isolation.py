@@ -76,6 +76,7 @@ def of(run: Run, code: str) -> list[Cell]:
     return [c for c in run.cells if c.code == code]
 
 
+@pytest.mark.slow
 def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) -> None:
     """They declare the name ``misdeed``, if they come so far; else they go by what they were asked for."""
     alone = of(run(case, "southwell-equation"), "southwell-equation")
@@ -91,6 +92,7 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
         assert summary.status(found) == (1 if verdict == "fail" else 0)
 
 
+@pytest.mark.slow
 def test_an_exit_at_import_is_no_success(case: Case, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code = written("import-exit_0", folder)
     with pytest.raises(SystemExit) as ended:
@@ -146,6 +148,7 @@ def test_a_lost_pool_worker_is_no_interruption(
     assert "interrupted" not in said
 
 
+@pytest.mark.slow
 def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, folder: Path) -> None:
     """As installed: neither the command, nor its pool's processes, nor the codes' workers."""
     (folder / "southwell").mkdir()

@@ -150,6 +150,7 @@ def test_a_row_that_cannot_be_is_told_with_its_remedy(tmp_path: Path, text: str,
     assert "\n" not in message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [

@@ -11,6 +11,7 @@ from southwell.reports.cli import app as cli
 from ...support.killing import CASE, SUPPORT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "phrase"),
     [

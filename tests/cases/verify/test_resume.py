@@ -18,6 +18,8 @@ from southwell.cases.verify import journal
 
 from ...support import killing
 
+pytestmark = pytest.mark.slow
+
 JOURNAL, RESULTS = journal.NAME, "results.jsonl"
 
 

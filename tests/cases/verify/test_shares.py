@@ -116,6 +116,7 @@ def run() -> Run:
         return matrix.run([one], ["yoo-shin", "exact-beam"], executor)
 
 
+@pytest.mark.slow
 def test_rounding_is_that_of_the_printed_digits() -> None:
     """Half a unit of the last digit of 11.71, and what core's own extrapolation leaves open."""
     datum = published.load("park2010").series[0].data[0]

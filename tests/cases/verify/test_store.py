@@ -150,7 +150,7 @@ def test_prune_removes_what_is_old(kept: Store) -> None:
 def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path) -> None:
     (tmp_path / "open").mkdir()
     (tmp_path / "open").chmod(0o777)
-    with pytest.raises(OSError, match="nobody else"):
+    with pytest.raises(OSError, match="only this user"):
         Store(tmp_path / "open" / store.NAME)
 
 
@@ -161,6 +161,7 @@ def test_a_file_that_is_no_store(tmp_path: Path) -> None:
         Store(tmp_path / "cache" / store.NAME)
 
 
+@pytest.mark.slow
 def test_verify_takes_the_second_time_what_it_computed_the_first(tmp_path: Path) -> None:
     """And says how many, and from when; with --fresh it computes again. Results are the same but for times."""
     killing.write(tmp_path)

@@ -66,6 +66,7 @@ def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> No
     assert two.value.uncertainty == pytest.approx(0.05 / 3.6)
 
 
+@pytest.mark.slow
 def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
     lines = [f"10, {value:.6f}, {name}" for name, value in EXACT.items()]
     right, coarse, wrong = lines[:2], f"10, {EXACT['chordwise 2']:.1f}, chordwise 2", "10, 71.30, flapwise 2"
@@ -81,9 +82,10 @@ def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
     assert {c.shares for c in cells} == {"nothing"}
     assert cells[2].uncertainty == pytest.approx(0.05 / 70.4, rel=1e-2)
     assert cells[3].difference == pytest.approx(71.30 / EXACT["flapwise 2"] - 1.0, abs=1e-6)
-    assert "line 7: the case does not compare mode axial 1 here: it compares chordwise 1" in cells[5].reason
+    assert "line 7: the case does not compare mode axial 1 at this speed; it compares chordwise 1" in cells[5].reason
 
 
+@pytest.mark.slow
 def test_few_digits_are_inconclusive_and_not_a_pass(tmp_path: Path) -> None:
     """11.7 is 11.7 ± 0.05: 0.43 %, which is more than the target and says nothing within it."""
     (cell,) = of(run(read(tmp_path, HEAD + "10, 11.7, chordwise 1")))
@@ -91,6 +93,7 @@ def test_few_digits_are_inconclusive_and_not_a_pass(tmp_path: Path) -> None:
     assert cell.uncertainty == pytest.approx(0.05 / 11.7, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> None:
     """10 rad/s are 95.4930 rpm; printed as 95.49 the speed is off by 3e-5, and so may the frequency be."""
     text = "speed [rpm], frequency [rad/s], mode\n95.49, 15.400199, flapwise 1\n"
@@ -101,6 +104,7 @@ def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> No
     assert cell.verdict == "pass"
 
 
+@pytest.mark.slow
 def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> None:
     one = run(read(tmp_path, HEAD + "10, 11.710953, chordwise 1"))
     (rig,) = (w for w in witnesses(one, "park-cantilever") if w.name == "rig")
@@ -110,7 +114,7 @@ def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> 
 
 BAD = [
     ("", "empty: was it written"),
-    (HEAD, "no results in it"),
+    (HEAD, "only a header"),
     ("speed [rad/s], frequency [rad/s]\n10, 11.7\n", "line 1: column 'mode' is missing"),
     (
         "speed [m/s], frequency [Hz], mode\n1, 1, 1\n",
@@ -119,7 +123,7 @@ BAD = [
     ("speed [rpm], frequency, mode\n1, 1, 1\n", "line 1: unknown column 'frequency'"),
     ("frequency [Hz], mode\n1, 1\n", "line 1: 0 columns of speed: give exactly one of speed [rad/s]"),
     ("speed [rpm], speed [rad/s], frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: 2 columns of speed"),
-    ("speed [rpm], mode, frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: column 'mode' is there 2 times"),
+    ("speed [rpm], mode, frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: column 'mode' occurs 2 times"),
     (HEAD + "10, 11.7\n", "line 2: 2 columns instead of 3: a missing or stray comma?"),
     (HEAD + "10, 11,7, chordwise 1\n", "line 2: 4 columns instead of 3"),
     (HEAD + "ten, 11.7, chordwise 1\n", "line 2: speed [rad/s]: 'ten' is not a number, 0 or more"),
@@ -156,6 +160,7 @@ def test_not_text_and_not_there(tmp_path: Path) -> None:
         user_results.read("rig", tmp_path / "binary.csv")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "text", "words"),
     [
@@ -185,6 +190,7 @@ def test_what_is_not_of_the_run_is_bad_input(
     assert not (tmp_path / "out").exists()  # nothing is overwritten by a run that cannot be
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("add", "words"),
     [
@@ -209,5 +215,5 @@ def test_names_are_needed_and_their_own(
 
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
     one = read(tmp_path, HEAD + "10, 11.7, chordwise 1\n")
-    with pytest.raises(CaseError, match="another file of that name"):
+    with pytest.raises(CaseError, match="another file has this name"):
         user_results.check([one, one], park().variants, ["yoo-shin"])

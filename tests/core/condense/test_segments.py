@@ -194,9 +194,9 @@ def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
     for corner in (3, 8):  # along y and z from the first
         assert np.abs(edges - (cut[0][0, corner] - cut[0][0, 0])).sum(axis=1).min() < 1e-9
     assert {t.get_text() for t in figure.texts} == {
-        "Finite element model: 48 hexahedra, 999 freedoms",
+        "Finite element model: 48 hexahedra, 999 degrees of freedom",
         "5 sections, each tied to a frame",
-        "Compressed model: 4 rigid bodies, 4 complex stiffness elements, 24 freedoms",
+        "Compressed model: 4 rigid bodies, 4 complex stiffness elements, 24 degrees of freedom",
     }
     for name in ("one.svg", "two.svg"):
         save(stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999), tmp_path / name)

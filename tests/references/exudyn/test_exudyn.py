@@ -78,6 +78,7 @@ class TestAnswers:
         chordwise, flapwise = families(code.solve(NO_ROTARY, omega, code.levels[0], 6), 3)
         np.testing.assert_allclose(flapwise**2 - chordwise**2, omega**2, rtol=0.03)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(("hub", "gamma"), [(0.0, 2.0), (0.0, 10.0), (1.0, 10.0), (5.0, 2.0)])
     def test_both_agree_where_coriolis_and_stretch_matter(self, hub, gamma):
         """Two formulations, of fourth and second order, agree; strains up to 0.03."""
@@ -85,6 +86,7 @@ class TestAnswers:
         tree, _ = extrapolated(TREE, lambda n: TREE.solve(unit(hub), gamma, n, 6).frequencies)
         np.testing.assert_allclose(tree, cable, rtol=3e-5)
 
+    @pytest.mark.slow
     def test_both_agree_at_a_strain_of_a_quarter(self):
         """γ = 50: the root's boundary layer, 1/35 of the length, is resolved by 80 cubics or 192 hinges."""
         cable = ANCF.solve(unit(), 50.0, 80, 6).frequencies
@@ -104,6 +106,7 @@ class TestAnswers:
         with pytest.raises(CodeError, match=r"no (stable )?steady state"):
             code.solve(unit(), 115.0, 20, 2)
 
+    @pytest.mark.slow
     def test_windpact_at_zero_speed_and_rotating(self, windpact):
         """First flap of the public 3 MW blade: 0.932 Hz at zero speed, +10.3 % at 20 rpm (printed digits)."""
         value = {}

@@ -98,6 +98,7 @@ def test_spatial_loop_on_a_rotating_hub() -> None:
     compare(*spatial_loop())
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=3, max_size=5),

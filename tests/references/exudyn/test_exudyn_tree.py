@@ -35,6 +35,7 @@ def test_tip_mass(omega, flapwise):
     assert (abs(value[1] - flapwise) < 0.5 * np.array(last_digit)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("omega", [0.0, 8.0])
 def test_torsion_with_rotary_inertia(omega):
     """ω² = ((2k−1)π/2)² GJ/I_x + Ω² (I_z − I_y)/I_x: rotor blades rotate towards flat (the propeller moment)."""
@@ -126,12 +127,14 @@ def limit(blade, omega):
     return fine + (fine - coarse) / 3, solve.modes(blade, omega, 60, 5).frequencies
 
 
+@pytest.mark.slow
 def test_a_blade_with_all_properties():
     """Coupled, curved, sheared, twisted, tapered, offset, coned, pitched."""
     found, core = limit(replace(curved(), precone=0.3), 3.0)
     np.testing.assert_allclose(found, core, rtol=2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("omega", [2.0, 8.0])
 def test_a_twisted_blade_with_precone_has_a_steady_state(omega):
     """It needs speed steps: from zero to full speed in one step Newton's method diverges."""
@@ -147,6 +150,7 @@ def test_no_axial_and_torsional_joints_without_such_stiffness_in_the_input():
     np.testing.assert_allclose(found, core, rtol=2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("precone", [0.0, 0.2])
 def test_a_flap_hinge(precone):
     """In the steady state it rotates until the blade is almost flat."""
@@ -155,6 +159,7 @@ def test_a_flap_hinge(precone):
     np.testing.assert_allclose(found, core, rtol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "root", [[80.0, 60.0, 40.0, *3 * [np.inf]], [*3 * [np.inf], 2.0, 5.0, 7.0]], ids=["slides", "turns"]
 )

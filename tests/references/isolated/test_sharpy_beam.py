@@ -32,6 +32,7 @@ def core(blade: Blade, omega: float, count: int = 5) -> Array:
     return solve.modes(blade, omega, 80, count, allow_large_strain=True).frequencies
 
 
+@pytest.mark.slow
 @needs_sharpy
 @pytest.mark.parametrize(
     ("blade", "omega", "rtol"),
@@ -49,6 +50,7 @@ def test_uniform_blades(blade: Blade, omega: float, rtol: float) -> None:
     np.testing.assert_allclose(CODE.solve(blade, omega, 24, 5).frequencies, core(blade, omega), rtol=rtol)
 
 
+@pytest.mark.slow
 @needs_sharpy
 @pytest.mark.parametrize(
     ("blade", "omega"),
@@ -67,6 +69,7 @@ def test_varying_blades_extrapolate_to_core(blade: Blade, omega: float) -> None:
     np.testing.assert_allclose(fine + (fine - coarse) / 3, core(blade, omega), rtol=1e-4)
 
 
+@pytest.mark.slow
 @needs_sharpy
 @pytest.mark.parametrize(
     ("blade", "omega", "levels", "order"), [(PARK, 10.0, (6, 12, 24), 4), (tapered(), 3.0, (20, 40, 80), 2)]

@@ -43,6 +43,7 @@ both = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.slow
 @both
 @pytest.mark.parametrize(
     ("blade", "omega"),

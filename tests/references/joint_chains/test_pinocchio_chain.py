@@ -32,6 +32,7 @@ def core(blade: Blade, omega: float, elements: int, count: int) -> Array:
     return solve.modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed").frequencies
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("blade", "omega", "elements"),
     [
@@ -65,6 +66,7 @@ def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int)
     np.testing.assert_allclose(found, core(blade, omega, elements, 10), rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_shapes_agree_with_core() -> None:
     """Between nodes too: the chain's spline against core's shape functions."""
     ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)

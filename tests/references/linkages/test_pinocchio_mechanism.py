@@ -79,6 +79,7 @@ def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvatu
     assert abs(answer.values[0]) == pytest.approx(np.sqrt(mass * G * arm / (moment + mass * arm**2)), rel=1e-12)
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=3, max_size=5),

@@ -17,6 +17,8 @@ from southwell.references.protocol.worker import answers
 
 from ...support.misdeeds import ANSWERS, DECLARATIONS, TABLE, Misdeed, answering, declaring, module
 
+pytestmark = pytest.mark.slow
+
 BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
 LIMITS = Limits(seconds=4.0, memory=3 * 2**28)

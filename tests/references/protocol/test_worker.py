@@ -41,6 +41,7 @@ def test_answers_come_back_bit_for_bit_and_in_order() -> None:
         np.testing.assert_array_equal(modes.shapes, np.full((3, 21, 4), 1.0 / 3.0 + 2.0j / 7.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("attribute", "reported"),
     [("SEGFAULT", "SIGSEGV"), ("ABORT", "SIGABRT"), ("LEAVE", "exit status 3: library: licence not found")],
@@ -52,6 +53,7 @@ def test_finished_runs_survive_a_crash(attribute: str, reported: str) -> None:
     assert reported in failure(second).reason
 
 
+@pytest.mark.slow
 def test_a_hang_ends_with_its_time_limit_children_included() -> None:
     began = time.monotonic()
     first, second, _ = ask("HANG", timeout=5.0)
@@ -64,6 +66,7 @@ def test_prints_of_a_code_do_not_reach_the_protocol() -> None:
     assert all(isinstance(answer, Modes) for answer in ask("CHATTER"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("attribute", "kind", "reported"),
     [

@@ -66,6 +66,7 @@ def test_agrees_with_core_without_the_same_effects(blade: Blade, omega: float, c
     np.testing.assert_allclose(frequencies(blade, omega, 80, count), core(blade, omega, count), rtol=rtol)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("blade", "omega"),
     [

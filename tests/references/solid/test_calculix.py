@@ -46,6 +46,7 @@ def test_square_cantilever() -> None:
     assert (mac(turning, beam).diagonal() > 0.999).all()
 
 
+@pytest.mark.slow
 @needs_skfem
 @pytest.mark.parametrize("omega", [0.0, SPEED])
 def test_twisted_blade_three_ways(omega: float) -> None:

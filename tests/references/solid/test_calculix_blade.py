@@ -46,6 +46,7 @@ def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
     np.testing.assert_allclose(found, solve.modes(PARK, 0.0, 60, 6).frequencies, rtol=2e-5)
 
 
+@pytest.mark.slow
 @needs_ccx
 @pytest.mark.parametrize(
     ("blade", "omega", "rtol"),

@@ -156,6 +156,7 @@ def git(folder: Path, *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(BASH is None or shutil.which("git") is None, reason="no bash, or no git")
 def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     """The two steps that read and write it, as they stand, against a repository beside."""

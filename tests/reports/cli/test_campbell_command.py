@@ -109,6 +109,7 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     assert (out / "campbell.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mesh", ["", "--accuracy 1e-4", "--elements 8"])
 def test_every_frequency_has_an_uncertainty_that_holds(
     mesh: str, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -134,6 +135,7 @@ def test_every_frequency_has_an_uncertainty_that_holds(
         assert "relative_uncertainty" in (tmp_path / "out" / name).read_text().splitlines()[0].split(",")
 
 
+@pytest.mark.slow
 def test_large_strains_are_refused_unless_allowed_and_then_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -170,6 +172,7 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     np.testing.assert_allclose(found, modes(blade, 20.0, 8, 6).frequencies, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not os.environ.get("SOUTHWELL_BLADES"), reason="set SOUTHWELL_BLADES to public blade files")
 @pytest.mark.parametrize(
     ("file", "mount", "first"),
@@ -194,6 +197,7 @@ def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
     assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flap 1", "edge 1", "flap 2"]
 
 
+@pytest.mark.slow
 def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, shown, _ = southwell(f"campbell park-blade --modes 1 --elements 10 -o {tmp_path / 'out'}", capsys)
     assert status == 0
@@ -247,6 +251,7 @@ def test_a_bad_load_is_one_line(
     assert all(word in err for word in words)
 
 
+@pytest.mark.slow
 def test_several_processes_give_the_same_numbers(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

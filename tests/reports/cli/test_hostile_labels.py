@@ -30,6 +30,7 @@ def variants(folder: Path, label: str) -> str:
     return str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["show", "campbell"])
 @pytest.mark.parametrize(
     "label", ["../../x", "/var/tmp/southwell-escaped", "..", ".", "a/../../b", "[/]", "<img src=x>"]

@@ -55,6 +55,7 @@ def test_what_is_written_has_the_same_frequencies(
     np.testing.assert_allclose(frequencies(again), frequencies(readers.read(source, given)), rtol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "to"),
     [

@@ -78,6 +78,7 @@ def test_nrel_5mw_says_how_it_was_read(capsys: pytest.CaptureFixture[str]) -> No
     assert "rigid" in out
 
 
+@pytest.mark.slow
 def test_figure_and_table_of_all_stations(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     for folder in ("a", "b"):
         status, out, _ = run(capsys, str(DATA / "bmodes.bmi"), "-o", str(tmp_path / folder))
@@ -117,7 +118,7 @@ def test_blades_of_a_case_each_have_a_folder(
         ([str(DATA / "beamdyn_main.dat"), "--multipliers", "1,1,1"], "beamdyn_main.dat: multipliers: BeamDyn has none"),
         ([str(DATA / "elastodyn_blade.dat"), "--length", "-1"], "--length -1: not a length"),
         ([str(DATA / "elastodyn_blade.dat"), "--precone", "nan"], "--precone nan: not a finite number"),
-        (["park-blade", "--length", "50"], "a case says itself"),
+        (["park-blade", "--length", "50"], "a case defines"),
         (["park-bald"], "did you mean park-blade?"),
     ],
 )

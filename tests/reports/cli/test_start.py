@@ -29,6 +29,7 @@ except SystemExit:
     assert python(code, tmp_path).stdout.splitlines()[-1] == "loaded: []"
 
 
+@pytest.mark.slow
 def test_importing_the_package_loads_no_numerical_library_and_every_name_is_there(tmp_path: Path) -> None:
     code = f"""
 import sys, southwell

@@ -17,6 +17,7 @@ def shell(line: str, **variables: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(["bash", "-c", line], env={**os.environ, **variables}, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "variables", "status", "errors"),
     [
@@ -33,6 +34,7 @@ def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], st
     assert (done.returncode, done.stderr.count("\n")) == (status, errors), done.stderr
 
 
+@pytest.mark.slow
 def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Path) -> None:
     folder = tmp_path / "a b\nü'$x"
     folder.mkdir()

@@ -39,6 +39,7 @@ def data(path: Path) -> Any:
     return json.loads(found[1])
 
 
+@pytest.mark.slow
 def test_every_cell_is_there_and_the_first_page_is_small(tmp_path: Path) -> None:
     first = data(write({"a run": run()}, None, tmp_path))
     rows = run().cells
@@ -53,6 +54,7 @@ def test_every_cell_is_there_and_the_first_page_is_small(tmp_path: Path) -> None
         assert cell[7] == row.reason
 
 
+@pytest.mark.slow
 def test_the_worst_cell_of_many_is_the_worst_of_the_readmes(tmp_path: Path) -> None:
     """The table of all results, written by other code, against what a code's page says."""
     write({"a run": run()}, None, tmp_path)
@@ -61,6 +63,7 @@ def test_the_worst_cell_of_many_is_the_worst_of_the_readmes(tmp_path: Path) -> N
     assert worst["tip-mass"].split(" ± ")[0].lstrip("+−") in row
 
 
+@pytest.mark.slow
 def test_a_small_failure_is_named_before_large_known_differences(tmp_path: Path) -> None:
     cells = list(run().cells)
     k = next(k for k, c in enumerate(cells) if (c.case, c.code, c.verdict) == ("park-cantilever", "pybmodes", "pass"))
@@ -134,6 +137,7 @@ def test_cores_lines_are_cores_where_a_code_gives_another_mode_the_same_name() -
     ]
 
 
+@pytest.mark.slow
 def test_nothing_is_fetched_from_anywhere(tmp_path: Path) -> None:
     write({"a run": run()}, history.read(kept(tmp_path / "h.jsonl")), tmp_path / "site")
     for file in (tmp_path / "site").rglob("*"):
@@ -144,6 +148,7 @@ def test_nothing_is_fetched_from_anywhere(tmp_path: Path) -> None:
                 assert (file.parent / name).is_file()
 
 
+@pytest.mark.slow
 def test_no_text_of_a_case_is_markup(tmp_path: Path) -> None:
     write({HOSTILE: hostile()}, None, tmp_path)
     for file in tmp_path.glob("*.html"):
@@ -249,6 +254,7 @@ def test_every_number_is_in_the_history(tmp_path: Path) -> None:
             assert frequencies == c.frequency
 
 
+@pytest.mark.slow
 def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "run"
     folder.mkdir()

@@ -21,10 +21,13 @@ from ...support.dashboards import ABSENT, HOSTILE, LOST, WORSE, hostile, kept, r
 BROWSER = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
 )
-pytestmark = pytest.mark.skipif(
-    BROWSER is None or find_spec("playwright") is None,
-    reason="needs Chromium (Debian: apt install chromium), and: pip install playwright",
-)
+pytestmark = [
+    pytest.mark.skipif(
+        BROWSER is None or find_spec("playwright") is None,
+        reason="needs Chromium (Debian: apt install chromium), and: pip install playwright",
+    ),
+    pytest.mark.slow,
+]
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +154,7 @@ def test_the_verdict_is_said_first(tab: Any, site: Path) -> None:
     first, worst, *_ = tab.locator("#headline p").all_inner_texts()
     assert first.startswith(f"Nothing contradicts core. {len(run().cells)} cells: ")
     said = re.fullmatch(
-        r"Worst difference .*: ✔ (\S+ % ± \S+ %): (\S+), (\S+), (\w+ \d), (.+); target (\S+ %)\.", worst
+        r"Worst independent answer.*: ✔ (\S+ % ± \S+ %): (\S+), (\S+), (\w+ \d), (.+); target (\S+ %)\.", worst
     )
     assert said
     size, case, code, *_ = said.groups()

@@ -53,12 +53,14 @@ def typed(part: str) -> list[str]:
     return [str(Path(sysconfig.get_path("scripts"), program)), *arguments]
 
 
+@pytest.mark.slow
 def test_it_passes_what_every_adapter_must(folder: Path) -> None:
     done = run(folder, *typed("conform"))
     assert done.returncode == 0, done.stdout + done.stderr
     assert re.search(r"My finite elements: 1\d pass, \d+ not applicable$", done.stdout.strip())
 
 
+@pytest.mark.slow
 def test_its_own_tests_pass(folder: Path) -> None:
     done = run(folder, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_my_code.py")
     assert done.returncode == 0, done.stdout
@@ -71,6 +73,7 @@ def cells(folder: Path, part: str, installed: bool = False) -> list[results.Cell
     return [c for c in results.read(folder / "my-report" / "results.jsonl").cells if c.code == "my-code"]
 
 
+@pytest.mark.slow
 def test_it_is_in_the_matrix(folder: Path) -> None:
     """Passes, or known differences by what it says it leaves out; nothing else."""
     found = cells(folder, "--codes my_code:CODE")
@@ -87,6 +90,7 @@ def test_once_installed_it_goes_by_its_name(folder: Path) -> None:
     assert {c.verdict for c in found} == {"pass"}
 
 
+@pytest.mark.slow
 def test_once_installed_it_is_listed(folder: Path) -> None:
     listed = run(folder, *typed("southwell codes"), installed=True).stdout
     row = next(line for line in listed.splitlines() if "my-code" in line)  # its longer fields may go on below

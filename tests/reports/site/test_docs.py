@@ -96,6 +96,7 @@ def test_the_api_has_every_module() -> None:
 # ------------------------------------------------------------------------------------------------------- what is typed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "page",
     [
@@ -133,6 +134,7 @@ def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=300)
 
 
+@pytest.mark.slow
 def test_the_cells_of_the_notebook_run_in_their_order(tmp_path: Path) -> None:
     """Without a kernel; the last line of each is shown by its HTML or its text."""
     cells = json.loads((DOCS / "first-blade.ipynb").read_text(encoding="utf-8"))["cells"]

@@ -71,6 +71,7 @@ def test_a_solver_without_the_coriolis_force_would_be_seen(monkeypatch: pytest.M
     assert differences(without, 3.0)[1].max() > 0.1
 
 
+@pytest.mark.slow
 def test_the_rings_difference_is_discretisation() -> None:
     """Of fourth order: twice the elements, a difference 16 times as small (at least ten)."""
     ring = FORMS[-1]

@@ -45,7 +45,7 @@ RUN = Run(
     cells=(
         cell("scikit-fem", "first", 2e-4, "pass"),
         cell("scikit-fem", "first", -5e-4, "pass", mode=2),
-        cell("scikit-fem", "second", 0.25, "fail", reason="25 % is more than 0.1 %"),
+        cell("scikit-fem", "second", 0.25, "fail", reason="25 % exceeds 0.1 %"),
         cell("scikit-fem", "third", None, "not applicable", reason="prebend or sweep"),
         cell("exudyn-tree", "first", 7e-4, "pass"),
     ),
@@ -69,7 +69,7 @@ def test_the_largest_difference_of_each_blade_is_the_runs() -> None:
     assert head == ["blade", "cells", "worst difference", "where", "why"]
     assert body == [
         ["first", "2 ✔", "✔ −0.0500 % ± 0.0010 %", "flapwise 2, 10 rad/s", ""],
-        ["second", "1 ✘", "✘ +25 % ± 0.0010 %", "flapwise 1, 10 rad/s", "25 % is more than 0.1 %"],
+        ["second", "1 ✘", "✘ +25 % ± 0.0010 %", "flapwise 1, 10 rad/s", "25 % exceeds 0.1 %"],
         ["third", "1 –", "", "", "prebend or sweep"],
     ]
 
@@ -84,7 +84,7 @@ def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
 def test_a_page_says_version_refusals_and_defects() -> None:
     text = code_pages.page(RUN, described("scikit-fem"))
     assert text.startswith("# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with core: **nothing**.")
-    taken = {row[0]: row[1] for row in rows(text.partition("## What it takes")[2])}
+    taken = {row[0]: row[1] for row in rows(text.partition("## Accepted properties")[2])}
     assert taken["twist"] == "taken"
     assert taken["shear flexibility"].startswith("refused: finite shear stiffness")
     assert "An `ElementLineHermite` used on a second mesh" in text
@@ -98,7 +98,7 @@ def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
 
 def test_a_code_without_cells_or_defects_says_so() -> None:
     text = code_pages.page(RUN, described("exact-beam"))
-    assert "This run has no cells of it." in text
+    assert "This run has no cells of this code." in text
     assert "None known." in text
 
 

@@ -54,6 +54,7 @@ def all_figures(run: Run) -> list[Figure]:
     return [drawn(draw(run, "beam", RAD_S)) for draw in (campbell, differences, convergence)]
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path, lumped: Run) -> None:
     for k in range(2):
         for j, figure in enumerate([*all_figures(samples.run()), drawn(lumping_figure(lumped))]):

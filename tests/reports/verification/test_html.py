@@ -58,6 +58,7 @@ def report(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-m", "southwell", "report", *arguments], capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_one_command_writes_one_file_that_needs_no_other(folder: Path) -> None:
     done = report(str(folder), "--html")
     assert done.returncode == 0, done.stderr
@@ -81,7 +82,7 @@ def test_links_lead_to_headings(folder: Path) -> None:
     names = [given["id"] for tag, given in page.tags if tag in ("h1", "h2", "h3")]
     assert len(names) == len(set(names))
     targets = [address.removeprefix("#") for address in page.of("a", "href")]
-    assert {"beam", "bladestiff", "versions", "to-reproduce"} <= set(targets) <= set(names)
+    assert {"beam", "bladestiff", "versions", "reproduce"} <= set(targets) <= set(names)
 
 
 def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path) -> None:
@@ -133,6 +134,7 @@ def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
     assert not [name for _, given in page.tags for name in given if name.startswith("on")]
 
 
+@pytest.mark.slow
 def test_a_pdf_or_what_is_missing_for_it(folder: Path) -> None:
     done = report(str(folder), "--pdf")
     if importlib.util.find_spec("weasyprint"):

@@ -51,7 +51,7 @@ def test_they_are_counted_by_themselves_and_explained() -> None:
     assert line.endswith("beam, rig, flapwise 1, 13 rad/s); not visible in 1.")
     (row,) = (r for r in evidence.rows(WITH) if r["evidence"].startswith("measured data"))
     assert row["answers"] == "2 ◇"
-    assert "at least 6.0 %" in row["worst, for its target"]
+    assert "at least 6.0 %" in row["worst, relative to target"]
     text = report.render(WITH, {})
     assert "### Measured data" in text
     assert text.count(r"u\_D 2.00 %") == text.count(r"u\_D 20.00 %") == 1

@@ -195,7 +195,7 @@ BAD = {
         r"line 18: BlFract: 1e-300: not beyond the station before it",
     ),
     "no name": (("AdjBlMs ", ""), r"bad.dat: AdjBlMs: not there: cut short, or the names removed"),
-    "multiplier": (("1.5   AdjFlSt", "-1   AdjFlSt"), r"line 12: AdjFlSt: -1: it multiplies"),
+    "multiplier": (("1.5   AdjFlSt", "-1   AdjFlSt"), r"line 12: AdjFlSt: -1: a factor must be positive"),
     "multiplier no number": (("1.5   AdjFlSt", "one   AdjFlSt"), r"line 12: AdjFlSt: 'one' is not a finite number"),
     "no column": (("StrcTwst ", "Twist "), r"line 15: no column StrcTwst"),
 }

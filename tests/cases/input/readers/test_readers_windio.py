@@ -33,7 +33,12 @@ def put(data: dict[str, Any], key: str, value: object) -> dict[str, Any]:
 
 
 BAD: list[tuple[int, str, object, str]] = [
-    (1, f"{BLADE}.elastic_properties_mb", {}, "components.blade: no 6×6 matrices: .* computed from the layers first"),
+    (
+        1,
+        f"{BLADE}.elastic_properties_mb",
+        {},
+        "components.blade: no 6×6 matrices: .* compute them from the layers first",
+    ),
     (1, f"{MB}.stiff_matrix.grid", [0, 0.4, 0.9], "stiff_matrix.grid: 0.9: .*begin at 0 and end at 1"),
     (1, f"{MB}.stiff_matrix.grid", [0.1, 0.4, 1], "stiff_matrix.grid: 0.1: .*begin at 0 and end at 1"),
     (1, f"{MB}.stiff_matrix.grid", [0, 0, 1], "stiff_matrix.grid: 0: not beyond the one before: a duplicate"),
