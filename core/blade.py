@@ -3,7 +3,7 @@
 Axes, defined here and converted by each adapter (right-handed, all rotating with the hub):
 
 * ``x`` runs along the blade, from the hub's centre outwards;
-* ``z`` is the rotor's axis: the rotor turns at ``omega`` about ``+z``;
+* ``z`` is the rotor's axis: the rotor rotates at ``omega`` about ``+z``;
 * ``y = z × x`` lies in the plane of rotation, in the direction of motion.
 
 Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
@@ -48,7 +48,7 @@ class Blade:
         tip_mass: (6, 6) inertia of a rigid body at the tip, in the tip section's axes.
         root: (6,) stiffness of the root joint along and about the blade's axes there (pitched, not twisted), N/m and
             N m/rad: ``inf`` clamps (the default for all six), 0 is free, any other number is a spring. The blade slides
-            along x, y and z, then turns about x, y and z in sequence; each spring acts on one of these coordinates.
+            along x, y and z, then rotates about x, y and z in sequence; each spring acts on one of these coordinates.
         kinks: inner stations where the curve's tangent jumps, m. Each piece between kinks is a separate spline; a piece of
             two stations is straight. The sections rotate with the tangent.
 

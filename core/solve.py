@@ -38,7 +38,7 @@ def modes(
     load: Array | None = None,
     allow_large_strain: bool = False,
 ) -> Modes:
-    """The lowest modes of a blade turning steadily at ``omega``, with their relative uncertainties.
+    """The lowest modes of a blade in steady rotation at ``omega``, with their relative uncertainties.
 
     Args:
         blade: the blade.
@@ -52,7 +52,7 @@ def modes(
         stiffness: ``corotational``, or ``body_fixed``: linear in the parent body's frame (Park et al. 2010).
         effects: physical effects included.
         gravity: (3,) m/s², in the hub's axes at the azimuth of interest.
-        load: (n, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them.
+        load: (n, 3) steady force per length at the blade's stations, N/m, in the rotating axes of the hub.
         allow_large_strain: accept steady strains above ``LARGEST_STRAIN``.
 
     Raises:

@@ -48,7 +48,7 @@ def modes(
     gravity: Array | None = None,
     load: Array | None = None,
 ) -> Modes:
-    """The lowest modes of a blade turning steadily at ``omega``; arguments, units and result as for ``solve.modes``.
+    """The lowest modes of a blade in steady rotation at ``omega``; arguments, units and result as for ``solve.modes``.
 
     Raises:
         ValueError: as ``solve.modes``; more than ``MAX_ELEMENTS`` elements; effects without prestretch or geometric

@@ -1,4 +1,4 @@
-"""Mechanisms on a turning base whose eigenvalues are known in closed form, core's of the same, and what lies between.
+"""Mechanisms on a rotating base with closed-form eigenvalues, core's eigenvalues of them, and the differences.
 
 Each is a function of the speed Ω: ``exact`` gives one eigenvalue λ (1/s) of each pair, ``iω`` where it oscillates and a real
 growth rate where the steady state has lost its stability.

@@ -28,7 +28,7 @@ def bar(name: str, length: float, mass: float) -> mb.Body:
 
 
 def slider_crank(omega: float) -> mb.Mechanism:
-    """Crank, rod and slider in line on a table that turns about the crank's pivot, a torsion spring there; a closed loop."""
+    """Crank, rod and slider in line on a table that rotates about the crank's pivot, a torsion spring there; a closed loop."""
     return mb.Mechanism(
         (
             mb.Body("table"),
@@ -51,7 +51,7 @@ def slider_crank(omega: float) -> mb.Mechanism:
 def slider_crank_values(omega: float) -> Complex:
     """``ω² = [k + Ω² (m_s (r + l) r (1 + r/l) + ½ m_l r l (1 + r/l)²)]/[(m_r + m_l) r²/3]``.
 
-    From ``V = ½ k θ² − ½ Ω² Σ m |x|²`` about the line of centres, where the rod turns by −(r/l) θ and the slider rests.
+    From ``V = ½ k θ² − ½ Ω² Σ m |x|²`` about the line of centres, where the rod rotates by −(r/l) θ and the slider rests.
     """
     r, rod = CRANK, CONNECTING
     pulled = _SLIDER_MASS * (r + rod) * r * (1 + r / rod) + 0.5 * _CONNECTING_MASS * r * rod * (1 + r / rod) ** 2
@@ -64,7 +64,7 @@ _ROCKER_MASS, _COUPLER_MASS = 1.5, 3.0
 
 
 def parallelogram(omega: float) -> mb.Mechanism:
-    """A parallelogram of four bars on a table that turns about the crank's pivot, a torsion spring there; a closed loop."""
+    """A parallelogram of four bars on a table that rotates about the crank's pivot, a torsion spring there; a closed loop."""
     return mb.Mechanism(
         (
             mb.Body("table"),
@@ -93,7 +93,7 @@ def parallelogram_angle(omega: float) -> float:
 
 
 def parallelogram_values(omega: float) -> Complex:
-    """``ω² = (k + ½ Ω² c cos θ)/[(m_crank + m_rocker) a²/3 + m_coupler a²]``: the coupler moves without turning."""
+    """``ω² = (k + ½ Ω² c cos θ)/[(m_crank + m_rocker) a²/3 + m_coupler a²]``: the coupler moves without rotation."""
     outward = 0.5 * omega**2 * (_COUPLER_MASS + _ROCKER_MASS) * _SHORT * _LONG
     moved = (2 * _ROCKER_MASS / 3 + _COUPLER_MASS) * _SHORT**2
     return np.array([1j * np.sqrt((_TORSION + outward * np.cos(parallelogram_angle(omega))) / moved)])
@@ -106,7 +106,7 @@ ARCS = 16
 
 
 def ring(omega: float, arcs: int = ARCS) -> mb.Mechanism:
-    """A thin ring of curved beams, free on a frame that turns about the ring's axis: a closed loop."""
+    """A thin ring of curved beams, free on a frame that rotates about the ring's axis: a closed loop."""
     angle, nine = np.linspace(0.0, 2 * np.pi / arcs, 9), np.ones(9)
     arc = Blade(
         "arc",
@@ -132,7 +132,7 @@ def ring(omega: float, arcs: int = ARCS) -> mb.Mechanism:
 
 
 def ring_values(omega: float) -> Complex:
-    """``n [±(n² − 1) √(Ω² + (n² + 1) EI/(μ R⁴)) − 2 Ω]/(n² + 1)``, in-plane, inextensible, seen turning (Carrier 1945)."""
+    """``n [±(n² − 1) √(Ω² + (n² + 1) EI/(μ R⁴)) − 2 Ω]/(n² + 1)``, inextensible, in the rotating frame (Carrier 1945)."""
     out = []
     for n in (2, 3):
         root = (n**2 - 1) * np.sqrt(omega**2 + (n**2 + 1) * _EI / (_LINE * _RADIUS**4))

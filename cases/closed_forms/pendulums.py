@@ -18,7 +18,7 @@ MASS, KX, KY = 2.0, 50.0, 98.0
 
 
 def turntable(omega: float, kx: float = KX, ky: float = KY) -> mb.Mechanism:
-    """A mass on two springs at right angles, on a table that turns."""
+    """A mass on two springs at right angles, on a rotating table."""
     return mb.Mechanism(
         (mb.Body("table"), mb.Body("slide"), mb.Body("mass", mb.inertia(MASS))),
         (
@@ -44,7 +44,7 @@ LENGTH = 1.0
 
 
 def pendulum(omega: float, prescribed: bool) -> mb.Mechanism:
-    """A bob on an arm that swings in a plane, which turns at a prescribed rate, or freely."""
+    """A bob on an arm that swings in a plane, which rotates at a prescribed rate or freely."""
     return mb.Mechanism(
         (mb.Body("arm"), mb.Body("bob", mb.inertia(1.0, 0.0, (0.0, 0.0, -LENGTH)))),
         (
@@ -57,7 +57,7 @@ def pendulum(omega: float, prescribed: bool) -> mb.Mechanism:
 
 
 def pendulum_values(omega: float) -> Complex:
-    """``√(g/l − Ω²)`` hanging; with ``cos θ = g/(l Ω²)``, ``Ω sin θ``, and ``Ω √(1 + 3 cos² θ)`` if the plane turns freely."""
+    """``√(g/l − Ω²)`` hanging; with ``cos θ = g/(l Ω²)``, ``Ω sin θ``, and ``Ω √(1 + 3 cos² θ)`` if it rotates freely."""
     cosine = G / (LENGTH * omega**2) if omega else np.inf
     if cosine >= 1.0:
         return np.array([1j * np.sqrt(G / LENGTH - omega**2), np.nan])
@@ -101,7 +101,7 @@ ROD = 1.0
 
 
 def double_pendulum(omega: float) -> mb.Mechanism:
-    """Two equal bobs on equal massless rods, one below the other, in a plane that turns at a prescribed rate."""
+    """Two equal bobs on equal massless rods, one below the other, in a plane that rotates at a prescribed rate."""
     bob, pin = mb.inertia(1.0, 0.0, (0.0, 0.0, -ROD)), mb.at(axis="y")
     return mb.Mechanism(
         (mb.Body("yoke"), mb.Body("upper", bob), mb.Body("lower", bob)),

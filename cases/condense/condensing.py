@@ -31,7 +31,7 @@ class Condensation:
     """Result of the condensation of a file.
 
     Attributes:
-        told: what it says.
+        spec: content of the file.
         blade: the compressed model.
         freedoms: of the finite element models.
         resisted: the largest part of the forces in a model that one of its rigid motions leaves unbalanced.

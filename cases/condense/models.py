@@ -48,13 +48,13 @@ class Whole:
 
 
 def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whole:
-    """The model that ``spec`` names, what it leaves out taken from ``common``.
+    """The model in ``spec``, with missing keys from ``common``.
 
     Args:
-        path: of the file that says it; other files lie beside it.
-        field: where in it, for messages.
-        told: the model.
-        common: what is said for all segments.
+        path: the file with the model; other paths are relative to its folder.
+        field: position in the file, for messages.
+        spec: the model.
+        common: defaults for all segments.
         units: of nodes and matrices.
 
     Raises:

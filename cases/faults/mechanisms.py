@@ -111,7 +111,7 @@ FAULTS = (
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
           ((mechanism_columns, "answers", _given(_still)),), ASKED),
     Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
-          ((mechanism_columns, "alike", _by_number),), blinds="mechanism: shapes told of others"),
-    Fault("mechanism: shapes told of others", "adapter", "every shape is a mixture of two", "MAC 0.5",
+          ((mechanism_columns, "alike", _by_number),), blinds="mechanism: mixed shapes"),
+    Fault("mechanism: mixed shapes", "adapter", "every shape is a mixture of two", "MAC 0.5",
           ((mechanism_columns, "answers", _answered(_mixed)),), DAMPED),
 )  # fmt: skip

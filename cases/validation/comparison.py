@@ -1,6 +1,6 @@
 """The Sandia rotor's frequencies, simulated over the speeds and compared with the measured ones point by point.
 
-Modes are told apart by what the rotor's symmetry gives: turned by half a turn about its axis, a mode is itself (S) or its
+Modes are distinguished by the rotor's symmetry: rotated by half a turn about its axis, a mode is itself (S) or its
 negative (A); and the blades move in their own plane (flatwise, F) or across it (edgewise, E). ``FA 2`` is the second
 flatwise antisymmetric one, counted from the lowest.
 """

@@ -1,6 +1,6 @@
 """The Sandia 34 m vertical-axis test bed: two curved blades and four struts on a tower, seen in the rotating frame.
 
-Seen in the frame that turns with the rotor about the tower's axis z, gravity along z included, all coefficients are constant.
+In the frame that rotates with the rotor about the tower's axis z, gravity along z included, all coefficients are constant.
 Every member is a chain of straight elements between nodes on its axis; the nodes' frames are parallel to the rotor's at
 rest. Loops close where the blades and struts meet the tower, and where the bearing holds its top. Numbers: ``sandia34.toml``.
 
@@ -126,7 +126,7 @@ def members(how: Variation) -> tuple[Member, ...]:
 
 
 def mechanism(omega: float, how: Variation | None = None) -> mb.Mechanism:
-    """The rotor turning at ``omega`` (rad/s) about its tower, whose base is clamped and whose top is free only in yaw."""
+    """The rotor at ``omega`` (rad/s) about its tower, whose base is clamped and whose top is free only in yaw."""
     how = how or Variation()
     all_ = {m.name: m for m in members(how)}
     tower = all_["tower"]

@@ -15,7 +15,7 @@ from . import root_joint
 
 
 def mechanism(chain: Chain, omega: float, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
-    """Hub turning at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection.
+    """Hub rotating at ``omega`` about z, node 0 fixed to it, every further node on an elastic connection.
 
     Args:
         chain: the blade, clamped or on a joint; its loads turn with the hub.

@@ -86,7 +86,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xlabel("fraction of span", size=8, labelpad=2)
             else:
                 axes.set_xticklabels([])
-        turns = f"torsion: turning × radius of gyration, {arm:.3g} m" if arm else "torsion has no mass in this blade"
+        turns = f"torsion: rotation × radius of gyration, {arm:.3g} m" if arm else "torsion has no mass in this blade"
         title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest displacement 1; {turns}")
         handles = [Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flap", "edge")]
         if arm:

@@ -67,7 +67,7 @@ def _arc(axis: Axis, z: Array) -> Array:
 
 
 def resolved(axis: Axis, s: Array) -> Array:
-    """The arc lengths ``s`` (n,), with more inserted where the curve turns by more than ``TURN``, for core's spline."""
+    """The arc lengths ``s`` (n,), with more inserted where the curve bends by more than ``TURN``, for core's spline."""
     fine = (s[:-1, None] + np.diff(s)[:, None] * np.linspace(0, 1, FINE)).ravel()
     t = _tangents(axis, np.interp(fine, axis.arc, axis.z)).reshape(-1, FINE, 3)
     turn = np.linalg.norm(np.diff(t, axis=1), axis=2).sum(1)

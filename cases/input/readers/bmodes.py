@@ -73,6 +73,11 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
 
     tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
+    if tip <= hub_radius:
+        raise CaseError(
+            f"{main.at(named['radius'][0])}: radius: {tip:g} m is not beyond hub_rad, {hub_radius:g} m: no blade between "
+            "them; correct one"
+        )
     stated = Mount(
         length=tip - hub_radius,
         hub_radius=hub_radius,

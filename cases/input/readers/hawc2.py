@@ -92,7 +92,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             "section planes are perpendicular to the half-chord line, rotated from the blade axes by the smallest angle"
         )
     else:
-        notes.append("no htc file: the half-chord line straight and untwisted: only `pitch` turns the sections")
+        notes.append("no htc file: the half-chord line is straight and untwisted; only `pitch` rotates the sections")
     mounted = complete(mount, None)
     open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is None]
     if open_:

@@ -4,7 +4,7 @@
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const MAIN = document.getElementById("main");
 const SVG = "http://www.w3.org/2000/svg";
-// Okabe and Ito's colours, told apart without telling red from green
+// Okabe and Ito's colours, distinguishable without red–green vision
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a6d00", "#7a7a7a"];
 
 function make(name, attributes = {}, ...children) {

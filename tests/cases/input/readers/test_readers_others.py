@@ -290,6 +290,13 @@ BAD = {
         Mount(),
         r"line 9: radius: 'big' is not a finite number",
     ),
+    "bmi no length": (
+        BMI,
+        "22.0      radius:",
+        "2.0      radius:",
+        Mount(),
+        r"line 9: radius: 2 m is not beyond hub_rad, 2 m",
+    ),
     "sec count": (SECTIONS, "3         n_secs", "4         n_secs", Mount(), None),
 }
 
