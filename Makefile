@@ -19,12 +19,12 @@ verify: $(INSTALLED)
 	$(BIN)/southwell closed-forms --out reports/out
 	$(BIN)/southwell verify --out reports/out
 
-# a few minutes; what takes longer is in test-slow
+# a few minutes; what takes longer is in test-slow; a file in one process, since its tests share fixtures
 test: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/pytest -n 2 --dist loadfile -m "not slow"
 
 test-slow: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadgroup -m slow
+	$(BIN)/pytest -n 2 --dist loadfile -m slow
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check

@@ -14,13 +14,10 @@ settings.register_profile("nightly", derandomize=False, deadline=None, print_blo
 settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the property tests; keep the tests of a file in one process; leave out what is for the night by default."""
+    """Mark the property tests; leave out what is for the night, unless it is asked for."""
     night = "nightly" in str(config.getoption("-m"))
     for item in items:
-        if not item.get_closest_marker("xdist_group"):
-            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker("random")
     left = [item for item in items if item.get_closest_marker("nightly") and not night]

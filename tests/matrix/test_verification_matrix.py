@@ -46,8 +46,8 @@ NIGHTLY = {
 
 
 def marks(blade: str) -> list[pytest.MarkDecorator]:
-    """One process for a blade; and when."""
-    return [pytest.mark.xdist_group(blade), *([pytest.mark.nightly] if blade in NIGHTLY else [])]
+    """Whether a blade is for the night."""
+    return [pytest.mark.nightly] if blade in NIGHTLY else []
 
 
 @cache
@@ -139,14 +139,12 @@ def test_source_discretisation(blade: str, name: str, omega: float) -> None:
         assert holds(cell) or "discretisation error of" in cell.reason, cell
 
 
-@pytest.mark.xdist_group("park-cantilever")
 def test_the_source_discretisation_prints_what_the_paper_prints() -> None:
     """Park et al. (2010), Table 1, column Present: 11.71, 70.37, 189.7."""
     cells = [c for c in at("park-cantilever", "core, as in the source", 10.0) if c.family == "chordwise"]
     assert [f"{c.frequency:.4g}" for c in cells] == ["11.71", "70.37", "189.7"]
 
 
-@pytest.mark.xdist_group("park-blade/surrogate")
 def test_the_surrogate_rises_as_the_papers_blade_does() -> None:
     """Park et al. (2010), Fig. 3: 8 % at 20 rpm, 16.5 % at 30 rpm at most, which imply 1.06 Hz at rest."""
     (rest, _, twenty, thirty) = [
