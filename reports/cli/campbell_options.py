@@ -31,7 +31,7 @@ def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
     """Gravity in the hub's axes, m/s², at an azimuth and tilt in degrees; zero without an azimuth."""
     if azimuth is None and tilt:
-        raise CaseError(f"--tilt {tilt:g}: the tilt applies to gravity, which needs --azimuth: add --azimuth 0")
+        raise CaseError(f"--tilt {tilt:g}: no effect without --azimuth, since it tilts gravity: add --azimuth 0")
     at, up = angle("--azimuth", azimuth), angle("--tilt", tilt)
     if at is None:
         return 0.0, 0.0, 0.0
