@@ -74,15 +74,16 @@ def fault(matrix: Array) -> str | None:
         i = int(np.argmax(d <= 0))
         return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
     scale = np.sqrt(d)
-    scaled = matrix / scale[:, None] / scale  # np.outer(d, d) may underflow
+    with np.errstate(over="ignore"):
+        scaled = matrix / scale[:, None] / scale  # np.outer(d, d) may underflow
+    if not np.isfinite(scaled).all():
+        return "not positive definite: a diagonal entry is far too small for its row: check the exponent"
     i, j = np.unravel_index(np.abs(scaled - scaled.T).argmax(), (6, 6))
     if abs(scaled[i, j] - scaled[j, i]) > 1e-3:
         return (
             f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
             "it must be symmetric; a digit lost? correct one"
         )
-    if not np.isfinite(scaled).all():
-        return "not positive definite: a diagonal entry is far too small for its row: check the exponent"
     least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
     if least <= 0:
         return f"not positive definite (least scaled eigenvalue {least:.2g}): a coupling too large? check the entries"
@@ -96,7 +97,7 @@ def mass_fault(matrix: Array) -> str | None:
     if bad.any():
         i = int(np.argmax(bad))
         return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
-    scale = np.sqrt(np.outer(d, d)) + 1e-9 * d[0]
+    scale = np.sqrt(np.outer(d, d)) + max(1e-9 * d[0], np.finfo(float).tiny)
     i, j = np.unravel_index((np.abs(matrix - matrix.T) / scale).argmax(), (6, 6))
     if abs(matrix[i, j] - matrix[j, i]) > 1e-3 * scale[i, j]:
         return (

@@ -4,11 +4,12 @@ import random
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, Reading
+from southwell.cases.input.readers import Mount, Reading, matrices
 from southwell.tests.support.blade_files import same, samples, written
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
@@ -114,3 +115,13 @@ def test_no_word_in_a_file_gives_a_traceback(folder: Path, first: str, damaged: 
         lines[k] = " ".join(words)
         (folder / damaged).write_text("\n".join(lines) + "\n")
         read(folder / first)
+
+
+@pytest.mark.filterwarnings("error")
+def test_numbers_near_the_smallest_float_hide_no_fault() -> None:
+    mass = np.diag([1e-320, 1e-320, 1e-320, 0.0, 0.0, 0.0])
+    mass[3, 4] = 1.0
+    assert "entries (4, 5) and (5, 4) are 1 and 0" in (matrices.mass_fault(mass) or "")
+    stiffness = np.diag([1e-320, 1.0, 1.0, 1.0, 1.0, 1.0])
+    stiffness[0, 1] = stiffness[1, 0] = 1e200
+    assert "far too small for its row" in (matrices.fault(stiffness) or "")
