@@ -2,16 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...core.effects import Effects
-from ...references.protocol.interface import CodeError, Shares
+from ...references.protocol.interface import CodeError
 from ...references.protocol.mechanism_interface import MechanismCode, MechanismModes
-from .checks import BrokenError, NotForItError
+from .asking import BrokenError, NotForItError, keep, named
 
 Array = NDArray[Any]
 Ask = Callable[[MechanismCode], None]
@@ -27,11 +26,6 @@ DOWN = (0.0, -G, 0.0)
 POINT = mb.inertia(MASS, 0.0, (0.0, -LENGTH, 0.0))
 
 
-def _keep(true: Any, message: str) -> None:
-    if not bool(true):
-        raise BrokenError(message)
-
-
 def _ask(code: MechanismCode, mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> MechanismModes:
     if reason := code.unsupported_mechanism(mechanism):
         raise NotForItError(reason)
@@ -42,11 +36,11 @@ def _are(found: MechanismModes, expected: Any, what: str) -> None:
     """Check the eigenvalues, one of each conjugate pair, in any order."""
     wanted = np.asarray(expected, np.complex128)
     said = f"{what}: {_list(found.values)} 1/s, expected {_list(wanted)}"
-    _keep(len(found.values) == len(wanted), said)
+    keep(len(found.values) == len(wanted), said)
     left = [complex(v.real, abs(v.imag)) for v in found.values]
     for value in wanted:
         near = min(left, key=lambda v: abs(v - value))
-        _keep(abs(near - value) <= NEAR * np.abs(wanted).max(), said)
+        keep(abs(near - value) <= NEAR * np.abs(wanted).max(), said)
         left.remove(near)
 
 
@@ -83,18 +77,9 @@ def hinged(kind: str) -> mb.Mechanism:
 
 def declares(code: MechanismCode) -> None:
     """The declarations of the adapter are valid."""
-    _keep(
-        code.name and not set(code.name) & set(" ,:/\n"),
-        f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
-    )
-    _keep(code.title.strip(), "title: empty")
-    _keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
-    _keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
-    version = code.version()
-    _keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
-    _keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
+    named(code)
     reason = code.unsupported_mechanism(pendulum())
-    _keep(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
+    keep(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
 
 
 def refuses(code: MechanismCode) -> None:
@@ -112,7 +97,7 @@ def refuses(code: MechanismCode) -> None:
         if reason is None:
             continue
         declined = True
-        _keep(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
+        keep(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
         try:
             code.solve_mechanism(mechanism, {})
         except CodeError:
@@ -126,8 +111,8 @@ def hangs(code: MechanismCode) -> None:
     """√(g/l), and the steady state from a guess near it."""
     found = _ask(code, pendulum(), {"hinge.rz": 0.3})
     _are(found, [1j * np.sqrt(G / LENGTH)], "pendulum")
-    _keep(found.coordinates == ("hinge.rz",), f"coordinates: {found.coordinates}, expected ('hinge.rz',)")
-    _keep(abs(found.steady[0]) < 1e-9, f"pendulum: it hangs at {found.steady[0]:.3g} rad, expected 0")
+    keep(found.coordinates == ("hinge.rz",), f"coordinates: {found.coordinates}, expected ('hinge.rz',)")
+    keep(abs(found.steady[0]) < 1e-9, f"pendulum: it hangs at {found.steady[0]:.3g} rad, expected 0")
 
 
 def oscillates(code: MechanismCode) -> None:
@@ -143,7 +128,7 @@ def oscillates(code: MechanismCode) -> None:
     decay = c / (2 * MASS)
     _are(found, [complex(-decay, np.sqrt(k / MASS - decay**2))], "damped slide")
     at = 0.05 - MASS * G / k
-    _keep(abs(found.steady[0] - at) < 1e-9, f"damped slide: it settles at {found.steady[0]:.9g} m, expected {at:.9g}")
+    keep(abs(found.steady[0] - at) < 1e-9, f"damped slide: it settles at {found.steady[0]:.9g} m, expected {at:.9g}")
 
 
 def flaps(code: MechanismCode) -> None:
@@ -256,7 +241,7 @@ def reversed_joint(code: MechanismCode) -> None:
         [complex(v.real, abs(v.imag)) for v in ways[0].values],
         "pendulum, its hinge given from child to parent",
     )
-    _keep(
+    keep(
         abs(ways[0].steady[0] + ways[1].steady[0]) < 1e-9, "hinge given from child to parent: its angle is not reversed"
     )
 
@@ -267,7 +252,7 @@ def repeats(code: MechanismCode) -> None:
     _ask(code, hinged("lag"))
     again = _ask(code, hinged("flap"))
     same = np.array_equal(first.values, again.values) and np.array_equal(first.shapes, again.shapes)
-    _keep(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
+    keep(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
 
 
 def periodic(code: MechanismCode) -> None:

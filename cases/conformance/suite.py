@@ -10,8 +10,8 @@ In a third party's own tests, with pytest::
         assert outcome.verdict == "pass", outcome.reason
 
 On the command line: ``southwell conform NAME``. A check compares the code with a closed form, a printed number or a
-symmetry (``conformance_checks``), or, for a property that a code might silently drop, tests whether its answer is closer
-to core's with the property than without.
+symmetry (``checks``), or, for a property that a code might silently drop, tests whether its answer is closer
+to core's with the property than without (``dropped``).
 """
 
 from collections.abc import Callable
@@ -21,10 +21,10 @@ from typing import Any, Literal
 
 from ...references.protocol.interface import Code
 from ...references.protocol.mechanism_interface import MechanismCode
-from . import checks as checks
+from . import checks, dropped
 from . import mechanism_checks as mechanism
+from .asking import BrokenError, NotForItError
 from .blades import PROPERTIES
-from .checks import BrokenError, NotForItError
 
 
 @dataclass(frozen=True)
@@ -100,8 +100,8 @@ CHECKS = (
     Check("kink", "a corner of the curve: refused, or the closed form of two beams at right angles", checks.corner),
     Check("hinged root", "refused, or a straight line at Ω", checks.hinged_root),
     Check("shear", "refused, or Timoshenko's frequency in closed form", checks.shear),
-    Check("effects", "exactly the declared effects are included", checks.effects),
-    *(Check(f"keeps {p.name}", "refused, or not dropped", partial(checks.keeps, p)) for p in PROPERTIES),
+    Check("effects", "exactly the declared effects are included", dropped.effects),
+    *(Check(f"keeps {p.name}", "refused, or not dropped", partial(dropped.keeps, p)) for p in PROPERTIES),
 )
 """All checks of a code for blades, in the order most useful for reading failures."""
 

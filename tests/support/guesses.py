@@ -6,9 +6,10 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from southwell.core.multibody import equilibrium, linearize
+from southwell.core.multibody import equilibrium, linearize, periodic
 from southwell.core.multibody.equilibrium import State
-from southwell.core.multibody.linear import about
+from southwell.core.multibody.linear import Linearization, about
+from southwell.core.multibody.mechanism import Mechanism, at_time
 from southwell.core.multibody.tree import Tree
 
 GUESSES = 200
@@ -54,13 +55,28 @@ def _shape(state: State) -> np.ndarray:
 
 @pytest.fixture(scope="session", autouse=True)
 def every_steady_state_again():
-    """Wherever a test linearises a mechanism."""
+    """Wherever a test linearises a mechanism about a steady state that is not refused."""
+    guesses: list[Mapping[str, float] | None] = []
+    by_law: list[bool] = []
+
+    def frozen(mechanism: Mechanism, time: float) -> Mechanism:
+        by_law[:] = [any(m.law is not None for m in mechanism.motions)]
+        return at_time(mechanism, time)
 
     def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
-        found = STEADY(tree, guess)
-        same(tree, guess, found, CHOSEN)
-        return found
+        guesses[:] = [guess]
+        return STEADY(tree, guess)
+
+    def checked(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linearization:
+        linear = about(tree, state, independent)
+        if CHOSEN:
+            if not by_law[0]:
+                periodic.check(linear)
+            same(tree, guesses[0], state, CHOSEN)
+        return linear
 
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linearize, "at_time", frozen)
         patch.setattr(linearize, "steady", steady)
+        patch.setattr(linearize, "about", checked)
         yield

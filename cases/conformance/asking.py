@@ -1,0 +1,102 @@
+"""What the conformance checks share: their errors, comparisons within a tolerance, and the questions put to a code."""
+
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import Effects
+from ...core.modes import Modes
+from ...references.protocol.interface import Code, Shares, digits
+from ...references.protocol.mechanism_interface import MechanismCode
+
+Array = NDArray[np.float64]
+
+NEAR = 1e-3
+"""Required relative agreement after extrapolation from the two coarsest levels, or the code's error bound if wider."""
+
+ROUNDING = 1e-6
+"""Largest relative difference between two answers of one code to the same numbers."""
+
+
+class BrokenError(AssertionError):
+    """A code that fails a check; one line describes its behaviour."""
+
+
+class NotForItError(Exception):
+    """A check that the code declines or that does not apply to it, with the reason."""
+
+
+def keep(true: Any, message: str) -> None:
+    """Fail the check with a message unless something holds."""
+    if not bool(true):
+        raise BrokenError(message)
+
+
+def close(found: Any, exact: Any, what: str, within: float) -> None:
+    """Compare frequencies (rad/s) with the expected ones, within a relative tolerance."""
+    found, exact = np.atleast_1d(found), np.atleast_1d(exact)
+    keep(len(found) >= len(exact), f"{what}: {len(found)} modes, {len(exact)} expected")
+    found = found[: len(exact)]
+    off = np.abs(found / exact - 1.0).max()
+    said = f"{what}: {np.round(found, 6).tolist()} rad/s, expected {np.round(exact, 6).tolist()}"
+    keep(off <= within, f"{said}: {off:.1e} apart, at most {within:.0e}")
+
+
+def named(code: Code | MechanismCode) -> None:
+    """Check the declarations that codes for blades and for mechanisms have in common."""
+    keep(
+        code.name and not set(code.name) & set(" ,:/\n"),
+        f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
+    )
+    keep(code.title.strip(), "title: empty")
+    keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
+    keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
+    version = code.version()
+    keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
+    keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
+
+
+def rounding(code: Code) -> float:
+    """Relative rounding of two answers: half a unit of the last digit each, for a first digit of 1."""
+    return 10.0 ** (1 - digits(code))
+
+
+def same(code: Code) -> float:
+    """The same for answers to the same numbers, which conditioning does not affect."""
+    return min(rounding(code), ROUNDING)
+
+
+def ask(code: Code, blade: Blade, omega: float, level: int, count: int = 4) -> Modes:
+    """The modes at one level of refinement, or the reason why the code declines the blade."""
+    if reason := code.unsupported(blade):
+        raise NotForItError(reason)
+    return code.solve(blade, omega, code.levels[level], count)
+
+
+def limit_of(code: Code, blade: Blade, omega: float, levels: tuple[int, int] = (0, 1)) -> tuple[Array, Modes, float]:
+    """Frequencies (m,) extrapolated by the declared order from two levels, the finer modes, and their error bound."""
+    coarse, fine = (ask(code, blade, omega, level) for level in levels)
+    m = min(len(coarse.frequencies), len(fine.frequencies))
+    limit = fine.frequencies[:m]
+    if code.order:
+        gain = (fine.elements / coarse.elements) ** code.order - 1.0
+        limit = limit + (limit - coarse.frequencies[:m]) / gain
+    return limit, fine, float(max(fine.uncertainty[:m], default=0.0))
+
+
+def along(modes: Modes, axis: int) -> int:
+    """The lowest mode whose tip moves most along ``axis`` of y, z."""
+    tips = np.abs(modes.shapes[:, -1, 1:3])
+    found = np.flatnonzero(tips[:, axis - 1] > tips[:, 2 - axis])
+    keep(found.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?")
+    return int(found[0])
+
+
+def agrees(code: Code, blade: Blade, omega: float, exact: float, axis: int | None = None) -> None:
+    """Compare the lowest frequency, or the lowest one along ``axis`` of y, z, with the exact one (rad/s)."""
+    limit, fine, bracket = limit_of(code, blade, omega)
+    k = 0 if axis is None else along(fine, axis)
+    where = "" if axis is None else f" along {'xyz'[axis]}"
+    close(limit[k], exact, f"{blade.name} at {omega:g} rad/s, lowest{where}", max(bracket, NEAR))
