@@ -133,7 +133,7 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
     parts = (
         np.abs(M) @ (np.abs(k.A) + np.abs(fall))[..., None]
-        + np.abs(np.swapaxes(turn, -1, -2)) @ np.abs(momentum)[..., None]
+        + np.abs(np.swapaxes(turn, -1, -2)) @ np.abs(M) @ np.abs(k.Y)[..., None]  # M Y may cancel
     )
     out.size[: len(M)] += parts[..., 0]
     mt = M @ turn
