@@ -27,6 +27,7 @@ from .multibody import linear as lz
 from .multibody.dynamics import unbalanced
 from .multibody.lowest import definite, lowest
 from .multibody.mechanism import MechanismError, at_rate
+from .multibody.newton import newton
 from .multibody.tree import Tree, compile_tree
 from .space import spatial as sp
 
@@ -128,7 +129,8 @@ def _about_steady_state(tree: Tree, omega: float, known: dict[float, Array]) -> 
     for x, q in known.items():
         guess += prod((omega**2 - other) / (x - other) for other in known if other != x) * q
     try:
-        return lz.about(here, equilibrium.steady(here, dict(zip(tree.coordinates, guess.tolist(), strict=True))))
+        near = newton(here, guess) if known else None
+        return lz.about(here, near.state if near else equilibrium.steady(here))
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
 

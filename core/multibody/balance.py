@@ -1,0 +1,144 @@
+"""The balance of forces at a configuration with closed loops: what is left unbalanced, its derivative and its rounding."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..rank import TOLERANCE, Ranked, Regular, factored, ranked
+from . import dynamics, partition
+from .kinematics import projected
+from .loops import size_of
+from .state import State, given, moving, state_at
+from .tree import Tree
+
+Array = NDArray[Any]
+
+BALANCE_TOLERANCE = 1e-11
+"""Rounding of a residual, as a fraction of the forces of which it is the sum; checked for each coordinate."""
+
+STIFFNESS_ROUNDING = 1e-13
+"""Rounding of a stiffness, as a fraction of the forces and stiffnesses of which it is the sum."""
+
+
+@dataclass(frozen=True)
+class Residual:
+    """The unbalanced forces at a configuration with closed loops.
+
+    Attributes:
+        state: the state of motion.
+        part: partition of the free coordinates.
+        forces: (f,) generalised forces on the free coordinates, including those that loop reactions balance.
+        reduced: (i,) along the independent coordinates, where reactions do no work.
+    """
+
+    state: State
+    part: partition.Partition
+    forces: Array
+    reduced: Array
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """The derivative of the residual, with coordinates scaled by their stiffness.
+
+    Attributes:
+        matrix: (i, i) derivative, scaled.
+        K: the same, decomposed.
+        scale: (i,) stiffness of each independent coordinate, or a fraction of its forces per unit if that is larger.
+        rounding: (i,) size of the forces of which the residual is the sum.
+        units: (f,) 1 rad, or the mechanism's length.
+    """
+
+    matrix: Array
+    K: Ranked | Regular
+    scale: Array
+    rounding: Array
+    units: Array
+
+    def step(self, here: Residual) -> Array:
+        """Newton's step (f,) of the free coordinates; of least norm along motions without stiffness."""
+        root = np.sqrt(self.scale)
+        return -here.part.spread(self.K.solve(here.reduced / root) / root)
+
+    def relaxation(self, here: Residual, weight: float) -> Array:
+        """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own."""
+        root = np.sqrt(self.scale)
+        added = self.matrix + weight * np.eye(len(root))
+        return -here.part.spread(np.linalg.solve(added, here.reduced / root) / root)
+
+    def left(self, here: Residual) -> float:
+        """Size of a residual in these scales."""
+        return float(np.linalg.norm(here.reduced / np.sqrt(self.scale)))
+
+    def balanced(self, here: Residual) -> bool:
+        """Whether each independent coordinate is balanced, apart from rounding."""
+        return bool((np.abs(here.reduced) <= BALANCE_TOLERANCE * self.rounding).all())
+
+
+def residual_at(
+    tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None
+) -> Residual:
+    """The balance at coordinates q (n,) with closed loops, less ``dead`` forces (f,) on the free ones."""
+    state = state_at(tree, q)
+    free = partition.free_coordinates(tree)
+    forces = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free] - dead
+    if tree.welds:
+        J = partition.jacobian(tree, state.kinematics.B)[:, free]
+        reactions = -ranked(J.T).solve(forces).reshape(-1, 6)
+        state = replace(state, multipliers=reactions, cartesian=dynamics.cartesian(tree, state.kinematics, reactions))
+    part = partition.partition(tree, state.kinematics, independent)
+    return Residual(state, part, forces, part.onto(forces))
+
+
+def tangent_at(tree: Tree, here: Residual) -> Tangent:
+    """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): in moving loops, rates and accelerations change with q."""
+    state, part, k = here.state, here.part, here.state.kinematics
+    pick, R = np.ix_(part.free, part.free), part.R
+    K = state.tangent[2][pick]
+    by_independent = K @ R if len(part.dependent) else K
+    if moving(tree, state).any():
+        J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
+        following = ~np.isin(part.free, given(tree))
+        back = ranked(J[:, following])
+        R1, R2 = np.zeros_like(R), np.zeros_like(R)
+        R1[following] = -back.solve(J1 @ R)
+        R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
+        M, C = (a[pick] for a in state.tangent[:2])
+        by_independent += C @ R1 + M @ R2
+    turns = tree.screw[part.free, 3:].any(1)
+    units = np.where(turns, 1.0, size_of(k.poses))
+    size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
+    sizes = replace(part, R=np.abs(R))
+    rounding, unit = sizes.onto(size), units[np.isin(part.free, part.independent)]
+    least = (sizes.onto(_carried(state)[part.free]) + rounding) / unit
+    reduced = part.onto(by_independent)
+    scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
+    root = np.sqrt(np.where(scale > 0, scale, 1.0))
+    scaled = reduced / root[:, None] / root
+    return Tangent(scaled, factored(scaled), root**2, rounding, units)
+
+
+def _sizes(tree: Tree, state: State) -> Array:
+    """(n,) sum of the absolute values of the forces on each coordinate."""
+    k = state.kinematics
+    out = projected(k, state.cartesian.size, np.abs(k.J))
+    for s in tree.mechanism.coordinate_springs:
+        j = tree.coordinate(s.coordinate)
+        out[j] += s.stiffness * (abs(state.q[j]) + abs(s.neutral)) + abs(s.damping * state.v[j])
+    return out
+
+
+def _carried(state: State) -> Array:
+    """(n,) forces on a coordinate from a unit strain of all stiffnesses that it carries: they bound its rounding."""
+    k, c = state.kinematics, state.cartesian
+    units = np.tile(np.repeat([size_of(k.poses), 1.0], 3), len(c.g))
+    wrench = np.append((abs(c.K) @ units).reshape(-1, 6), np.zeros((1, 6)), axis=0)
+    np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ units[:6])[:, None, :])
+    return projected(k, wrench[:-1], np.abs(k.J))
+
+
+def norm(step: Array, tangent: Tangent) -> float:
+    """Largest component of a step (f,) of the free coordinates, rad or fraction of the mechanism's length."""
+    return float(np.abs(step / tangent.units).max(initial=0.0))
