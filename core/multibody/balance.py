@@ -62,11 +62,14 @@ class Tangent:
         root = np.sqrt(self.scale)
         return -here.part.spread(self.K.solve(here.reduced / root) / root)
 
-    def relaxation(self, here: Residual, weight: float) -> Array:
-        """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own."""
+    def relaxation(self, here: Residual, weight: float, towards: bool) -> Array:
+        """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own.
+
+        ``towards``: with the sign of its own, so that it moves towards an equilibrium that is unstable.
+        """
         root = np.sqrt(self.scale)
-        added = self.matrix + weight * np.eye(len(root))
-        return -here.part.spread(np.linalg.solve(added, here.reduced / root) / root)
+        sign = np.copysign(1.0, np.diagonal(self.matrix)) if towards else np.ones_like(root)
+        return -here.part.spread(np.linalg.solve(self.matrix + weight * np.diag(sign), here.reduced / root) / root)
 
     def left(self, here: Residual) -> float:
         """Size of a residual in these scales."""

@@ -33,7 +33,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     q = assemble(tree, guess)
     contradiction = None
     try:
-        found = newton(tree, q) or (relaxed(tree, q) if guess else None)
+        found = newton(tree, q) or (_relaxed(tree, q) if guess else None)
     except ContradictionError as error:  # at the assembled guess, but perhaps not at the steady state
         found, contradiction = None, error
     reached = []
@@ -44,7 +44,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     if found is None and contradiction:
         raise contradiction
     if found is None and not guess:
-        found = relaxed(tree, q)
+        found = _relaxed(tree, q)
     if found is None:
         raise MechanismError(
             "no steady state was found near the guess: neither Newton's method nor relaxation converges from it, and "
@@ -54,6 +54,10 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     check_rates(tree, found.state)
     _check_balance(tree, found)
     return found.state
+
+
+def _relaxed(tree: Tree, q: Array) -> Found | None:
+    return relaxed(tree, q) or relaxed(tree, q, towards=True)
 
 
 def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:

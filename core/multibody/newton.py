@@ -16,6 +16,8 @@ Array = NDArray[Any]
 
 _MAX_STEPS, _MAX_RELAXATIONS = 60, 200
 _SMALL_CORRECTION = 0.05  # rad, or fraction of the length
+_NEARLY = 1e-3  # weight of the added stiffness below which Newton's method alone is tried
+_RUNS_AWAY = 20  # steps in succession after which more force is left
 _MAX_WEIGHT = 1e12  # of the added stiffness: beyond, steps vanish in rounding
 
 
@@ -55,25 +57,31 @@ def newton(tree: Tree, q: Array, dead: Array | float = 0.0, far: float = np.inf)
     return None
 
 
-def relaxed(tree: Tree, q: Array) -> Found | None:
+def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
     """Newton's method with pseudo-time steps: the path of an overdamped mechanism from q to a stable equilibrium.
+
+    ``towards``: coordinates with a negative stiffness, as those of a free body in a rotating frame, move the other way, so that
+    unstable equilibria are found too.
 
     An implicit step adds the damping divided by the time step to the stiffness. Time steps grow as the forces left decrease
     (C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523) and shrink if a step is long or forces double.
     """
-    weight, tried = 1.0, np.inf
+    weight, tried, rising = 1.0, np.inf, 0
     here = residual_at(tree, q)
     at = tangent_at(tree, here)
     for _ in range(_MAX_RELAXATIONS):
-        if weight <= 0.1 * tried and norm(at.step(here), at) < _SMALL_CORRECTION:
+        if weight <= min(0.1 * tried, _NEARLY) and norm(at.step(here), at) < _SMALL_CORRECTION:
             tried = weight
             if found := newton(tree, here.state.q):
                 return found
-        step = at.relaxation(here, weight)
+        step = at.relaxation(here, weight, towards)
         following = _moved(tree, here, step, 0.0) if norm(step, at) < _SMALL_CORRECTION else None
         growth = np.inf if following is None else at.left(following) / at.left(here)
         if following is not None and growth < 2.0:
             weight *= max(growth, 0.1)
+            rising = rising + 1 if growth > 1.0 else 0
+            if rising > _RUNS_AWAY:
+                return None
             here = following
             at = tangent_at(tree, here)
         elif weight < _MAX_WEIGHT:
