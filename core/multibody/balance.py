@@ -69,7 +69,7 @@ class Tangent:
         """
         root = np.sqrt(self.scale)
         sign = np.copysign(1.0, np.diagonal(self.matrix)) if towards else np.ones_like(root)
-        return -here.part.spread(np.linalg.solve(self.matrix + weight * np.diag(sign), here.reduced / root) / root)
+        return -here.part.spread(factored(self.matrix + weight * np.diag(sign)).solve(here.reduced / root) / root)
 
     def left(self, here: Residual) -> float:
         """Size of a residual in these scales."""

@@ -57,7 +57,13 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 
 
 def _relaxed(tree: Tree, q: Array) -> Found | None:
-    return relaxed(tree, q) or relaxed(tree, q, towards=True)
+    for towards in (False, True):
+        try:
+            if found := relaxed(tree, q, towards):
+                return found
+        except MechanismError:  # the loops are singular on the way
+            continue
+    return None
 
 
 def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:

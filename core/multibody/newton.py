@@ -70,6 +70,8 @@ def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
     here = residual_at(tree, q)
     at = tangent_at(tree, here)
     for _ in range(_MAX_RELAXATIONS):
+        if at.balanced(here):
+            return newton(tree, here.state.q)
         if weight <= min(0.1 * tried, _NEARLY) and norm(at.step(here), at) < _SMALL_CORRECTION:
             tried = weight
             if found := newton(tree, here.state.q):

@@ -24,21 +24,12 @@ STEADY = equilibrium.steady
 
 
 def perturbed(tree: Tree, guess: Mapping[str, float], k: int) -> dict[str, float]:
-    """The k-th guess: each coordinate not prescribed is moved by 1e-12 to 1e-2 rad or m.
-
-    Elastic joints and the inside of beams are moved by a hundredth of it: slender rings buckle at strains of 1e-5.
-    """
+    """The k-th guess: each coordinate not prescribed is moved by 1e-12 to 1e-2 rad or m."""
     rng = np.random.default_rng(k)
     size = 10.0 ** (-12.0 + 10.0 * k / (GUESSES - 1))
     held = {m.coordinate for m in tree.mechanism.motions if m.prescribed}
-    inner = {int(j) + i for j in tree.inner for i in range(6)}
-    elastic = tuple(f"{j.name}." for j in tree.mechanism.joints if j.kind == "elastic")
-    out = {}
-    for j, name in enumerate(tree.coordinates):
-        if name not in held:
-            part = 0.01 if j in inner or name.startswith(elastic) else 1.0
-            out[name] = guess.get(name, 0.0) + part * size * float(rng.uniform(-1.0, 1.0))
-    return out
+    names = [name for name in tree.coordinates if name not in held]
+    return {name: guess.get(name, 0.0) + size * float(rng.uniform(-1.0, 1.0)) for name in names}
 
 
 def same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen: list[int]) -> None:
