@@ -13,15 +13,12 @@ from .chain.solution import MeshSolver
 from .chain.steady import LargeStrainError
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
-from .element.measures import Measure
+from .element.measures import LARGEST_STRAIN, Measure
 from .modes import Modes
 
 Array = NDArray[np.float64]
 
 NO_GRAVITY = np.zeros(3)
-
-LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
-"""Steady strains from which they are reported, and refused: sections are linear elastic."""
 
 
 def modes(

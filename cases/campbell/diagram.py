@@ -34,7 +34,7 @@ class Wanted:
         margin: required relative distance of a mode from n per revolution within the operating range.
         elements: number of elements of equal length; by default as many at each speed as ``accuracy`` requires.
         accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
-        allow_large_strain: accept steady strains above ``core.solve.LARGEST_STRAIN``.
+        allow_large_strain: accept steady strains above ``core.element.measures.LARGEST_STRAIN``.
         gravity: (3,) m/s² in the hub's axes, see ``prestress``.
         load: steady force per length at each of the blade's stations, N/m, in the same axes; none by default.
     """

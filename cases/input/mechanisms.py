@@ -38,8 +38,8 @@ class Described:
     mechanism: mb.Mechanism
     guess: dict[str, float]
 
-    def solve(self, count: int | None = None, time: float = 0.0) -> mb.Solution:
-        """Steady state and the lowest ``count`` modes, motions frozen at ``time`` (s).
+    def solve(self, count: int | None = None, time: float = 0.0, allow_large_strain: bool = False) -> mb.Solution:
+        """Steady state and the lowest ``count`` modes, motions frozen at ``time`` (s); accepts strains above 20 % if allowed.
 
         Raises:
             CaseError: if core cannot assemble, balance or partition it, or the time is not finite.
@@ -48,7 +48,12 @@ class Described:
             raise CaseError(f"{self.path}: time: {time}: give a finite instant, in seconds")
         try:
             return mb.solve(
-                self.mechanism, self.guess, count=count, independent=self.text.independent or None, time=time
+                self.mechanism,
+                self.guess,
+                count=count,
+                independent=self.text.independent or None,
+                time=time,
+                allow_large_strain=allow_large_strain,
             )
         except (mb.MechanismError, EigenError) as error:
             raise CaseError(f"{self.path}: {error}") from error

@@ -102,6 +102,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
         stalled = energy > _MIN_REDUCTION * before  # if not, continue: rounding may be much less than its bound
         if energy <= _CONVERGED_FACTOR * rounding or (stalled and energy <= _STALL_FACTOR * rounding):
+            if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
+                raise SteadyStateError("elements are deformed beyond the range of their strain measure")
             return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape, before = displaced(shape, step), energy
@@ -116,16 +118,11 @@ def rounding_energy(p: ChainPencil, shape: Shape) -> float:
 
 
 def largest_strain(chain: Chain, shape: Shape) -> float:
-    """Largest steady strain of the reference curve: axial, and shear of a ``corotational`` chain, mean over each element.
-
-    Bending strains are not included: they need the sections' thickness, which a blade does not state.
-    """
-    length = np.linalg.norm(chain.beams.law.eta[:, :3], axis=1)
-    real = length > 1e-9 * chain.scale  # not a root joint
-    components = 3 if chain.beams.law.measure == "corotational" else 1
-    found = measures.response(chain.beams.law, shape.relative @ chain.corner, shape.beta)
-    strain = found.strain[real, :components] / length[real, None]
-    return float(np.linalg.norm(strain, axis=1).max(initial=0.0))
+    """Largest steady strain of the reference curve (see ``measures.relative_strain``)."""
+    law = chain.beams.law
+    real = np.linalg.norm(law.eta[:, :3], axis=1) > 1e-9 * chain.scale  # not a root joint
+    strain = measures.relative_strain(law, shape.relative @ chain.corner, shape.beta)
+    return float(strain[real].max(initial=0.0))
 
 
 def displaced(shape: Shape, step: Array) -> Shape:

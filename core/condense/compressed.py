@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from .. import solve
 from ..chain import accuracy
+from ..chain.steady import LargeStrainError
 from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
 from ..element.discretize import Chain
-from ..element.measures import even
+from ..element.measures import LARGEST_STRAIN, even
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
 from ..space.inertia import about_centre, transformed
@@ -90,17 +91,17 @@ def segment_modes(
         root: as for ``chain_from_segments``.
         omega: rotor speed, rad/s.
         count: number of modes (fewer if there are fewer).
-        allow_large_strain: accept steady strains above ``solve.LARGEST_STRAIN``.
+        allow_large_strain: accept steady strains above ``LARGEST_STRAIN``.
 
     Raises:
         CondensationError: no segments.
         SteadyStateError: no steady state at this speed.
-        LargeStrainError: steady strains above ``solve.LARGEST_STRAIN``.
+        LargeStrainError: steady strains above ``LARGEST_STRAIN``.
         UnstableError: the steady state is not stable.
     """
     fine = chain_modes(chain_from_segments(segments, root), omega, count)
-    if fine.strain > solve.LARGEST_STRAIN and not allow_large_strain:
-        raise solve.LargeStrainError(
+    if fine.strain > LARGEST_STRAIN and not allow_large_strain:
+        raise LargeStrainError(
             f"omega: {omega:.6g} rad/s: steady strain {fine.strain:.0%}: too large for linear elements: the speed is too high "
             "or the blade too soft; check units, or allow large strains"
         )

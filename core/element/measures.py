@@ -33,6 +33,12 @@ from .corotational import StrainLawArrays
 Array = NDArray[np.float64]
 Measure = Literal["corotational", "body_fixed"]
 
+LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
+"""Steady strains from which they are reported, and refused: sections are linear elastic."""
+
+RANGE = 0.5
+"""Largest second-order part of an element's axial strain, by its rate; in elements that are short enough it is below 1e-3."""
+
 
 @dataclass(frozen=True)
 class StrainLaw:
@@ -111,6 +117,28 @@ def arrays(law: StrainLaw) -> StrainLawArrays:
     """The law as contiguous arrays for compiled code."""
     parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
     return StrainLawArrays(law.measure == "corotational", *parts)
+
+
+def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
+    """(n,) strain of elements at ``x`` and ``beta``, mean over the length: axial and, if corotational, shear.
+
+    Bending strains are not included: they need the sections' thickness, which a beam does not state.
+    """
+    length = np.linalg.norm(law.eta[:, :3], axis=1)
+    components = 3 if law.measure == "corotational" else 1
+    strain = np.linalg.norm(response(law, x, beta).strain[:, :components], axis=1)
+    return np.divide(strain, length, out=np.zeros_like(length), where=length > 0)
+
+
+def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
+    """(n,) whether elements at relative poses ``x`` (n, 4, 4) are deformed beyond the range of the corotational measure.
+
+    Its axial strain has the rate 1 + 2 (G δ)_x with the distance of the ends. Where that is 0, it has an extremum, and beyond
+    lies a second configuration without strain, which is not physical. The rate must stay within ``RANGE`` of 1.
+    """
+    if law.measure != "corotational":
+        return np.zeros(len(x), dtype=bool)
+    return np.abs(2.0 * ((sp.log(x) - law.eta) * law.shortening[:, 0]).sum(1)) > RANGE
 
 
 @compiled

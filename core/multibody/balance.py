@@ -68,8 +68,17 @@ class Tangent:
         ``towards``: with the sign of its own, so that it moves towards an equilibrium that is unstable.
         """
         root = np.sqrt(self.scale)
-        sign = np.copysign(1.0, np.diagonal(self.matrix)) if towards else np.ones_like(root)
-        return -here.part.spread(factored(self.matrix + weight * np.diag(sign)).solve(here.reduced / root) / root)
+        added = np.diag(weight * self._sign(towards))
+        return -here.part.spread(factored(self.matrix + added).solve(here.reduced / root) / root)
+
+    def attracts(self, towards: bool) -> bool:
+        """Whether short steps of ``relaxation`` from every point nearby lead here: D⁻¹ K̂ has no eigenvalue with Re < 0."""
+        rates = np.linalg.eigvals(self._sign(towards)[:, None] * self.matrix)
+        return bool((rates.real >= -TOLERANCE * np.abs(rates).max(initial=0.0)).all())
+
+    def _sign(self, towards: bool) -> Array:
+        """(i,) signs of the stiffness that ``relaxation`` adds."""
+        return np.copysign(1.0, np.diagonal(self.matrix)) if towards else np.ones(len(self.matrix))
 
     def left(self, here: Residual) -> float:
         """Size of a residual in these scales."""

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 from . import partition
 from .balance import residual_at, tangent_at
 from .continuation import followed
+from .kinematics import poses
 from .loops import assemble, closed, size_of
 from .mechanism import MechanismError
 from .newton import Found, newton, relaxed
 from .state import ContradictionError, State, check_rates
+from .strained import out_of_range, undeformed
 from .tree import Tree
 
 Array = NDArray[Any]
@@ -27,10 +29,15 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     rates and loads grow while the dead forces fade. If a mechanism has no equilibrium at rest, as a pendulum whose weight
     grows with the loads, only the dead forces fade. Without a guess, relaxation is the last resort.
 
+    Of a guess that deforms beams beyond the range of their strain measure, coordinates of elastic joints and of the inside
+    of beams are not used.
+
     Raises:
         MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
     """
     q = assemble(tree, guess)
+    if guess and out_of_range(tree, poses(tree, q)[0]):
+        q = assemble(tree, undeformed(tree, guess))
     contradiction = None
     try:
         found = newton(tree, q) or (_relaxed(tree, q) if guess else None)
@@ -49,10 +56,16 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
         raise MechanismError(
             "no steady state was found near the guess: neither Newton's method nor relaxation converges from it, and "
             f"continuation reached {100 * reached[0]:.3g} % from rest with rates and loads growing, {100 * reached[1]:.3g} % "
-            "from the guess with dead forces fading: give a better guess, or check for a missing spring or joint"
+            f"from the guess with dead forces fading{_elsewhere(tree, q) if guess else ''}: give a better guess, or check for "
+            "a missing spring or joint"
         )
     check_rates(tree, found.state)
     _check_balance(tree, found)
+    if beams := out_of_range(tree, found.state.kinematics.poses):
+        raise MechanismError(
+            f"beam {beams[0]}: the only steady state found deforms it beyond the range of its strain measure: divide it into "
+            "shorter beams, or give a better guess"
+        )
     return found.state
 
 
@@ -64,6 +77,18 @@ def _relaxed(tree: Tree, q: Array) -> Found | None:
         except MechanismError:  # the loops are singular on the way
             continue
     return None
+
+
+def _elsewhere(tree: Tree, q: Array) -> str:
+    """The steady state found without a guess, in words: its coordinates furthest from the guess q (n,)."""
+    try:
+        state = steady(tree)
+    except MechanismError:
+        return ""
+    furthest = np.argsort(-np.abs(state.q - q))[:3]
+    return "; without a guess one is found, with " + ", ".join(
+        f"{tree.coordinates[j]} = {state.q[j]:.4g}" for j in furthest
+    )
 
 
 def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from . import partition
 from .balance import Residual, Tangent, norm, residual_at, tangent_at
 from .loops import closed
 from .state import State
+from .strained import out_of_range
 from .tree import Tree
 
 Array = NDArray[Any]
@@ -61,7 +62,8 @@ def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
     """Newton's method with pseudo-time steps: the path of an overdamped mechanism from q to a stable equilibrium.
 
     ``towards``: coordinates with a negative stiffness, as those of a free body in a rotating frame, move the other way, so that
-    unstable equilibria are found too.
+    those of a body that is unstable alone are found too. Other unstable equilibria are no result: which of them is reached is a
+    matter of chance.
 
     An implicit step adds the damping divided by the time step to the stiffness. Time steps grow as the forces left decrease
     (C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523) and shrink if a step is long or forces double.
@@ -70,12 +72,14 @@ def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
     here = residual_at(tree, q)
     at = tangent_at(tree, here)
     for _ in range(_MAX_RELAXATIONS):
-        if at.balanced(here):
-            return newton(tree, here.state.q)
-        if weight <= min(0.1 * tried, _NEARLY) and norm(at.step(here), at) < _SMALL_CORRECTION:
+        arrived = at.balanced(here)
+        if arrived or (weight <= min(0.1 * tried, _NEARLY) and norm(at.step(here), at) < _SMALL_CORRECTION):
             tried = weight
-            if found := newton(tree, here.state.q):
+            found = newton(tree, here.state.q)
+            if found and found.tangent.attracts(towards):
                 return found
+        if arrived:
+            return None
         step = at.relaxation(here, weight, towards)
         following = _moved(tree, here, step, 0.0) if norm(step, at) < _SMALL_CORRECTION else None
         growth = np.inf if following is None else at.left(following) / at.left(here)
@@ -94,7 +98,7 @@ def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
 
 
 def _moved(tree: Tree, here: Residual, step: Array, dead: Array | float) -> Residual | None:
-    """The residual after a step (f,) of the free coordinates; None if the loops do not close there."""
+    """The residual after a step (f,) of the free coordinates; None where loops do not close or beams are out of range."""
     free = partition.free_coordinates(tree)
     q = here.state.q.copy()
     q[free] += step
@@ -102,4 +106,5 @@ def _moved(tree: Tree, here: Residual, step: Array, dead: Array | float) -> Resi
     if np.abs(gap).max(initial=0.0) > 1e-11 * size:
         return None
     names = tuple(tree.coordinates[j] for j in here.part.independent)
-    return residual_at(tree, q, dead, names)
+    moved = residual_at(tree, q, dead, names)
+    return None if out_of_range(tree, moved.state.kinematics.poses) else moved

@@ -12,9 +12,11 @@ from ..blade import uniform_blade
 from ..eigen import Damped, Eigen
 from ..element.beams import Beams
 from ..element.discretize import discretize
+from ..element.measures import LARGEST_STRAIN
 from .linearize import Linearization, linearize, modes
-from .mechanism import Mechanism
+from .mechanism import Mechanism, MechanismError
 from .rounding import rounding
+from .strained import largest_strain
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -53,6 +55,11 @@ class Solution:
         return rounding(self.linear, self.found)
 
     @property
+    def strain(self) -> float:
+        """Largest steady strain of a beam's reference line, axial or shear, mean over the beam."""
+        return largest_strain(self.linear.tree, self.linear.state)
+
+    @property
     def frequencies(self) -> Array:
         """(m,) undamped natural frequencies |λ|, rad/s, ascending; for a real eigenvalue, its modulus."""
         return np.abs(self.values)
@@ -78,6 +85,7 @@ def solve(
     count: int | None = None,
     independent: tuple[str, ...] | None = None,
     time: float = 0.0,
+    allow_large_strain: bool = False,
 ) -> Solution:
     """Find the steady state of a mechanism and its modes about it.
 
@@ -87,12 +95,20 @@ def solve(
         count: number of modes, from the lowest; all by default.
         independent: independent coordinates; chosen numerically if not given.
         time: instant of the frozen-time linearisation, s, for motions that follow laws of time (see ``linearize``).
+        allow_large_strain: accept steady strains of beams above ``LARGEST_STRAIN``.
 
     Raises:
-        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is periodic; the message gives the cause.
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, is periodic, or has beams with large
+            strains; the message gives the cause.
         EigenError: if the eigenvalue solver fails.
     """
     linear = linearize(mechanism, guess, independent, time)
+    strain = largest_strain(linear.tree, linear.state)
+    if strain > LARGEST_STRAIN and not allow_large_strain:
+        raise MechanismError(
+            f"beams: steady strain {strain:.0%}: too large for linear elastic sections: loads or speeds are too high or a beam "
+            "too soft; check units, or allow large strains"
+        )
     found = modes(linear, count)
     values: Complex = np.asarray(found.values if isinstance(found, Damped) else 1j * found.frequencies, np.complex128)
     tree, part = linear.tree, linear.partition

@@ -7,14 +7,9 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from ...core.element.measures import LARGE_STRAIN
 from ...core.multibody.solution import Solution
 from ..shared.certain import certain, relative
-
-NOTE = (
-    "± rounding: relative for frequencies, absolute for damping ratios; nothing is discretised, so there is no other "
-    "numerical error"
-)
-"""Explanation of the uncertainties."""
 
 ROTATIONS = (".rx", ".ry", ".rz")
 
@@ -66,6 +61,24 @@ def redundant(found: Solution) -> str:
     return f"redundant constraints: {len(found.redundant)}: {', '.join(found.redundant)}"
 
 
+def notes(found: Solution) -> list[str]:
+    """Explanation of the uncertainties, and a remark on a large steady strain."""
+    what = "± rounding: relative for frequencies, absolute for damping ratios; "
+    if any(beam.beams.law.shortening.any() for beam in found.linear.tree.mechanism.beams):
+        out = [
+            what
+            + "each beam is one element: the error of this discretisation is not included; divide the beams to see it"
+        ]
+    else:
+        out = [what + "nothing is discretised, so there is no other numerical error"]
+    if found.strain > LARGE_STRAIN:
+        out.append(
+            f"steady strain up to {found.strain:.1%}: above {LARGE_STRAIN:.0%}, check that linear elastic sections describe "
+            "the beams"
+        )
+    return out
+
+
 def plain(name: str, found: Solution) -> dict[str, Any]:
     """All results as numbers, strings and lists."""
     return {
@@ -74,6 +87,7 @@ def plain(name: str, found: Solution) -> dict[str, Any]:
         "steady": found.steady,
         "independent": list(found.independent),
         "redundant": list(found.redundant),
+        "steady_strain": found.strain,
     }
 
 

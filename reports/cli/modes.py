@@ -123,6 +123,7 @@ def mechanism(
     *,
     modes: Whole = 10,
     time: float = 0.0,
+    allow_large_strain: Flag = False,
     json: Flag = False,
 ) -> int:
     """Compute the steady state and the modes of any mechanism.
@@ -137,11 +138,13 @@ def mechanism(
         Number of modes, from the lowest.
     time
         Time in seconds at which motions that depend on time are evaluated.
+    allow_large_strain
+        Accept steady strains of beams above 20 %.
     json
         Print JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is that of rounding.
     """
     described = library.mechanism(name)
-    found = described.solve(modes, time)
+    found = described.solve(modes, time, allow_large_strain)
     if json:
         plain = msgspec.json.encode(answer.plain(described.text.name, found))
         print(msgspec.json.format(plain).decode())
@@ -150,7 +153,8 @@ def mechanism(
     console.print(answer.modes(found, described.text.title or described.text.name))
     console.print(answer.state(found))
     console.print(answer.redundant(found), markup=False, soft_wrap=True)
-    console.print(answer.NOTE, markup=False, soft_wrap=True)
+    for line in answer.notes(found):
+        console.print(line, markup=False, soft_wrap=True)
     return PASSED
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from ...cases.campbell.sweep import Named
-from ...core.solve import LARGE_STRAIN
+from ...core.element.measures import LARGE_STRAIN
 from .units import Units
 
 DIGITS = 7

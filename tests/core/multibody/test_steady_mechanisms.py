@@ -4,8 +4,11 @@ import math
 
 import pytest
 
+from southwell import multibody as mb
 from southwell.core.multibody import equilibrium
+from southwell.core.multibody.loops import assemble
 from southwell.core.multibody.mechanism import at_time
+from southwell.core.multibody.newton import relaxed
 from southwell.core.multibody.tree import compile_tree
 from southwell.tests.support import guesses
 from southwell.tests.support.mechanisms import CASES
@@ -29,3 +32,28 @@ def test_another_state_is_detected() -> None:
     there = equilibrium.steady(tree, guess)
     with pytest.raises(AssertionError, match="another state"):
         guesses.same(tree, {"swing.rz": math.pi}, there, [100])
+
+
+def pendulums() -> mb.Mechanism:
+    """Two pendulums that hang along x from the ground, independently of each other."""
+    bodies = tuple(mb.Body(name, mb.inertia(1.0, 0.1, (0.5, 0.0, 0.0))) for name in ("one", "other"))
+    joints = tuple(mb.Joint(f"of {b.name}", "revolute", "ground", b.name) for b in bodies)
+    return mb.Mechanism(bodies, joints, gravity=(9.81, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(("stands", "ends"), [(0.0, True), (math.pi, False)])
+def test_relaxation_does_not_end_at_an_unstable_equilibrium(stands: float, ends: bool) -> None:
+    """One pendulum falls from 1.2 rad while the other hangs or stands on its head."""
+    tree = compile_tree(pendulums())
+    found = relaxed(tree, assemble(tree, {"of one.rz": 1.2, "of other.rz": stands}))
+    assert (found is not None) == ends
+
+
+def test_without_a_state_near_the_guess_the_one_elsewhere_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    tree = compile_tree(pendulums())
+    monkeypatch.setattr(equilibrium, "followed", lambda tree, q, grow: (0.25, None))
+    monkeypatch.setattr(equilibrium, "relaxed", lambda tree, q, towards: None)
+    with pytest.raises(
+        mb.MechanismError, match=r"reached 25 % .* one is found, with of other.rz = 0, of one.rz = 0: give a"
+    ):
+        equilibrium.steady(tree, {"of one.rz": 1.2, "of other.rz": math.pi})
