@@ -6,7 +6,7 @@ Axes, defined here and converted by each adapter (right-handed, all rotating wit
 * ``z`` is the rotor's axis: the rotor rotates at ``omega`` about ``+z``;
 * ``y = z × x`` lies in the plane of rotation, in the direction of motion.
 
-Motion along ``y`` (bending about ``z``) is chordwise, edgewise or lag; motion along ``z`` (bending about ``y``) is
+Motion along ``y`` (bending about ``z``) is edgewise (chordwise, lag); motion along ``z`` (bending about ``y``) is
 flapwise. Section axes are the blade axes rotated by ``twist`` about ``x`` (right-handed: from ``y`` towards ``z``).
 
 Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bending about y, bending about z)``;
@@ -99,7 +99,7 @@ def _on_stations(blade: Blade) -> tuple[float, ...]:
 def section_stiffness(
     EA: ArrayLike, GJ: ArrayLike, EI_y: ArrayLike, EI_z: ArrayLike, GA_y: ArrayLike = np.inf, GA_z: ArrayLike = np.inf
 ) -> Array:
-    """Uncoupled section stiffness (n, 6, 6), N and N m²; EI_y resists flap, EI_z chordwise motion (at zero twist)."""
+    """Uncoupled section stiffness (n, 6, 6), N and N m²; EI_y resists flap, EI_z edgewise motion (at zero twist)."""
     return _diagonal(EA, GA_y, GA_z, GJ, EI_y, EI_z)
 
 

@@ -75,7 +75,7 @@ CANTILEVER = np.array(
 
 WRIGHT_SPEED, WRIGHT = 6.0, 7.3604
 """First flapwise frequency of the rotating beam without a hub (Wright et al., J. Appl. Mech. 49, 1982, 197–202, Table 3a).
-The chordwise frequency is √(ω² − Ω²): the same tension, and spin softening (inextensible)."""
+The edgewise frequency is √(ω² − Ω²): the same tension, and spin softening (inextensible)."""
 
 TIP_AT_REST = 1.5573
 """First frequency with a point mass as heavy as the beam at its tip: 1 + 1/(cos β cosh β) = β (tan β − tanh β)."""

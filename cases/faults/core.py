@@ -43,7 +43,7 @@ FAULTS = (
     _core(
         "no geometric stiffness",
         "the centrifugal tension does not stiffen",
-        "first chordwise −71 %",
+        "first edgewise −71 %",
         (solution, BALANCE, modelled(geometric=False)),
         PARK,
         True,
@@ -51,15 +51,15 @@ FAULTS = (
     _core(
         "softening's sign",
         "spin softening is added instead of subtracted",
-        "first chordwise +57 %",
+        "first edgewise +57 %",
         (solution, BALANCE, softening(-1.0)),
         PARK,
         True,
     ),
     _core(
         "frozen frame",
-        "linearised in a frame that does not rotate: chordwise is read as flapwise",
-        "first chordwise +31 %",
+        "linearised in a frame that does not rotate: edgewise is read as flapwise",
+        "first edgewise +31 %",
         (solution, BALANCE, softening(0.0, coriolis=False)),
         PARK,
         True,
@@ -67,7 +67,7 @@ FAULTS = (
     _core(
         "axis shifted",
         "reference axis shifted by a quarter of the radius of gyration, without the coupling terms",
-        "chordwise +2 to +3 %",
+        "edgewise +2 to +3 %",
         core_modes(core_faults.shifted),
         PARK,
         True,
@@ -75,7 +75,7 @@ FAULTS = (
     _core(
         "no Coriolis",
         "no Coriolis force",
-        "first chordwise 1.7 % at γ = 10",
+        "first edgewise 1.7 % at γ = 10",
         (solution, BALANCE, modelled(coriolis=False)),
         FAST,
         True,
@@ -106,7 +106,7 @@ FAULTS = (
     _core(
         "half the Coriolis force",
         "a factor of 2 lost in the Coriolis terms",
-        "first chordwise 1.2 % at γ = 10",
+        "first edgewise 1.2 % at γ = 10",
         (
             solution,
             BALANCE,
@@ -121,14 +121,14 @@ FAULTS = (
     _core(
         "no prestretch",
         "the steady state is that of the undeformed blade",
-        "first chordwise 10 % at γ = 50",
+        "first edgewise 10 % at γ = 50",
         (solution, BALANCE, modelled(prestretch=False)),
         AXIAL,
     ),
     _core(
         "half the softening",
         "spin softening of half the size",
-        "first chordwise +17 %",
+        "first edgewise +17 %",
         (solution, BALANCE, softening(0.5)),
         PARK,
     ),
@@ -208,9 +208,9 @@ FAULTS = (
           (solve, "discretize", chained(scaled_tip(0.0))), TIP),
     _core("offset's sign", "the mass centre of the tip body is behind the axis instead of ahead of it", "lowest modes ±0.5 %",
           (solve, "discretize", chained(mirrored_tip)), CONED),
-    _core("axes swapped", "flapwise and chordwise bending stiffness are exchanged", "factor 2",
+    _core("axes swapped", "flapwise and edgewise bending stiffness are exchanged", "factor 2",
           (sections, "stiffness_at", valued(swapped_axes)), Trial("pretwisted-beam", (0.0,), ("assumed-modes",))),
-    _core("bending stiffness", "EI_z half a percent too large", "chordwise at rest +0.25 %",
+    _core("bending stiffness", "EI_z half a percent too large", "edgewise at rest +0.25 %",
           (sections, "stiffness_at", valued(scaled_strain(BEND_Z, 1.005))), Trial("park-cantilever", (0.0,), ("exact-beam",))),
     _core("torsional stiffness", "GJ one percent too large", "first torsion +0.5 %",
           (sections, "stiffness_at", valued(scaled_strain(TORSION, 1.01))), TORSIONAL),

@@ -47,7 +47,7 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     density: Annotated[float, _positive("kg/m³")]
     A: Annotated[float, _positive("area of the cross-section, m²")]
     I_y: Annotated[float, _positive("second moment of area about y, resisting flapwise motion, m⁴")]
-    I_z: Annotated[float, _positive("second moment of area about z, resisting chordwise motion, m⁴")]
+    I_z: Annotated[float, _positive("second moment of area about z, resisting edgewise motion, m⁴")]
     J: Annotated[float, _positive("torsion constant, m⁴")]
     hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
     rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True

@@ -24,7 +24,7 @@ from .readers.source import Unused
 from .toml import convert, document, finite
 
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
-Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
+Motion = Literal["axial", "edgewise", "flapwise", "torsion"]
 Values = list[Annotated[float, Meta(ge=0)]] | str
 
 

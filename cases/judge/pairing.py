@@ -22,7 +22,7 @@ from ...core.participation import DOMINANT_FRACTION
 
 Array = NDArray[np.float64]
 
-MOTIONS = ("axial", "chordwise", "flapwise", "torsion")
+MOTIONS = ("axial", "edgewise", "flapwise", "torsion")
 """The four columns of a shape for a blade along x: motion along x, y, z, and rotation about x."""
 
 LEAST_MAC = 0.8
@@ -91,7 +91,7 @@ def families(modes: Modes, weight: Array) -> tuple[str, ...]:
 
 
 def numbered(families: Iterable[str]) -> list[str]:
-    """Each family with its number within it: ``flapwise 1``, ``chordwise 1``, ``flapwise 2``."""
+    """Each family with its number within it: ``flapwise 1``, ``edgewise 1``, ``flapwise 2``."""
     seen: Counter[str] = Counter()
     out = []
     for family in families:

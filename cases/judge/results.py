@@ -37,7 +37,7 @@ class Cell:
         case: name of the case; if it has several blades, followed by a slash and the blade's name.
         omega: rotor speed, rad/s.
         mode: number of the mode within the reference's modes at this speed, from 1.
-        family: chordwise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
+        family: edgewise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
         code: short name of the code.
         version: version of the code.
         role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),

@@ -167,7 +167,7 @@ CORE_FAULTS = (
     CoreFault("softening's sign", "spin softening is added instead of subtracted", softening_reversed, right, PLAIN),
     CoreFault(
         "frozen frame",
-        "linearised in a frame that does not rotate: chordwise is read as flapwise",
+        "linearised in a frame that does not rotate: edgewise is read as flapwise",
         frozen_frame,
         right,
         PLAIN,

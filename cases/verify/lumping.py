@@ -26,7 +26,7 @@ ELEMENTS = (10, 20, 50, 100, 200)
 """Numbers of elements; the paper uses 50."""
 
 COUNT = 3
-"""Number of chordwise modes, as in Table 1."""
+"""Number of edgewise modes, as in Table 1."""
 
 POINT_MASSES = Effects(rotary_inertia=False)
 """The paper's sections have mass but no moments of inertia."""
@@ -38,7 +38,7 @@ def variant(mass: Mass, stiffness: Measure) -> str:
 
 
 def lumping(blade: Blade) -> tuple[Level, ...]:
-    """The blade's lowest chordwise frequencies at ``OMEGA`` for every combination of mass and stiffness, refined.
+    """The blade's lowest edgewise frequencies at ``OMEGA`` for every combination of mass and stiffness, refined.
 
     The finest answer with consistent mass and corotational stiffness is the exact value to compare with.
     """
@@ -49,6 +49,6 @@ def lumping(blade: Blade) -> tuple[Level, ...]:
             mesh_modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, effects=POINT_MASSES), weight
         )
         named = zip(families(found, weight), found.frequencies.tolist(), strict=True)
-        chordwise = [f for family, f in named if family == MOTIONS[1]][:COUNT]
-        rows += [Level(CASE, OMEGA, k, variant(mass, stiffness), n, f) for k, f in enumerate(chordwise, 1)]
+        edgewise = [f for family, f in named if family == MOTIONS[1]][:COUNT]
+        rows += [Level(CASE, OMEGA, k, variant(mass, stiffness), n, f) for k, f in enumerate(edgewise, 1)]
     return tuple(rows)

@@ -7,7 +7,7 @@ The file has a header, one line per frequency, and comments after ``#``::
     15,          0.9586,         flapwise 1
 
 Speed may be in rad/s, rpm or gamma (dimensionless cases), frequency in rad/s, Hz or gamma. A mode is identified by its
-family (edgewise and lag mean chordwise) and its ordinal within the family, or by its number among all modes of the
+family (chordwise and lag mean edgewise) and its ordinal within the family, or by its number among all modes of the
 blade, from the lowest; the family may be in a separate column. Two columns are optional: ``blade`` (as in
 ``southwell cases``: ``park-blade/windpact``), required if several blades are compared, and ``uncertainty [%]`` (or in
 the frequency's unit), by default half a unit of the last digit.
@@ -38,7 +38,7 @@ UNCERTAINTY = ("uncertainty [%]", *(f"uncertainty [{unit}]" for unit in UNITS))
 INPUTS = "input uncertainty [%]"
 OTHERS = ("mode", "family", "blade", *UNCERTAINTY, INPUTS)
 FAMILIES = (*MOTIONS, MIXED)
-ALIASES = {"edgewise": "chordwise", "edge": "chordwise", "lag": "chordwise", "flap": "flapwise"}
+ALIASES = {"chordwise": "edgewise", "edge": "edgewise", "lag": "edgewise", "flap": "flapwise"}
 """Names of the families in other programs."""
 
 NUMBER = re.compile(r"\d+(\.\d*)?([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?")

@@ -42,7 +42,7 @@ class ExudynAncf:
     title = "Exudyn, ANCF cable"
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "ANCF cable", "references.exudyn_ancf")
-    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
+    motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(rotary_inertia=False)
     levels = (10, 20, 40)
     order = 4

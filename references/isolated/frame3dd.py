@@ -52,7 +52,7 @@ class Frame3DD:
     title = "Frame3DD, frame elements"
     shares: Shares = "nothing"
     independence = Independence("Frame3DD", "frame elements", "references.frame3dd_frame", eigensolver="Frame3DD")
-    motions: tuple[Motion, ...] = ("chordwise", "flapwise")
+    motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2

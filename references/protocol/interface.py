@@ -17,7 +17,7 @@ from ...core.modes import Modes
 
 Shares = Literal["nothing", "mechanical model", "discretisation"]
 
-Motion = Literal["axial", "chordwise", "flapwise", "torsion"]
+Motion = Literal["axial", "edgewise", "flapwise", "torsion"]
 
 MOTIONS: tuple[Motion, ...] = get_args(Motion)
 """The four columns of a shape of a blade along x: displacement along x, y, z, and rotation about x."""

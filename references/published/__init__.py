@@ -18,7 +18,7 @@ from ...core.effects import Effects
 COARSEST = 0.02
 """Largest relative target allowed for a table: twenty times the paper's 0.1 %."""
 
-Family = Literal["chordwise", "flapwise", "axial", "torsion"]
+Family = Literal["edgewise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Unit = Literal["rad/s", "rpm, Hz", "dimensionless"]
 

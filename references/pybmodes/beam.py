@@ -91,7 +91,7 @@ class PyBModes:
     title = "pyBModes, linear beam"
     shares: Shares = "nothing"
     independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
-    motions: tuple[Motion, ...] = ("chordwise", "flapwise", "torsion")
+    motions: tuple[Motion, ...] = ("edgewise", "flapwise", "torsion")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2

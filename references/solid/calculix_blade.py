@@ -50,7 +50,7 @@ class Calculix:
     title = "CalculiX, solid elements"
     shares: Shares = "nothing"
     independence = Independence("CalculiX", "solid elements", "CalculiX", eigensolver="CalculiX")
-    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
+    motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = calculix.EFFECTS
     levels = (10, 20, 40)
     order = 4

@@ -63,7 +63,7 @@ class SouthwellEquation:
     title = "Southwell's equation"
     shares: Shares = "nothing"
     independence = Independence("references.ritz", "Putter and Manor 1978", "references.assumed_modes")
-    motions: tuple[Motion, ...] = ("chordwise", "flapwise")
+    motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = LEVELS
     order = 0

@@ -31,7 +31,7 @@ from .straight_beam import LEVELS, line, refusal, refuse, terms, version
 Array = NDArray[np.float64]
 
 
-def chordwise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Array, Array]:
+def edgewise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Array, Array]:
     """M, C, K (2n, 2n) of stretch and edgewise bending at ``omega`` (rad/s), and the coordinates' shapes (21, 4, 2n)."""
     at = line(blade, terms)
     s, strain, _ = pinned(at.ends, terms, at.s)
@@ -58,7 +58,7 @@ class YooShin:
     title = "Yoo and Shin (1998), Rayleigh–Ritz"
     shares: Shares = "nothing"
     independence = Independence("references.ritz", "Yoo and Shin 1998", "references.assumed_modes")
-    motions: tuple[Motion, ...] = ("axial", "chordwise", "flapwise")
+    motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(prestretch=False, rotary_inertia=False)
     levels = LEVELS
     order = 0
@@ -81,7 +81,7 @@ class YooShin:
         refuse(self.unsupported(blade))
         start = perf_counter()
         number = terms(blade, elements)
-        M, C, K, shape = chordwise(blade, omega, number)
+        M, C, K, shape = edgewise(blade, omega, number)
         _, flap = bendings(blade, number)
         parts = (
             part(shape, *coupled_modes(M, C, K, count)),

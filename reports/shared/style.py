@@ -21,7 +21,7 @@ from ...cases.input import atomic
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
-LINES = {"chordwise": "-", "flapwise": (0, (5, 2)), "torsion": (0, (1, 1.5)), "axial": (0, (6, 2, 1, 2)), "mixed": "-"}
+LINES = {"edgewise": "-", "flapwise": (0, (5, 2)), "torsion": (0, (1, 1.5)), "axial": (0, (6, 2, 1, 2)), "mixed": "-"}
 
 RC: dict[Any, Any] = {
     "svg.hashsalt": "southwell",

@@ -64,7 +64,7 @@ def sentence(found: Taken) -> str:
     """One sentence: how much of the paper's error is due to lumping."""
     percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
     return (
-        f"With {PAPER} elements, lumping the mass causes {percent} of the error of chordwise modes 1 to {len(found.shares)}; "
+        f"With {PAPER} elements, lumping the mass causes {percent} of the error of edgewise modes 1 to {len(found.shares)}; "
         "the rest is due to a beam stiffness that is linear in the parent body's frame."
     )
 
@@ -81,7 +81,7 @@ def lumping(run: Run) -> Figure | None:
         _parts(left, found)
         _falling(right, found)
         shares = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
-        about = f"{CASE}, {OMEGA:g} rad/s, chordwise modes 1 to {len(found.shares)}; from core with its switches"
+        about = f"{CASE}, {OMEGA:g} rad/s, edgewise modes 1 to {len(found.shares)}; from core with its switches"
         title(figure, f"How much of the error is the lumped mass? {shares}", about)
     return figure
 
@@ -101,7 +101,7 @@ def _parts(axes: Axes, found: Taken) -> None:
     for k, both in enumerate(100 * found.at(BOTH)):
         axes.plot([both], [k], "|", ms=24, mew=2.2, color=INK)
         axes.annotate(f"{_signed(both)} %", (both, k - 0.36), ha="center", va="center", size=8, weight="bold")
-    axes.set_yticks(modes, [f"chordwise {k + 1}" for k in modes])
+    axes.set_yticks(modes, [f"edgewise {k + 1}" for k in modes])
     axes.tick_params(axis="y", length=0)
     axes.set_ylim(len(modes) - 0.1, -0.6)
     axes.set_xlim(122 * found.at(BOTH).min(), 0)
@@ -130,4 +130,4 @@ def _falling(axes: Axes, found: Taken) -> None:
     axes.set_xticks(found.elements, [str(n) for n in found.elements])
     axes.set_xlabel("elements")
     axes.set_ylabel("|error|, relative")
-    axes.set_title(f"chordwise {len(found.shares)}, refined", size=9)
+    axes.set_title(f"edgewise {len(found.shares)}, refined", size=9)

@@ -17,7 +17,7 @@ from southwell.references.theories import assumed_modes, yoo_shin
 from ..support import tapered_beams
 from ..support.straight_blades import X, Y, Z, family, park
 
-COLUMN = {"chordwise": Y, "flapwise": Z, "axial": X}
+COLUMN = {"edgewise": Y, "flapwise": Z, "axial": X}
 
 DATA = [
     (name, series, datum)
@@ -120,7 +120,7 @@ def test_no_datum_is_duplicated(name: str) -> None:
     ("printed", "value", "half_unit"), [("189.7", 189.7, 0.05), ("4.9700", 4.97, 5e-5), ("12", 12.0, 0.5)]
 )
 def test_rounding_is_half_a_unit_of_the_last_digit(printed: str, value: float, half_unit: float) -> None:
-    datum = Datum(family="chordwise", mode=1, speed=0.0, printed=printed)
+    datum = Datum(family="edgewise", mode=1, speed=0.0, printed=printed)
     assert datum.value == value
     assert datum.half_unit == pytest.approx(half_unit, rel=1e-15)
 
@@ -143,7 +143,7 @@ provenance = "read"
 description = "exact"
 lacks = []
 hub_ratio = 0.0
-data = [{ family = "chordwise", mode = 1, speed = 10, printed = "11.71" }]
+data = [{ family = "edgewise", mode = 1, speed = 10, printed = "11.71" }]
 """
 
 
@@ -162,7 +162,7 @@ def test_a_valid_file_is_read() -> None:
         ('printed = "11.71"', 'printed = "11.71", suspect = true', ["evidence"]),
         ('printed = "11.71"', 'printed = "11.71", colour = "red"', ["colour"]),
         ("lacks = []", 'lacks = ["gravity"]', ["lacks", "gravity"]),
-        ('family = "chordwise"', 'family = "sideways"', ["family", "sideways"]),
+        ('family = "edgewise"', 'family = "sideways"', ["family", "sideways"]),
         ('unit = "rad/s"', 'unit = "Hz"', ["unit", "Hz"]),
         ("lacks = []", "lacks = []\ntarget = 0.02", ["target", "grounds"]),
         ("lacks = []", "lacks = [", ["line"]),

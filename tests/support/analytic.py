@@ -46,7 +46,7 @@ class Analytic:
     shares: Shares = "nothing"
     effects: Effects = ALL_EFFECTS
     hint: str = "pip install nothing"
-    motions: tuple[str, ...] = ("axial", "chordwise", "flapwise", "torsion")
+    motions: tuple[str, ...] = ("axial", "edgewise", "flapwise", "torsion")
 
     def version(self) -> str | None:
         return "1.0" if self.installed else None

@@ -20,7 +20,7 @@ PARK = uniform_blade(
 )
 """The paper's cantilever (identified from its printed digits, not printed there)."""
 
-EXACT_CHORDWISE = np.array([11.710953, 70.419355, 189.81994])
+EXACT_EDGEWISE = np.array([11.710953, 70.419355, 189.81994])
 EXACT_FLAPWISE = np.array([15.400199, 71.126584, 190.083784])
 """Full extensible beam at 10 rad/s, rad/s: two spectral solutions that agree to 1e-6."""
 

@@ -19,7 +19,7 @@ PARK = uniform_blade(
 )
 NO_ROTARY = replace(PARK, mass=np.repeat(section_mass(RHO * A), 2, axis=0))
 
-# Chordwise and flapwise, modes 1 to 3, at 10 rad/s, rad/s. FULL: two independent spectral solutions of the extensible
+# Edgewise and flapwise, modes 1 to 3, at 10 rad/s, rad/s. FULL: two independent spectral solutions of the extensible
 # beam with rotary inertia. INEXTENSIBLE: the exact Euler-Bernoulli beam without stretch or rotary inertia. STRETCHED: an
 # ANCF cable's converged values, so a check of the tree by other theory, and of the cable's adapter only.
 FULL = np.array([[11.710953, 70.419355, 189.81994], [15.400199, 71.126584, 190.083784]])
@@ -46,7 +46,7 @@ def cantilever(x: np.ndarray, beta: float) -> np.ndarray:
 
 
 def families(modes, count: int) -> np.ndarray:
-    """(2, count) chordwise and flapwise frequencies, told apart by which way the blade moves."""
+    """(2, count) edgewise and flapwise frequencies, told apart by which way the blade moves."""
     along_y, along_z = np.linalg.norm(modes.shapes[:, :, 1], axis=1), np.linalg.norm(modes.shapes[:, :, 2], axis=1)
     lateral = np.maximum(along_y, along_z) > np.linalg.norm(modes.shapes[:, :, 0], axis=1)
     return np.array(

@@ -5,7 +5,7 @@ import math
 from southwell.cases.judge.results import Cell, Level, Run
 from southwell.cases.judge.verdict import judge
 
-BEAM = (("chordwise", 10.55, 0.26), ("flapwise", 10.55, 1.26), ("chordwise", 66.1, 6.0), ("flapwise", 66.1, 7.0))
+BEAM = (("edgewise", 10.55, 0.26), ("flapwise", 10.55, 1.26), ("edgewise", 66.1, 6.0), ("flapwise", 66.1, 7.0))
 """Family, frequency at rest (rad/s), Southwell's coefficient."""
 
 SPEEDS = (0.0, 10.0, 20.0, 30.0)
@@ -28,7 +28,7 @@ def cell(**changes: object) -> Cell:
         "case": "beam",
         "omega": 10.0,
         "mode": 1,
-        "family": "chordwise",
+        "family": "edgewise",
         "code": "alpha",
         "version": "2.1",
         "role": "code",

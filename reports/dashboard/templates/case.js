@@ -150,7 +150,7 @@ function viewer() {
 // The chosen mode's displacements along the blade: each turned to its own phase, those under a hundredth left out.
 function spanwise(rest, mode) {
   const radius = rest.map((p) => Math.hypot(...p)), size = (k) => mode.re.map((re, i) => Math.hypot(re[k], mode.im[i][k]));
-  const all = [2, 1, 0].map((k) => ({ k, name: ["axial", "chordwise", "flapwise"][k], sizes: size(k) })), far = Math.max(...all.flatMap((c) => c.sizes));
+  const all = [2, 1, 0].map((k) => ({ k, name: ["axial", "edgewise", "flapwise"][k], sizes: size(k) })), far = Math.max(...all.flatMap((c) => c.sizes));
   const series = all.map(({ k, name, sizes }, place) => {
     const most = Math.max(...sizes), i = sizes.indexOf(most), c = mode.re[i][k] / most, s = mode.im[i][k] / most;
     return { name, most, colour: colour(place), dash: dash(place * COLOURS.length), points: radius.map((r, j) => [r, (mode.re[j][k] * c + mode.im[j][k] * s) / far]) };

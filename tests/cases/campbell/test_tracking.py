@@ -123,7 +123,7 @@ def test_a_doubt_that_stays_is_kept_and_not_guessed_away(monkeypatch: pytest.Mon
 def test_flap_and_edge_of_a_uniform_beam_cross() -> None:
     """Square beam, hub ratio 0, rotated: from rest flap rises above edge. EI_z smaller: the two cross, and do not couple.
 
-    With the chordwise motion's softening ω_c² = ω_f² − Ω² (Schilhansl 1958) at equal stiffness; here edge starts higher.
+    With the edgewise motion's softening ω_c² = ω_f² − Ω² (Schilhansl 1958) at equal stiffness; here edge starts higher.
     """
     beam = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1.2e4, EI_y=1.4e4, EI_z=1.8e4, mass=1.2, I_y=6e-4, I_z=6e-4)
     speeds = np.linspace(0.0, 20.0, 6)

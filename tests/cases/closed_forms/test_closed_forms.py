@@ -88,7 +88,7 @@ def test_cable_of_the_uniform_blade() -> None:
 
 
 def test_southwells_coefficient_of_the_uniform_cantilever() -> None:
-    """K = ∫ T φ′² / ∫ φ², with the cantilever's own mode in closed form; 1.193 flapwise, less 1 chordwise."""
+    """K = ∫ T φ′² / ∫ φ², with the cantilever's own mode in closed form; 1.193 flapwise, less 1 edgewise."""
     b = cantilever(1)
     r = (np.cosh(b) + np.cos(b)) / (np.sinh(b) + np.sin(b))
 
@@ -109,7 +109,7 @@ def test_southwells_coefficient_of_the_uniform_cantilever() -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "chordwise", "flapwise"),
+    ("code", "edgewise", "flapwise"),
     [
         (ASSUMED, ("11.71325", "70.44004", "189.93315"), ("15.40131", "71.14632", "190.19622")),
         (YOO_SHIN, ("11.71188", "70.43864", "189.93196"), ("15.40131", "71.14632", "190.19622")),
@@ -117,10 +117,10 @@ def test_southwells_coefficient_of_the_uniform_cantilever() -> None:
     ],
     ids=["assumed-modes", "yoo-shin", "exact-beam"],
 )
-def test_the_papers_cantilever(code, chordwise: tuple[str, ...], flapwise: tuple[str, ...]) -> None:
+def test_the_papers_cantilever(code, edgewise: tuple[str, ...], flapwise: tuple[str, ...]) -> None:
     """Digits of two independent spectral solutions that take the sections as rigid in torsion."""
     found = code.solve(park(), 10.0, FINE, 12)
-    for plane, digits in ((Y, chordwise), (Z, flapwise)):
+    for plane, digits in ((Y, edgewise), (Z, flapwise)):
         for frequency, text in zip(family(found, plane), digits, strict=False):
             assert round(frequency, len(text.partition(".")[2])) == float(text)
 

@@ -41,7 +41,7 @@ def test_a_stiffness_is_scaled_about_its_own_centre_and_all_else_stays(blade: Bl
 
 def test_frequencies_at_rest_follow_the_square_root() -> None:
     """ω ∝ √(EI/m) of a uniform beam without rotary inertia: flapwise with EI_flap, all bending with mass."""
-    base = modes(plain(), 0.0, 24, 2).frequencies  # flapwise 1, chordwise 1
+    base = modes(plain(), 0.0, 24, 2).frequencies  # flapwise 1, edgewise 1
     stiff = modes(apply(plain(), [parse("EI_flap=*1.21")]), 0.0, 24, 2).frequencies
     heavy = modes(apply(plain(), [parse("mass=*1.21")]), 0.0, 24, 2).frequencies
     np.testing.assert_allclose(stiff, base * [1.1, 1.0], rtol=1e-6)

@@ -21,7 +21,7 @@ CELL = Cell(
     case="beam",
     omega=10.0,
     mode=1,
-    family="chordwise",
+    family="edgewise",
     code="some-code",
     version="1.0",
     role="code",
@@ -45,7 +45,7 @@ def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "abc", "a machine", MADE))
     (found,) = history.read(file).entries
-    beam = Point("beam", "some-code", 10.0, 1, "chordwise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25, 1e-3)
+    beam = Point("beam", "some-code", 10.0, 1, "edgewise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25, 1e-3)
     none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 0.25, 1e-3)
     caught = Caught("frozen frame", "beam", 10.0, ("some-code",))
     assert found == Entry(

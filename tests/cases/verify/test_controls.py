@@ -44,7 +44,7 @@ def test_softening_reversed_adds_twice_the_square_of_the_speed() -> None:
     assert first(wrong, Z) == pytest.approx(first(right, Z), rel=5e-5)
 
 
-def test_a_frozen_frame_reads_chordwise_as_flapwise() -> None:
+def test_a_frozen_frame_reads_edgewise_as_flapwise() -> None:
     wrong, right = made(core_faults.frozen_frame), exact(park())
     assert wrong.frequencies[:2] == pytest.approx([first(right, Z)] * 2, rel=5e-5)
     assert wrong.frequencies[0] / first(right) - 1.0 == pytest.approx(0.315, abs=1e-3)

@@ -71,7 +71,7 @@ def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
     found = {c.family: c for c in of("lost")}
     assert found["flapwise"].verdict == "fail"
     assert found["flapwise"].reason.startswith("no partner")
-    assert found["chordwise"].verdict == "pass"
+    assert found["edgewise"].verdict == "pass"
     assert summary.status(run("LOST")) == 1
 
 

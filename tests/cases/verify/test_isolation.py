@@ -31,7 +31,7 @@ slenderness = 1000
 [speeds]
 gamma = [0, 0.1]
 [compare]
-motions = ["chordwise", "flapwise"]
+motions = ["edgewise", "flapwise"]
 modes = 2
 time_limit = 20
 """

@@ -27,7 +27,7 @@ slenderness = 1000
 gamma = SPEEDS
 
 [compare]
-motions = ["chordwise", "flapwise"]
+motions = ["edgewise", "flapwise"]
 modes = 4
 
 [discretisation]
@@ -69,7 +69,7 @@ def test_a_right_code_passes_with_numbers_to_show_for_it(case) -> None:
     cells = of(run, "good")
     assert [c.verdict for c in cells] == ["pass"] * 4
     assert [c.mode for c in cells] == [1, 2, 3, 4]
-    assert sorted(c.family for c in cells[:2]) == ["chordwise", "flapwise"]
+    assert sorted(c.family for c in cells[:2]) == ["edgewise", "flapwise"]
     for c in cells:
         assert c.uncertainty is not None
         assert c.difference is not None
@@ -119,8 +119,8 @@ def test_verdicts(case, code: str, verdict: str, phrase: str) -> None:
 def test_a_motion_that_a_code_does_not_have_is_not_applicable(case) -> None:
     by_family = {c.family: c for c in of(solve(case(), "analytic:PLANAR"), "planar")[:2]}
     assert by_family["flapwise"].verdict == "pass"
-    assert by_family["chordwise"].verdict == "not applicable"
-    assert by_family["chordwise"].reason == "this code declares that its modes have no chordwise motion"
+    assert by_family["edgewise"].verdict == "not applicable"
+    assert by_family["edgewise"].reason == "this code declares that its modes have no edgewise motion"
 
 
 @pytest.mark.slow
@@ -205,7 +205,7 @@ def test_a_speed_without_steady_state_is_bad_input(case) -> None:
 
 
 def test_more_modes_than_there_are_is_bad_input(case) -> None:
-    many = case("[0]", 'motions = ["chordwise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
+    many = case("[0]", 'motions = ["edgewise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
     with pytest.raises(CaseError, match=r"compare\.modes: 4: at 0 rad/s only 0 of the lowest 36 modes qualify"):
         solve(many)
 

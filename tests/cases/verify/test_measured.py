@@ -25,7 +25,7 @@ from southwell.reports.cli import app as cli
 HEAD = "speed [rad/s], measured [rad/s], mode, uncertainty [%]\n"
 
 # the full extensible beam at 10 rad/s, by two independent spectral solutions that agree to 1e-6
-CHORDWISE, FLAPWISE = 11.710953, 15.400199
+EDGEWISE, FLAPWISE = 11.710953, 15.400199
 
 NONE = "speed [rad/s], measured [rad/s], mode\n"
 
@@ -49,7 +49,7 @@ def run(file: UserResults) -> Run:
 
 def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(tmp_path: Path) -> None:
     """At 10 rad/s, which the case does not have: 1 % off with u_D = 2 %, and 10 % off."""
-    text = f"{HEAD}10, {1.01 * CHORDWISE:.6f}, chordwise 1, 2\n10, {0.9 * FLAPWISE:.6f}, flapwise 1, 2\n10, 900, axial 1, 2\n"
+    text = f"{HEAD}10, {1.01 * EDGEWISE:.6f}, edgewise 1, 2\n10, {0.9 * FLAPWISE:.6f}, flapwise 1, 2\n10, 900, axial 1, 2\n"
     found = run(read(tmp_path, text))
     near, far, absent = (c for c in found.cells if c.code == "rig")
     assert [(c.verdict, c.role, c.omega, c.shares) for c in (near, far)] == [("measured", "measured", 10.0, "")] * 2
@@ -87,7 +87,7 @@ def test_more_uncertain_data_never_make_an_error_visible(ratio: float, u: float,
     head = Head("park-cantilever", "rig", "measured, in rig.csv", "measured", 1e-3)
 
     def shown(data: float, of_inputs: float):
-        return measured(head, 10.0, 0, reference(), Datum(ratio * CHORDWISE, data, of_inputs))
+        return measured(head, 10.0, 0, reference(), Datum(ratio * EDGEWISE, data, of_inputs))
 
     sure = shown(u, inputs)
     for vague in (shown(u + more, inputs), shown(u, inputs + more)):

@@ -36,17 +36,17 @@ def share(part: str, mode: str) -> float:
     return change
 
 
-def chordwise(code: object, omega: float = 10.0) -> np.ndarray:
+def edgewise(code: object, omega: float = 10.0) -> np.ndarray:
     return family(code.solve(park(), omega, 24, 10), Y)  # type: ignore[attr-defined]
 
 
 def test_no_stretch_no_rotary_inertia_is_what_the_closed_forms_say() -> None:
     """Yoo and Shin's model lacks the steady stretch and rotary inertia; Euler–Bernoulli without stretch: 11.71325 rad/s."""
-    exact, theirs = chordwise(exact_beam.CODE), chordwise(yoo_shin.CODE)
+    exact, theirs = edgewise(exact_beam.CODE), edgewise(yoo_shin.CODE)
     for k in range(3):
-        both = share("no prestretch", f"chordwise {k + 1}") + share("no rotary", f"chordwise {k + 1}")
+        both = share("no prestretch", f"edgewise {k + 1}") + share("no rotary", f"edgewise {k + 1}")
         assert both == pytest.approx(theirs[k] / exact[k] - 1.0, abs=2e-6)
-    assert share("no stretch", "chordwise 1") == pytest.approx(11.71325 / 11.71131 - 1.0, abs=2e-6)
+    assert share("no stretch", "edgewise 1") == pytest.approx(11.71325 / 11.71131 - 1.0, abs=2e-6)
 
 
 def test_shear_and_rotary_inertia_at_rest_are_rayleighs_corrections() -> None:
@@ -74,14 +74,14 @@ def test_shear_and_rotary_inertia_at_rest_are_rayleighs_corrections() -> None:
 
 def test_lumping_and_its_frame_make_up_the_papers_error() -> None:
     """Point masses on beams linear in the parent's frame, 50 elements: 189.6735 rad/s, of 189.92222 without rotary inertia."""
-    both = share("lumped mass", "chordwise 3") + share("parent's frame", "chordwise 3")
+    both = share("lumped mass", "edgewise 3") + share("parent's frame", "edgewise 3")
     assert both == pytest.approx(189.6735 / 189.92222 - 1.0, abs=5e-6)
-    assert both == pytest.approx(share("both", "chordwise 3"), abs=2e-6)
+    assert both == pytest.approx(share("both", "edgewise 3"), abs=2e-6)
 
 
 def test_coriolis_is_nothing_out_of_the_plane() -> None:
     assert abs(share("no Coriolis", "flapwise 1")) < 1e-7
-    assert share("no Coriolis", "chordwise 1") == pytest.approx(1.2e-4, abs=1e-5)  # Yoo–Shin, coupled or not: 0.012 %
+    assert share("no Coriolis", "edgewise 1") == pytest.approx(1.2e-4, abs=1e-5)  # Yoo–Shin, coupled or not: 0.012 %
 
 
 def test_what_a_blade_lacks_is_not_switched_off() -> None:
@@ -120,7 +120,7 @@ def run() -> Run:
 def test_rounding_is_that_of_the_printed_digits() -> None:
     """Half a unit of the last digit of 11.71, and what core's own extrapolation leaves open."""
     datum = published.load("park2010").series[0].data[0]
-    (bound,) = (s for s in run().shares if s.part == "printed digits" and s.mode == "chordwise 1")
+    (bound,) = (s for s in run().shares if s.part == "printed digits" and s.mode == "edgewise 1")
     assert bound.bound
     assert bound.cause == "rounding"
     assert bound.change == pytest.approx(datum.half_unit / datum.value, rel=1e-2)
@@ -133,7 +133,7 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
     (bound,) = (s for s in error_budget.uncertain(CASE, rows, cells) if s.part == "codes, refined")
     assert (bound.change, bound.mode, bound.bound) == (
         max(c.uncertainty or 0.0 for c in cells if c.role == "code"),
-        "chordwise 1",
+        "edgewise 1",
         True,
     )
     assert error_budget.uncertain(CASE, (), run().cells) == []
@@ -147,9 +147,9 @@ def test_shares_survive_the_disk_and_are_shown(tmp_path: Path) -> None:
     assert [row["cause"] for row in rows] == sorted(
         (row["cause"] for row in rows), key=["discretisation", "model form", "rounding"].index
     )
-    assert {"chordwise 1", "flapwise 3"} <= set(rows[0])
+    assert {"edgewise 1", "flapwise 3"} <= set(rows[0])
     (inertia,) = (row for row in rows if row["what"] == "no rotary inertia")
-    assert inertia["chordwise 3"].startswith("+0.054")
+    assert inertia["edgewise 3"].startswith("+0.054")
     assert reported.heading(run(), CASE, RAD_S) == "10 rad/s"
-    bare = Share(CASE, 10.0, "chordwise 9", "model form", "x", None)
-    assert reported.rows(replace(run(), shares=(bare,)), CASE)[0]["chordwise 9"] == "no such mode"
+    bare = Share(CASE, 10.0, "edgewise 9", "model form", "x", None)
+    assert reported.rows(replace(run(), shares=(bare,)), CASE)[0]["edgewise 9"] == "no such mode"

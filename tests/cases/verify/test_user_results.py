@@ -18,7 +18,7 @@ from southwell.reports.cli import app as cli
 HEAD = "speed [rad/s], frequency [rad/s], mode\n"
 
 # the full extensible beam, by two independent spectral solutions that agree to 1e-6
-EXACT = {"chordwise 1": 11.710953, "flapwise 1": 15.400199, "chordwise 2": 70.419355, "flapwise 2": 71.126584}
+EXACT = {"edgewise 1": 11.710953, "flapwise 1": 15.400199, "edgewise 2": 70.419355, "flapwise 2": 71.126584}
 
 
 def read(tmp_path: Path, text: str, name: str = "rig") -> user_results.UserResults:
@@ -55,12 +55,12 @@ def test_units_and_digits(tmp_path: Path) -> None:
 
 
 def test_families_by_the_names_that_others_use(tmp_path: Path) -> None:
-    rows = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n10, 70, lag 2\n10, 15.4, flap 1\n10, 1, torsion 1").rows
-    assert [(r.family, r.mode) for r in rows] == [("chordwise", 1), ("chordwise", 2), ("flapwise", 1), ("torsion", 1)]
+    rows = read(tmp_path, HEAD + "10, 11.7, chordwise 1\n10, 70, lag 2\n10, 15.4, flap 1\n10, 1, torsion 1").rows
+    assert [(r.family, r.mode) for r in rows] == [("edgewise", 1), ("edgewise", 2), ("flapwise", 1), ("torsion", 1)]
 
 
 def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> None:
-    text = "speed [gamma], frequency [gamma], mode, uncertainty [%]\n2, 3.6, chordwise 1, 0.5\n2, 3.6, flapwise 1,\n"
+    text = "speed [gamma], frequency [gamma], mode, uncertainty [%]\n2, 3.6, edgewise 1, 0.5\n2, 3.6, flapwise 1,\n"
     one, two = read(tmp_path, text).rows
     assert one.value.uncertainty == pytest.approx(5e-3)
     assert two.value.uncertainty == pytest.approx(0.05 / 3.6)
@@ -69,26 +69,26 @@ def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> No
 @pytest.mark.slow
 def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
     lines = [f"10, {value:.6f}, {name}" for name, value in EXACT.items()]
-    right, coarse, wrong = lines[:2], f"10, {EXACT['chordwise 2']:.1f}, chordwise 2", "10, 71.30, flapwise 2"
+    right, coarse, wrong = lines[:2], f"10, {EXACT['edgewise 2']:.1f}, edgewise 2", "10, 71.30, flapwise 2"
     cells = of(run(read(tmp_path, HEAD + "\n".join([*right, coarse, wrong, "10, 190.1, 6", "10, 800, axial 1"]))))
     assert [c.verdict for c in cells] == ["pass", "pass", "pass", "fail", "pass", "not applicable"]
     assert [f"{c.family} {c.mode}" for c in cells[:5]] == [
-        "chordwise 1",
+        "edgewise 1",
         "flapwise 2",
-        "chordwise 3",
+        "edgewise 3",
         "flapwise 4",
         "flapwise 6",
     ]
     assert {c.shares for c in cells} == {"nothing"}
     assert cells[2].uncertainty == pytest.approx(0.05 / 70.4, rel=1e-2)
     assert cells[3].difference == pytest.approx(71.30 / EXACT["flapwise 2"] - 1.0, abs=1e-6)
-    assert "line 7: the case does not compare mode axial 1 at this speed; it compares chordwise 1" in cells[5].reason
+    assert "line 7: the case does not compare mode axial 1 at this speed; it compares edgewise 1" in cells[5].reason
 
 
 @pytest.mark.slow
 def test_few_digits_are_inconclusive_and_not_a_pass(tmp_path: Path) -> None:
     """11.7 is 11.7 ± 0.05: 0.43 %, which is more than the target and says nothing within it."""
-    (cell,) = of(run(read(tmp_path, HEAD + "10, 11.7, chordwise 1")))
+    (cell,) = of(run(read(tmp_path, HEAD + "10, 11.7, edgewise 1")))
     assert cell.verdict == "inconclusive"
     assert cell.uncertainty == pytest.approx(0.05 / 11.7, rel=1e-3)
 
@@ -106,7 +106,7 @@ def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> No
 
 @pytest.mark.slow
 def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> None:
-    one = run(read(tmp_path, HEAD + "10, 11.710953, chordwise 1"))
+    one = run(read(tmp_path, HEAD + "10, 11.710953, edgewise 1"))
     (rig,) = (w for w in witnesses(one, "park-cantilever") if w.name == "rig")
     assert (rig.kind, rig.standing) == ("undeclared", "agrees")
     assert one.versions["rig"] == "results in results.csv"
@@ -125,19 +125,19 @@ BAD = [
     ("speed [rpm], speed [rad/s], frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: 2 columns of speed"),
     ("speed [rpm], mode, frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: column 'mode' occurs 2 times"),
     (HEAD + "10, 11.7\n", "line 2: 2 columns instead of 3: a missing or stray comma?"),
-    (HEAD + "10, 11,7, chordwise 1\n", "line 2: 4 columns instead of 3"),
-    (HEAD + "ten, 11.7, chordwise 1\n", "line 2: speed [rad/s]: 'ten' is not a number, 0 or more"),
-    (HEAD + "-10, 11.7, chordwise 1\n", "line 2: speed [rad/s]: '-10' is not a number, 0 or more"),
-    (HEAD + "10, 0.0, chordwise 1\n", "line 2: frequency [rad/s]: '0.0' is not a number above 0"),
-    (HEAD + "10, nan, chordwise 1\n", "line 2: frequency [rad/s]: 'nan' is not a number above 0"),
-    (HEAD + "10, , chordwise 1\n", "line 2: frequency [rad/s]: '' is not a number above 0"),
+    (HEAD + "10, 11,7, edgewise 1\n", "line 2: 4 columns instead of 3"),
+    (HEAD + "ten, 11.7, edgewise 1\n", "line 2: speed [rad/s]: 'ten' is not a number, 0 or more"),
+    (HEAD + "-10, 11.7, edgewise 1\n", "line 2: speed [rad/s]: '-10' is not a number, 0 or more"),
+    (HEAD + "10, 0.0, edgewise 1\n", "line 2: frequency [rad/s]: '0.0' is not a number above 0"),
+    (HEAD + "10, nan, edgewise 1\n", "line 2: frequency [rad/s]: 'nan' is not a number above 0"),
+    (HEAD + "10, , edgewise 1\n", "line 2: frequency [rad/s]: '' is not a number above 0"),
     (HEAD + "10, 11.7, flapways 1\n", "line 2: mode: 'flapways' is no family: did you mean flapwise?"),
-    (HEAD + "10, 11.7, chordwise\n", "line 2: mode: 'chordwise': give a family and a whole number"),
-    (HEAD + "10, 11.7, chordwise 0\n", "line 2: mode: '0': give"),
+    (HEAD + "10, 11.7, edgewise\n", "line 2: mode: 'edgewise': give a family and a whole number"),
+    (HEAD + "10, 11.7, edgewise 0\n", "line 2: mode: '0': give"),
     (HEAD + "10, 11.7, 1.5\n", "line 2: mode: '1.5': give"),
     (
-        HEAD + "# note\n10, 11.7, chordwise 1\n10, 11.8, chordwise 1\n",
-        "line 4: mode: chordwise 1 at this speed is in line 3",
+        HEAD + "# note\n10, 11.7, edgewise 1\n10, 11.8, edgewise 1\n",
+        "line 4: mode: edgewise 1 at this speed is in line 3",
     ),
 ]
 
@@ -166,7 +166,7 @@ def test_not_text_and_not_there(tmp_path: Path) -> None:
     [
         (
             "park-cantilever",
-            HEAD + "12, 11.7, chordwise 1\n",
+            HEAD + "12, 11.7, edgewise 1\n",
             "line 2: speed: 12 rad/s is not among the speeds of park-c",
         ),
         ("park-blade", HEAD + "0, 5.8, flapwise 1\n", "line 2: blade: not given, and the run has 3: add a column"),
@@ -204,7 +204,7 @@ def test_names_are_needed_and_their_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], add: str, words: str
 ) -> None:
     path = tmp_path / "results.csv"
-    path.write_text(HEAD + "10, 11.7, chordwise 1\n")
+    path.write_text(HEAD + "10, 11.7, edgewise 1\n")
     arguments = ["verify", "park-cantilever", "--codes", "yoo-shin", "--add", add.format(path)]
     with pytest.raises(SystemExit) as ended:
         cli.main([*arguments, "--out", str(tmp_path / "out")])
@@ -214,6 +214,6 @@ def test_names_are_needed_and_their_own(
 
 
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
-    one = read(tmp_path, HEAD + "10, 11.7, chordwise 1\n")
+    one = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
     with pytest.raises(CaseError, match="another file has this name"):
         user_results.check([one, one], park().variants, ["yoo-shin"])

@@ -13,11 +13,11 @@ from southwell.core.element.discretize import discretize
 from southwell.core.multibody import linearize as lz
 from southwell.core.solve import modes, sweep
 from southwell.core.space import spatial as sp
-from southwell.tests.support.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import EXACT_EDGEWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 
 
 def planes(blade, omega, elements, count=6, **options) -> tuple[np.ndarray, np.ndarray]:
-    """Chordwise and flapwise frequencies, distinguished by the direction of motion at the tip."""
+    """Edgewise and flapwise frequencies, distinguished by the direction of motion at the tip."""
     m = modes(blade, omega, elements, count, **options)
     tip = np.abs(m.shapes[:, -1])
     flap = tip[:, 2] > tip[:, 1]
@@ -34,8 +34,8 @@ def test_the_papers_table_digit_for_digit() -> None:
 
 
 def test_consistent_mass_reaches_the_exact_values() -> None:
-    chordwise, flapwise = planes(PARK, 10.0, 50)
-    np.testing.assert_allclose(chordwise[:3], EXACT_CHORDWISE, rtol=2e-5)
+    edgewise, flapwise = planes(PARK, 10.0, 50)
+    np.testing.assert_allclose(edgewise[:3], EXACT_EDGEWISE, rtol=2e-5)
     np.testing.assert_allclose(flapwise[:3], EXACT_FLAPWISE, rtol=2e-5)
 
 
@@ -63,7 +63,7 @@ def test_fourth_order_where_the_steady_strain_is_large() -> None:
 
 
 def test_errors_against_exact_values_are_of_fourth_order() -> None:
-    errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_CHORDWISE[:2] - 1) for n in (10, 20)]
+    errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_EDGEWISE[:2] - 1) for n in (10, 20)]
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
 
 
@@ -133,7 +133,7 @@ def test_degenerate_pairs_at_rest_are_both_found() -> None:
     assert (np.abs(f[0:4:2] / euler - 1) < 4e-4).all()
 
 
-def test_without_geometric_stiffness_the_first_chordwise_mode_collapses() -> None:
+def test_without_geometric_stiffness_the_first_edgewise_mode_collapses() -> None:
     """The result without stress stiffening: √(ω₀² − Ω²), of which the paper warns."""
     first = planes(PARK, 10.0, 50, effects=Effects(geometric=False))[0][0]
     assert first == pytest.approx(np.sqrt(10.548911**2 - 100.0), rel=1e-3)
@@ -145,7 +145,7 @@ def test_linear_theory_without_prestretch_is_yoo_and_shins() -> None:
     np.testing.assert_allclose(found[:3], [4.9700, 32.0456, 73.9131], atol=1e-4)
 
 
-def test_no_coriolis_in_the_flapwise_plane_but_much_chordwise() -> None:
+def test_no_coriolis_in_the_flapwise_plane_but_much_edgewise() -> None:
     full, without = (planes(yoo_shin(0.0), 10.0, 40, effects=Effects(coriolis=c)) for c in (True, False))
     np.testing.assert_allclose(full[1], without[1], rtol=1e-9)
     assert without[0][0] / full[0][0] - 1 > 0.01

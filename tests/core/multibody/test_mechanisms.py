@@ -378,7 +378,7 @@ def test_the_hubs_zero_mode_when_its_speed_is_free() -> None:
     )
     found = np.sort(lz.modes(lz.linearize(free)).frequencies)
     assert found[0] < 1e-4
-    # flapwise modes are unaffected; the first chordwise mode of a blade free to turn is that of a pinned beam, far above
+    # flapwise modes are unaffected; the first edgewise mode of a blade free to turn is that of a pinned beam, far above
     flapwise = frequencies(clamped)
     assert np.abs(found / flapwise[1] - 1).min() < 1e-6
 

@@ -75,8 +75,8 @@ class TestAnswers:
     @pytest.mark.parametrize("omega", [10.0, 30.0])
     def test_edgewise_differs_from_flapwise_by_spin_softening(self, code, omega):
         """For the inextensible beam ω_flap² − ω_edge² = Ω² exactly; in a fixed frame the difference would be zero."""
-        chordwise, flapwise = families(code.solve(NO_ROTARY, omega, code.levels[0], 6), 3)
-        np.testing.assert_allclose(flapwise**2 - chordwise**2, omega**2, rtol=0.03)
+        edgewise, flapwise = families(code.solve(NO_ROTARY, omega, code.levels[0], 6), 3)
+        np.testing.assert_allclose(flapwise**2 - edgewise**2, omega**2, rtol=0.03)
 
     @pytest.mark.slow
     @pytest.mark.parametrize(("hub", "gamma"), [(0.0, 2.0), (0.0, 10.0), (1.0, 10.0), (5.0, 2.0)])

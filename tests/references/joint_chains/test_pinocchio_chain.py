@@ -137,8 +137,8 @@ def test_point_masses_have_three_modes_each() -> None:
 
 def test_shapes_are_in_blade_axes() -> None:
     """Edgewise motion is along y, flapwise along z, both largest at the tip and zero at the root."""
-    chordwise, flapwise = CODE.solve(POINT_MASSES, 10.0, 20, 2).shapes
-    for shape, axis in ((chordwise, 1), (flapwise, 2)):
+    edgewise, flapwise = CODE.solve(POINT_MASSES, 10.0, 20, 2).shapes
+    for shape, axis in ((edgewise, 1), (flapwise, 2)):
         assert np.abs(shape[:, axis]).argmax() == len(STATIONS) - 1
         assert np.abs(np.delete(shape, axis, axis=1)).max() < 1e-2 * np.abs(shape[-1, axis])
         assert not shape[0].any()

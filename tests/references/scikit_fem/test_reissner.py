@@ -16,13 +16,13 @@ from southwell.references.protocol.interface import CodeError
 from southwell.references.scikit_fem import reissner_forms as forms
 from southwell.references.scikit_fem.reissner import CODE
 from southwell.references.theories.reference_line import line, moments
-from southwell.tests.support.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import EXACT_EDGEWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 
 Array = NDArray[np.float64]
 
 needs_scikit_fem = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
 RNG = np.random.default_rng(1)
-EXACT = np.sort(np.concatenate([EXACT_CHORDWISE, EXACT_FLAPWISE]))
+EXACT = np.sort(np.concatenate([EXACT_EDGEWISE, EXACT_FLAPWISE]))
 STEP = 1e-4
 
 

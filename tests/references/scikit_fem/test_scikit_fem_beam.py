@@ -14,12 +14,12 @@ from southwell.core.modes import STATIONS
 from southwell.references.exudyn.ancf import CODE as ANCF
 from southwell.references.protocol.interface import CodeError
 from southwell.references.scikit_fem.beam import CODE
-from southwell.tests.support.beams import EXACT_CHORDWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import EXACT_EDGEWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 
 pytestmark = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
 
 Array = NDArray[np.float64]
-EXACT = np.sort(np.concatenate([EXACT_CHORDWISE, EXACT_FLAPWISE]))
+EXACT = np.sort(np.concatenate([EXACT_EDGEWISE, EXACT_FLAPWISE]))
 TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
 WINDPACT = {v.name: v.blade for v in load("park-blade").variants}["park-blade/windpact"]
 
@@ -152,11 +152,11 @@ class TestShapes:
     def test_are_in_blade_axes_with_the_right_phase(self) -> None:
         """The lowest edgewise mode moves along y, its stretch a quarter cycle off (Coriolis); the lowest flapwise along z."""
         modes = CODE.solve(yoo_shin(0.0), 10.0, 20, 2)
-        chordwise, flapwise = modes.shapes[:, -1] / np.abs(modes.shapes[:, -1]).max(axis=1, keepdims=True)
-        assert abs(chordwise[1]) == pytest.approx(1)
+        edgewise, flapwise = modes.shapes[:, -1] / np.abs(modes.shapes[:, -1]).max(axis=1, keepdims=True)
+        assert abs(edgewise[1]) == pytest.approx(1)
         assert abs(flapwise[2]) == pytest.approx(1)
-        assert abs(chordwise[0]) > 1e-3
-        assert abs((chordwise[0] / chordwise[1]).real) < 1e-9
+        assert abs(edgewise[0]) > 1e-3
+        assert abs((edgewise[0] / edgewise[1]).real) < 1e-9
 
 
 def test_the_same_call_gives_the_same_answer_after_other_calls() -> None:

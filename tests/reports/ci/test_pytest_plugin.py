@@ -69,8 +69,8 @@ def test_the_mistaken_solver_fails_wherever_it_turns_and_its_fault_is_named(proj
     named = re.findall(r"^park-cantilever at (\d+) rad/s, .*no geometric stiffness", shown, re.MULTILINE)
     assert len(set(misses)) == 36
     assert sorted(named) == ["10"] * 6 + ["5"] * 6  # faster, core has no steady modes with that mistake to compare with
-    # the beam without that stiffness at 10 rad/s: 3.353 chordwise (with rotary inertia), 10.549 flapwise, as at rest
-    assert re.search(r"at 10 rad/s, mode 1 \(chordwise\): mistaken: 3.3\d+ rad/s, not 11.71", shown)
+    # the beam without that stiffness at 10 rad/s: 3.353 edgewise (with rotary inertia), 10.549 flapwise, as at rest
+    assert re.search(r"at 10 rad/s, mode 1 \(edgewise\): mistaken: 3.3\d+ rad/s, not 11.71", shown)
     assert re.search(r"at 10 rad/s, mode 2 \(flapwise\): mistaken: 10.549\d+ rad/s, not 15.40", shown)
 
 

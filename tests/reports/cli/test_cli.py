@@ -190,7 +190,7 @@ def test_modes_prints_cores_frequencies_over_a_range_with_both_ends(
     np.testing.assert_allclose([r["frequency_rad_s"] for r in rows], expected, rtol=1e-12)
     np.testing.assert_allclose([r["frequency_hz"] for r in rows], expected / (2 * np.pi), rtol=1e-12)
     np.testing.assert_allclose([r["omega_rad_s"] for r in rows], np.repeat(speeds, 3), rtol=1e-12)
-    assert [r["name"] for r in rows[:3]] == ["flapwise 1", "chordwise 1", "flapwise 2"]
+    assert [r["name"] for r in rows[:3]] == ["flapwise 1", "edgewise 1", "flapwise 2"]
 
 
 def test_modes_prints_a_table_of_families_in_the_unit_asked_for(beam: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -46,7 +46,7 @@ def test_stiffer_in_flap_moves_flapwise_modes_only_little_of_the_others(capsys: 
     change = {(name, speed): float(value) for name, speed, value in rows}
     assert 4.5 < change["flapwise 1", "0"] < 4.88
     assert 3.0 < change["flapwise 1", "12.1"] < change["flapwise 1", "0"]
-    assert 0.0 < change["chordwise 1", "0"] < 0.3
+    assert 0.0 < change["edgewise 1", "0"] < 0.3
 
 
 @pytest.mark.slow
@@ -129,7 +129,7 @@ def test_wrong_options_are_one_line(arguments: str, phrase: str, capsys: pytest.
 def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
     """Every digit of every speed, in as many tables as that takes."""
     rows = [
-        Named(rpm / RPM.speeds, mode, f"chordwise {mode}", (10.0 * mode + rpm) / RPM.frequencies, 1e-9, 0.0)
+        Named(rpm / RPM.speeds, mode, f"edgewise {mode}", (10.0 * mode + rpm) / RPM.frequencies, 1e-9, 0.0)
         for rpm in range(0, 3 * count, 3)
         for mode in (1, 2)
     ]
@@ -139,7 +139,7 @@ def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
     shown = console.file.getvalue()  # type: ignore[attr-defined]
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
-    printed = [float(x) for line in shown.splitlines() if line.startswith("  chord") for x in line.split()[2:-1]]
+    printed = [float(x) for line in shown.splitlines() if line.startswith("  edge") for x in line.split()[2:-1]]
     assert sorted(printed) == pytest.approx(sorted(r.frequency * RPM.frequencies for r in rows))
 
 

@@ -132,7 +132,7 @@ def test_cores_lines_are_cores_where_a_code_gives_another_mode_the_same_name() -
     )
     lines = of_case(Run(cells), "beam")["lines"]
     assert lines == [
-        {"name": "chordwise 1", "points": [[0.0, 10.0], [10.0, 12.0]]},
+        {"name": "edgewise 1", "points": [[0.0, 10.0], [10.0, 12.0]]},
         {"name": "axial 1", "points": [[0.0, 60.0], [10.0, 61.0]]},
     ]
 

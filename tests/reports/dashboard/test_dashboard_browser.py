@@ -256,7 +256,7 @@ def test_cores_line_passes_through_cores_frequencies(tab: Any, site: Path) -> No
     x, y = scale(diagram, True), scale(diagram, False)
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.reference == c.full and c.mode == 1]
     known = {c.omega: c.full or 0.0 for c in cells}
-    first = diagram.locator("g").filter(has=tab.locator("title", has_text=re.compile("^(chordwise|mode) 1$")))
+    first = diagram.locator("g").filter(has=tab.locator("title", has_text=re.compile("^(edgewise|mode) 1$")))
     line = points(first.locator("polyline").first)
     speeds, frequencies = x(line[:, 0]), y(line[:, 1])
     for omega, f in known.items():
@@ -311,7 +311,7 @@ def test_who_asked_for_less_motion_gets_none(browser: Any, site: Path) -> None:
 def test_a_cases_differences_convergence_and_times(tab: Any, site: Path) -> None:
     tab.goto((site / page("park-cantilever")).as_uri())
     tab.select_option("select[name=speed]", label="10 rad/s")
-    field = tab.locator("table.matrix td[aria-label^='chordwise 1, park2010/present:']")
+    field = tab.locator("table.matrix td[aria-label^='edgewise 1, park2010/present:']")
     field.click()
     cell = next(
         c for c in run().cells if (c.case, c.code, c.omega, c.mode) == ("park-cantilever", "park2010/present", 10.0, 1)

@@ -23,7 +23,7 @@ def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) ->
     found, core = southwell.modes(blade, OMEGA, count=3), solve.modes(blade, OMEGA, count=3)
     frame = found.to_frame()
     assert isinstance(found, southwell.Modes)
-    assert frame["name"].tolist() == ["chordwise 1", "flapwise 1", "chordwise 2"]
+    assert frame["name"].tolist() == ["edgewise 1", "flapwise 1", "edgewise 2"]
     np.testing.assert_allclose(frame["frequency_rad_s"], core.frequencies, rtol=1e-12)
     np.testing.assert_allclose(frame["frequency_hz"] * 2 * np.pi, core.frequencies, rtol=1e-12)
     assert max(frame["uncertainty"]) <= 1e-6

@@ -105,9 +105,9 @@ def test_rays_are_multiples_of_the_rotors_speed() -> None:
 def test_convergence_shows_the_order_and_the_errors_of_the_rows() -> None:
     figure = drawn(convergence(samples.run(), "beam", RAD_S))
     assert [axes.get_title(loc="left") for axes in figure.axes if axes.get_visible()] == [
-        "chordwise 1",
+        "edgewise 1",
         "flapwise 1",
-        "chordwise 2",
+        "edgewise 2",
         "flapwise 2",
     ]
     panel = figure.axes[0]
@@ -120,18 +120,17 @@ def test_convergence_shows_the_order_and_the_errors_of_the_rows() -> None:
 
 
 def test_convergence_puts_a_code_with_fewer_effects_into_the_panel_of_the_modes_name() -> None:
-    pairs = ((1, "chordwise", 5.0), (2, "axial", 9.0))
+    pairs = ((1, "edgewise", 5.0), (2, "axial", 9.0))
     cells = [samples.cell(mode=k, family=f, full=w, reference=w, code="all") for k, f, w in pairs]
     cells += [
-        samples.cell(mode=k, family=f, full=9.0, reference=4.0, code="less")
-        for k, f in ((1, "axial"), (2, "chordwise"))
+        samples.cell(mode=k, family=f, full=9.0, reference=4.0, code="less") for k, f in ((1, "axial"), (2, "edgewise"))
     ]
     levels = [
         Level("beam", 10.0, c.mode, c.code, n, (c.reference or 0) * (1 + c.mode / n)) for c in cells for n in (10, 20)
     ]
     figure = drawn(convergence(Run(tuple(cells), tuple(levels)), "beam", RAD_S))
     first = figure.axes[0]
-    assert first.get_title(loc="left") == "chordwise 1"
+    assert first.get_title(loc="left") == "edgewise 1"
     np.testing.assert_allclose([points(line)[1][0] for line in first.lines[1:]], [0.1, 0.2])
 
 

@@ -65,7 +65,7 @@ def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
     numbers = [int(n) for n in re.findall(r"\d+", counts)]
     assert numbers[0] == sum(numbers[1:]) == len(samples.run().cells)
     assert "1 ✘ fail" in counts
-    assert second == "Worst failure: +0.500 % ± 0.0100 % (blade/stiff, alpha, chordwise 1, 10 rad/s)."
+    assert second == "Worst failure: +0.500 % ± 0.0100 % (blade/stiff, alpha, edgewise 1, 10 rad/s)."
     assert third.startswith("Largest inconclusive difference: +0.0500 %")
 
 
@@ -112,7 +112,7 @@ def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> Non
     assert independent["largest known difference"].endswith("10 rad/s; cause: no coriolis: +1 %")
     assert (
         printed["worst, relative to target"]
-        == "✔ +0.0900 % ± 0.0002 %: beam, author2000, chordwise 2, 10 rad/s; target 0.10 %"
+        == "✔ +0.0900 % ± 0.0002 %: beam, author2000, edgewise 2, 10 rad/s; target 0.10 %"
     )
     assert own["worst, relative to target"].startswith("✔ +2e-12")
     assert own["worst, relative to target"].endswith("target 1e-08")
@@ -156,7 +156,7 @@ def test_every_cell_that_is_not_a_plain_pass_has_its_reason(report: str) -> None
 def test_differences_at_a_speed_are_those_of_the_cells(report: str) -> None:
     table = next(t for t in Tables(rendered(report)).tables if t[0][0] == "mode")
     by_name = {row[0]: row for row in table[1:]}
-    assert list(by_name) == ["chordwise 1", "flapwise 1", "chordwise 2", "flapwise 2"]
+    assert list(by_name) == ["edgewise 1", "flapwise 1", "edgewise 2", "flapwise 2"]
     run = samples.run()
     names = summary.labels(run.cells)
     for cell in run.cells:
@@ -226,14 +226,14 @@ def test_a_discretisation_shows_its_own_error_not_the_effects_it_lacks() -> None
 def test_modes_of_a_code_with_fewer_effects_stand_in_the_row_of_their_name() -> None:
     full = [
         samples.cell(mode=k, family=f, full=w, reference=w, code="all")
-        for k, f, w in ((1, "chordwise", 5.0), (2, "axial", 9.0))
+        for k, f, w in ((1, "edgewise", 5.0), (2, "axial", 9.0))
     ]
     less = [
         samples.cell(mode=1, family="axial", full=9.0, reference=4.0, code="less", verdict="known difference"),
-        samples.cell(mode=2, family="chordwise", full=5.0, reference=6.0, code="less", verdict="known difference"),
+        samples.cell(mode=2, family="edgewise", full=5.0, reference=6.0, code="less", verdict="known difference"),
     ]
     table = matrix_report.comparison([*full, *less], matrix_report.BY_KEY["rad_s"])
-    assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == ["chordwise 1", "axial 1"]
+    assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == ["edgewise 1", "axial 1"]
     assert [row.split("|")[2].strip() for row in table.splitlines()[2:]] == ["5", "9"]
 
 
