@@ -85,10 +85,10 @@ def _elsewhere(tree: Tree, q: Array) -> str:
         state = steady(tree)
     except MechanismError:
         return ""
-    furthest = np.argsort(-np.abs(state.q - q))[:3]
-    return "; without a guess one is found, with " + ", ".join(
-        f"{tree.coordinates[j]} = {state.q[j]:.4g}" for j in furthest
-    )
+    apart = np.abs(state.q - q)
+    apart[tree.inner[:, None] + np.arange(6)] = 0.0  # the inside of beams says little
+    values = ", ".join(f"{tree.coordinates[j]} = {round(state.q[j], 9):.4g}" for j in np.argsort(-apart)[:3])
+    return f"; without a guess one is found, with {values}"
 
 
 def unresisted(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:
