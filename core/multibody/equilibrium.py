@@ -87,7 +87,7 @@ def _elsewhere(tree: Tree, q: Array) -> str:
         return ""
     apart = np.abs(state.q - q)
     apart[tree.inner[:, None] + np.arange(6)] = 0.0  # the inside of beams says little
-    values = ", ".join(f"{tree.coordinates[j]} = {round(state.q[j], 9):.4g}" for j in np.argsort(-apart)[:3])
+    values = ", ".join(f"{tree.coordinates[j]} = {round(float(state.q[j]), 9):.4g}" for j in np.argsort(-apart)[:3])
     return f"; without a guess one is found, with {values}"
 
 
