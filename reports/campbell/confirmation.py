@@ -8,6 +8,8 @@ from ...cases.campbell.diagram import Campbell
 from ..shared.units import Units
 from .tables import TOO_NEAR, Sheet
 
+TITLE = "Independent confirmation"
+
 
 def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
     """The table: one row per mode and speed with the frequency ± u and the codes that confirm it."""
@@ -29,7 +31,7 @@ def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
         f"0.1 %; the last column has their largest difference.{' Without agreement: ' + '; '.join(rest) + '.' if rest else ''}"
     )
     head = ("mode", units.speed, f"{units.frequency} ± u", "confirmed by", "difference")
-    return Sheet("Independent confirmation", head, rows, note)
+    return Sheet(TITLE, head, rows, note)
 
 
 def _with_uncertainty(row: Confirmed, units: Units) -> str:

@@ -13,13 +13,17 @@ from ...cases.input.errors import CaseError
 from ...cases.verify.user_results import UserResults
 from ..shared.style import house, save
 from ..shared.units import Units
-from . import csv_tables, encounters, shapes
+from . import cover, csv_tables, encounters, shapes, span
 from . import figure as figures
 from . import tables as tables
+from .confirmation import TITLE as CONFIRMATION
+from .cover import UNKNOWN, Origin
 
 PAGE = "campbell.md"
 
 DPI = 180
+
+NOT_VERIFIED = f"## {CONFIRMATION}\n\nNone: no other code was run (`--verify`).\n"
 
 
 def write(
@@ -27,7 +31,7 @@ def write(
     folder: Path,
     units: Units,
     command: str,
-    about: Sequence[str] = (),
+    origin: Origin = UNKNOWN,
     extra: Sequence[tables.Sheet] = (),
     user_results: Sequence[UserResults] = (),
 ) -> tuple[Path, ...]:
@@ -38,7 +42,7 @@ def write(
         folder: output folder.
         units: units of the figures and tables.
         command: the command that reproduces the page.
-        about: origin of the blade, one fact per line.
+        origin: origin of the blade.
         extra: further tables.
         user_results: results that are drawn as points over the lines.
 
@@ -50,6 +54,7 @@ def write(
     drawn = {
         "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed", user_results),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
+        "span": span.draw(diagram.blade),
     }
     close = encounters.draw(diagram, units, f"{name}: modes that come close")
     if close:
@@ -57,7 +62,7 @@ def write(
     written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
     written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
-    atomic.write(page, _page(diagram, k, units, command, about, extra))
+    atomic.write(page, _page(diagram, k, units, command, origin, extra))
     return (page, *written)
 
 
@@ -82,20 +87,21 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     return vector, raster
 
 
-def _page(
-    diagram: Campbell, k: int, units: Units, command: str, about: Sequence[str], extra: Sequence[tables.Sheet]
-) -> str:
+def _page(diagram: Campbell, k: int, units: Units, command: str, origin: Origin, extra: Sequence[tables.Sheet]) -> str:
     omega = float(diagram.tracks.omega[k])
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
         f"{tables.verdict(diagram, units)}\n",
         *[f"{line}.\n" for line in tables.notes(diagram, units)],
+        cover.cover(origin),
         "![Natural frequencies along rotor speed](campbell.svg)\n",
-        *(["## The blade\n\n" + "\n".join(f"- {line}" for line in about) + "\n"] if about else []),
         *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
+        *([] if any(sheet.title == CONFIRMATION for sheet in extra) else [NOT_VERIFIED]),
         *(["![Modes that come close](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
         _elastodyn(diagram, k, units),
+        cover.properties(diagram.blade),
+        cover.unused(origin),
         f"## Reproduce\n\n```\n{command}\n```\n",
     ]
     return "\n".join(parts)

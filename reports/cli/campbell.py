@@ -29,7 +29,9 @@ from ..campbell import changes as changes_table
 from ..campbell import confirmation as confirmation_table
 from ..campbell import page
 from ..campbell import tables as tables
+from ..campbell.cover import Origin
 from ..campbell.tables import Sheet
+from ..shared import html as as_html
 from ..shared import not_used
 from ..shared.console import Watch, output
 from ..shared.paths import file_name
@@ -67,6 +69,8 @@ def command(
     data_uncertainty: str | None = None,
     verify: Flag = False,
     strict: Flag = False,
+    html: Flag = False,
+    pdf: Flag = False,
     mounting: Mounting | None = None,
 ) -> int:
     """Compute the Campbell diagram of a blade and judge its margins.
@@ -124,6 +128,10 @@ def command(
         codes that confirm it.
     strict
         Status 1 if a margin is violated or could not be judged.
+    html
+        Also write campbell.html: one file with its figures.
+    pdf
+        Also write campbell.pdf; requires the extra `pdf` (WeasyPrint).
     """
     if strict and operating is None:
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")
@@ -165,10 +173,16 @@ def command(
         kept &= tables.margins_kept(diagram)
         try:
             line = shlex.join(["southwell", *sys.argv[1:]])
-            about = (*subject.about, *not_used.lines(subject.unused))
-            written = page.write(diagram, folder, units, line, about, extra, files)
+            origin = Origin(subject.about, subject.files, not_used.lines(subject.unused))
+            written = page.write(diagram, folder, units, line, origin, extra, files)
+            if html:
+                written = (*written, as_html.write(written[0]))
+            if pdf:
+                written = (*written, as_html.pdf(written[0]))
         except OSError as error:
             raise _unwritable(out, error.strerror) from error
+        except as_html.PdfError as error:
+            raise UsageError(str(error)) from error
         names = ", ".join(path.name for path in written)
         output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
     return int(strict and not kept)

@@ -31,7 +31,7 @@ def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
     if written is None:
         return INCOMPLETE
     if html or pdf:
-        from ..verification import html as page
+        from ..shared import html as page
 
         if html:
             print(page.write(written))

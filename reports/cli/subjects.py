@@ -29,6 +29,7 @@ class Subject:
         about: origin of the blade, one fact per line.
         notes: what the blade's file leaves open, and the choices made.
         unused: non-zero quantities of the files that the blade does not use.
+        files: files read; none for a case.
     """
 
     blade: Blade
@@ -37,6 +38,7 @@ class Subject:
     about: tuple[str, ...]
     notes: tuple[str, ...] = ()
     unused: tuple[Unused, ...] = ()
+    files: tuple[Path, ...] = ()
 
 
 def changed(found: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
@@ -72,7 +74,7 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
         files = ", ".join(path.name for path in found.source.files)
         about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
         speeds = () if found.speed is None else (found.speed,)
-        return [Subject(found.blade, speeds, RPM, about, found.source.notes, found.source.unused)]
+        return [Subject(found.blade, speeds, RPM, about, found.source.notes, found.source.unused, found.source.files)]
     case = select(name)
     if mount != Mount():
         raise CaseError(f"{name}: a case defines how its blade is mounted: leave out --main, --length and the like")

@@ -138,7 +138,7 @@ def test_every_command_lists_them_once(tmp_path: Path, capsys: pytest.CaptureFix
     for name in EXPECTED["elastodyn_main.dat"]:
         assert shown.count(f"not used: {name} (") == 1
     page = tmp_path / "c" / "campbell.md"
-    assert not page.exists() or page.read_text().count(LINE) == 1
+    assert not page.exists() or page.read_text().replace("\\", "").count(LINE.removeprefix("not used: ")) == 1
 
 
 def test_beside_json_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,8 @@
 
 import csv
 import os
+import sys
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -100,6 +102,7 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     names = {p.name for p in out.iterdir()}
     assert names == {
         *(f"{stem}.{kind}" for stem in ("campbell", "shapes") for kind in ("svg", "png", "csv")),
+        *("span.svg", "span.png"),
         *("campbell.md", "resonances.csv", "margins.csv", "encounters.csv"),
     }
     assert all(name in shown for name in names)
@@ -163,7 +166,10 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     status, shown, _ = southwell(f"campbell {file} --omega 0:20:10 --hub-radius 3 --elements 8 -o {out}", capsys)
     assert status == 0
     assert "Southwell TOML: blade.toml" in shown
-    assert "- Southwell TOML: blade.toml" in (out / "campbell.md").read_text()
+    page = (out / "campbell.md").read_text()
+    assert "Southwell TOML: blade.toml" in page
+    assert f"blade.toml, SHA-256 `{sha256(file.read_bytes()).hexdigest()}`" in page
+    assert "None: no other code was run" in page
     rows = [row.split(",") for row in (out / "campbell.csv").read_text().splitlines()]
     at = rows[0].index("frequency_rad_s")
     found = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
@@ -291,3 +297,32 @@ def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
     ):
         assert option in out
     assert "campbell" in southwell("--help", capsys)[1]
+
+
+def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Input, properties, conventions and results; figures are embedded."""
+    status, shown, _ = southwell(f"campbell {beam} --rpm 0,100 --modes 2 --elements 6 --html -o {tmp_path}", capsys)
+    assert status == 0
+    assert "campbell.html" in shown
+    page = (tmp_path / "campbell.html").read_text(encoding="utf-8")
+    for heading in (
+        "Input",
+        "Modes",
+        "Independent confirmation",
+        "Properties along the span",
+        "Inputs not used",
+        "Reproduce",
+    ):
+        assert f">{heading}</h2>" in page
+    assert page.count("data:image/svg+xml,") == 3
+    assert "positive with the leading edge downwind" in page
+
+
+def test_without_weasyprint_the_page_is_kept(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    status, _, err = southwell(f"campbell {beam} --rpm 0,50 --modes 1 --elements 4 --pdf -o {tmp_path}", capsys)
+    assert status == 2
+    assert "pip install '.[pdf]'" in err
+    assert (tmp_path / "campbell.md").exists()

@@ -14,8 +14,7 @@ import pytest
 
 from southwell.cases.judge.results import Setting, write
 from southwell.reports.cli import arguments
-from southwell.reports.shared import summary
-from southwell.reports.verification import html
+from southwell.reports.shared import html, summary
 from southwell.reports.verification import report as matrix_report
 
 from ...support import samples

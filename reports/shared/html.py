@@ -17,8 +17,8 @@ from markdown_it.token import Token
 from ...cases.input import atomic
 from ...core.regular_files import read_bytes
 from ...references.protocol import install
-from ..shared.markdown import anchor
-from ..shared.summary import SYMBOL
+from .markdown import anchor
+from .summary import SYMBOL
 
 SAFE = "/:;=,()' \n.-+*<>"
 """Characters of an SVG that need no escape in a data URL inside an attribute."""
@@ -52,6 +52,7 @@ pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size
   html { font-size: 9pt; }
   body { font-size: 9pt; padding: 0; max-width: none; } p, li, h1, h2, h3, summary { max-width: none; }
   table { font-size: 6.6pt; } th, td { padding: 1px 3px; } tr, img { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  pre { white-space: pre-wrap; overflow-wrap: anywhere; }
   .wide { overflow: visible; } img { max-width: 62%; } a { color: inherit; text-decoration: none; }
 }
 """

@@ -1,0 +1,78 @@
+"""What a blade's page states besides its results: origin and date, properties along the span, conventions, unused inputs."""
+
+import platform
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+
+from ...cases.input.properties import sections
+from ...core.blade import Blade
+from ...core.regular_files import read_bytes
+from ..shared import markdown
+from .properties import COLUMNS, PROPERTIES, cell, facts, picked, rows
+
+LIBRARIES = ("numpy", "scipy", "numba")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a blade comes from.
+
+    Attributes:
+        about: one fact per line.
+        files: files that were read; none if it is a case of this package.
+        unused: non-zero quantities of the files that the blade does not use, one line each.
+    """
+
+    about: Sequence[str] = ()
+    files: Sequence[Path] = ()
+    unused: Sequence[str] = ()
+
+
+UNKNOWN = Origin()
+
+
+def cover(origin: Origin, now: datetime | None = None) -> str:
+    """The section on the input: origin, digests of the files, date and versions.
+
+    Raises:
+        OSError: if a file cannot be read.
+    """
+    found = [{"": "origin", "value": "<br>".join(map(markdown.plain, origin.about))}] if origin.about else []
+    found += [
+        {"": "file", "value": f"{markdown.plain(path.name)}, SHA-256 `{sha256(read_bytes(path)).hexdigest()}`"}
+        for path in origin.files
+    ]
+    if origin.unused:
+        found.append({"": "not used", "value": f"{len(origin.unused)} non-zero quantities, listed below"})
+    date = (now or datetime.now(UTC)).astimezone(UTC)
+    libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    found.append({"": "computed", "value": f"{date:%Y-%m-%d %H:%M} UTC"})
+    program = f"southwell {version('southwell')}, Python {platform.python_version()}, {libraries}"
+    found.append({"": "program", "value": f"{program}; {platform.system()} {platform.machine()}"})
+    return f"## Input\n\n{markdown.table(found)}\n"
+
+
+def properties(blade: Blade) -> str:
+    """The sections on the blade's properties: facts with the conventions they follow, figure, and a table along the span."""
+    known = [{"": name, "value": markdown.plain(text)} for name, text in facts(blade).items() if text]
+    values = rows(blade, sections(blade))
+    some = picked(len(values))
+    along = [{COLUMNS[k]: cell(k, float(row[k])) for k in range(PROPERTIES)} for row in values[some]]
+    note = "" if len(some) == len(values) else f"\n{len(some)} of {len(values)} stations.\n"
+    return (
+        f"## Blade and conventions\n\n{markdown.table(known)}\n\n## Properties along the span\n\n"
+        f"![Properties along the span](span.svg)\n\n{markdown.table(along)}\n{note}"
+    )
+
+
+def unused(origin: Origin) -> str:
+    """The section on quantities of the files that are not used."""
+    lines = (
+        "\n".join(f"- {markdown.plain(line.removeprefix('not used: '))}" for line in origin.unused)
+        or "All non-zero quantities are used."
+    )
+    return f"## Inputs not used\n\n{lines}\n"
