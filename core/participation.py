@@ -1,9 +1,9 @@
-"""Energy fractions of a mode in flap, edge, torsion and axial motion, and the family name that follows from them.
+"""Energy fractions of a mode in flapwise, edgewise, torsional and axial motion, and the family name that follows from them.
 
 A slice of the blade translates with its mass centre and rotates about it, so its kinetic energy is the sum of four parts
 (König's theorem). None of them is negative or depends on the reference axis:
 
-* flap and edge: motion of the mass centre along the blade's z and y, and rotation of the section in bending;
+* flapwise and edgewise: motion of the mass centre along the blade's z and y, and rotation of the section in bending;
 * torsion: rotation about the blade's axis through the mass centre, with the polar inertia about it;
 * axial: motion of the mass centre along the blade.
 
@@ -28,7 +28,7 @@ from .space.inertia import about_centre
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FAMILIES = ("flap", "edge", "torsion", "axial")
+FAMILIES = ("flapwise", "edgewise", "torsion", "axial")
 """Names of the four energy fractions, in their order."""
 
 MIXED = "mixed"
@@ -84,7 +84,7 @@ def families(energy_fractions: Array) -> tuple[str, ...]:
 
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
-    """Number modes, given by family in order of frequency, within their family: ``flap 1``, ``edge 1``, ``flap 2``."""
+    """Number modes, given by family in order of frequency, within their family: ``flapwise 1``, ``edgewise 1``."""
     seen: Counter[str] = Counter()
     out = []
     for name in names:
@@ -94,7 +94,7 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def spoken(energy_fractions: Array) -> str:
-    """Energy fractions (4,) of one mode in words, largest first: ``54 % flap, 43 % edge``."""
+    """Energy fractions (4,) of one mode in words, largest first: ``54 % flapwise, 43 % edgewise``."""
     order = np.argsort(-energy_fractions, kind="stable")
     return ", ".join(
         f"{100 * energy_fractions[k]:.0f} % {FAMILIES[k]}" for k in order if energy_fractions[k] >= MIN_NAMED_FRACTION

@@ -59,8 +59,8 @@ class Campbell:
         blade: the blade.
         wanted: the settings.
         tracks: the modes over speed.
-        shares: (n, t, 4) fractions of kinetic energy in flap, edge, torsion, axial motion; NaN where there is no mode.
-        names: name of each track at its first speed, ``flap 2``.
+        shares: (n, t, 4) fractions of kinetic energy in the order of ``FAMILIES``; NaN where there is no mode.
+        names: name of each track at its first speed, ``flapwise 2``.
         last: name of each track at its last speed, which differs if the dominant motion has changed.
         local: (n, t) names at each speed; empty where there is no mode.
         southwell: fit of each track; None with fewer than three speeds.
@@ -82,7 +82,7 @@ class Campbell:
     margins: tuple[Margin, ...]
 
     def label(self, t: int) -> str:
-        """Name of a track at its first and, if different, last speed: ``flap 2 → edge 1``."""
+        """Name of a track at its first and, if different, last speed: ``flapwise 2 → edgewise 1``."""
         return self.names[t] if self.names[t] == self.last[t] else f"{self.names[t]} → {self.last[t]}"
 
     def label_at(self, t: int, omega: float) -> str:
@@ -91,7 +91,7 @@ class Campbell:
         return self.local[there[np.abs(self.tracks.omega[there] - omega).argmin()]][t]
 
     def label_over(self, t: int, low: float, high: float) -> str:
-        """Name of a track between two speeds (rad/s): ``flap 2``, or ``flap 2 → edge 1``."""
+        """Name of a track between two speeds (rad/s): ``flapwise 2``, or ``flapwise 2 → edgewise 1``."""
         return " → ".join(dict.fromkeys((self.label_at(t, low), self.label_at(t, high))))
 
 

@@ -1,4 +1,4 @@
-"""Mode shapes for ElastoDyn: ``φ(x) = Σ c_k x^k``, k = 2 … 6, ``φ(1) = 1``, for flap 1, flap 2 and edge 1.
+"""Mode shapes for ElastoDyn: ``φ(x) = Σ c_k x^k``, k = 2 … 6, ``φ(1) = 1``, for flapwise 1, flapwise 2 and edgewise 1.
 
 ElastoDyn bends a blade in the flap and edge directions of its sections and rotates the curvatures by the structural
 twist itself; it has no torsion, shear, stretch, offsets or sectional inertia. Its shapes are therefore those of the
@@ -26,7 +26,7 @@ from ..judge.pairing import Array
 
 POWERS = (2, 3, 4, 5, 6)
 
-WANTED = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
+WANTED = {"flapwise 1": "BldFl1Sh", "flapwise 2": "BldFl2Sh", "edgewise 1": "BldEdgSh"}
 """Modes, and the names of their coefficients in ElastoDyn."""
 
 DIGITS = 6
@@ -38,7 +38,7 @@ class Polynomial:
     """One shape.
 
     Attributes:
-        mode: ``flap 1``.
+        mode: ``flapwise 1``.
         frequency: frequency of the blade with this shape, rad/s.
         coefficients: (5,) of x² … x⁶, rounded and adding up to 1.
         shape: (21,) fitted shape at the common stations, 1 at the tip.
@@ -112,7 +112,7 @@ def principal(blade: Blade) -> Blade:
 
 
 def polynomials(blade: Blade, omega: float, elements: int | None = None) -> tuple[Polynomial, ...]:
-    """Flap 1, flap 2 and edge 1 of the principal blade at rotor speed ``omega``, rad/s; see ``core.solve.modes``.
+    """Flapwise 1, flapwise 2 and edgewise 1 of the principal blade at rotor speed ``omega``, rad/s; see ``core.solve.modes``.
 
     Raises:
         CaseError: if one of them is not among the lowest modes.
@@ -141,5 +141,5 @@ def _of(solved: Modes, blade: Blade, name: str) -> Polynomial:
 
 def component(solved: Modes, k: int, family: str) -> Array:
     """Displacement (21,) of mode ``k`` out of the plane of rotation (flap) or in it (edge), at the phase of its tip."""
-    part = solved.shapes[k, :, 2 if family == "flap" else 1]
+    part = solved.shapes[k, :, 2 if family == "flapwise" else 1]
     return np.real(part * np.exp(-1j * np.angle(part[-1])))

@@ -14,10 +14,22 @@ from ..shared.certain import certain
 from ..shared.style import INK, MUTED
 from ..shared.units import Units
 
-FAMILY_COLOURS = {"flap": "#0072B2", "edge": "#D55E00", "torsion": "#009E73", "axial": "#CC79A7", MIXED: "#6b6b6b"}
+FAMILY_COLOURS = {
+    "flapwise": "#0072B2",
+    "edgewise": "#D55E00",
+    "torsion": "#009E73",
+    "axial": "#CC79A7",
+    MIXED: "#6b6b6b",
+}
 """Colours by Okabe and Ito; a mixed mode has a blend of them."""
 
-DASHES = {"flap": "-", "edge": (0, (7, 1.6)), "torsion": (0, (2, 1.2)), "axial": (0, (6, 1.5, 1.5, 1.5)), MIXED: "-"}
+DASHES = {
+    "flapwise": "-",
+    "edgewise": (0, (7, 1.6)),
+    "torsion": (0, (2, 1.2)),
+    "axial": (0, (6, 1.5, 1.5, 1.5)),
+    MIXED: "-",
+}
 
 RED, BAND, RAY = "#C1121F", "#EDF2F7", "#C9C9C9"
 

@@ -51,7 +51,7 @@ def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
 
 
 def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
-    """Draw one panel per mode: flap, edge and torsion along the span, at speed number ``k``.
+    """Draw one panel per mode: flapwise, edgewise and torsional motion along the span, at speed number ``k``.
 
     Torsion is shown as rotation times the blade's radius of gyration: the square of each line, weighted with mass, is
     its fraction of the kinetic energy. Dotted lines are the part of a motion that lags by a quarter period.
@@ -88,7 +88,9 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xticklabels([])
         turns = f"torsion: rotation × radius of gyration, {arm:.3g} m" if arm else "torsion has no mass in this blade"
         title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest displacement 1; {turns}")
-        handles = [Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flap", "edge")]
+        handles = [
+            Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flapwise", "edgewise")
+        ]
         if arm:
             handles.append(
                 Line2D([], [], color=FAMILY_COLOURS["torsion"], ls=DASHES["torsion"], lw=1.6, label="torsion")
@@ -106,7 +108,7 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
     axes.set_yticks([-1, 0, 1])
     axes.tick_params(labelsize=8)
     ends: list[tuple[float, str]] = []
-    for family, line in (("flap", shape[:, 2]), ("edge", shape[:, 1]), ("torsion", arm * shape[:, 3])):
+    for family, line in (("flapwise", shape[:, 2]), ("edgewise", shape[:, 1]), ("torsion", arm * shape[:, 3])):
         colour = FAMILY_COLOURS[family]
         if family == "torsion" and not arm:
             continue

@@ -20,7 +20,7 @@ from .marks import gap
 
 TOO_NEAR = "✘"
 
-STYLES = {"flap": "blue", "edge": "dark_orange3", "torsion": "green4", "axial": "magenta", MIXED: "purple"}
+STYLES = {"flapwise": "blue", "edgewise": "dark_orange3", "torsion": "green4", "axial": "magenta", MIXED: "purple"}
 """Colours of mode names on the console."""
 
 _MODE = re.compile(rf"\b({'|'.join(STYLES)}) \d+′*")
@@ -69,7 +69,7 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
     at = _at(units, first)
     head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "± relative", "change")
     note = (
-        f"Kinetic energy {at}: flap, edge and axial motion of the mass centres, torsion about them, in the blade's axes. "
+        f"Kinetic energy {at}: flapwise, edgewise and axial motion of the mass centres, torsion about them; blade axes. "
         "± relative: the largest at any speed. "
         "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
     )

@@ -51,7 +51,7 @@ def test_a_flap_mode_that_turns_more_radians_than_it_moves_metres_is_flap() -> N
     """A sum of m² and rad² would call this torsion, 0.25 against 1; the energies are 0.3 against 0.003."""
     sine = np.sin(0.5 * np.pi * STATIONS)
     fractions = participation(modes(shape(z=0.5 * sine, t=sine)), BEAM)
-    assert families(fractions) == ("flap",)
+    assert families(fractions) == ("flapwise",)
     assert fractions[0, TORSION] == pytest.approx(POLAR / (POLAR + 0.25 * MASS), rel=2e-3)
 
 
@@ -114,7 +114,7 @@ def test_precone_and_pitch_turn_the_axes_with_the_blade(angle: float) -> None:
     for blade in (replace(BEAM, precone=angle), replace(BEAM, pitch=angle)):
         fractions = participation(solve(blade, 0.0, 20, 6), blade)
         np.testing.assert_allclose(fractions.max(1), 1.0, atol=1e-6)
-        assert numbered(families(fractions))[:4] == ("flap 1", "edge 1", "flap 2", "edge 2")
+        assert numbered(families(fractions))[:4] == ("flapwise 1", "edgewise 1", "flapwise 2", "edgewise 2")
 
 
 def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
@@ -124,8 +124,8 @@ def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
     names = numbered(families(participation(found, beam)))
     roots = np.array([1.87510407, 4.69409113])
     expected = {
-        **{f"flap {k + 1}": r**2 * np.sqrt(1e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
-        **{f"edge {k + 1}": r**2 * np.sqrt(1.4e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
+        **{f"flapwise {k + 1}": r**2 * np.sqrt(1e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
+        **{f"edgewise {k + 1}": r**2 * np.sqrt(1.4e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
         **{f"torsion {k}": (k - 0.5) * np.pi * np.sqrt(4.0 / 2e-3) / LENGTH for k in (1, 2, 3)},
     }
     for name, frequency in expected.items():
@@ -145,9 +145,9 @@ def test_a_mode_without_a_dominant_motion_is_mixed_and_its_energy_fractions_are_
     fractions = np.array(
         [[0.55, 0.42, 0.03, 0.0], [DOMINANT_FRACTION, 1 - DOMINANT_FRACTION, 0, 0], [0.02, 0.9, 0.08, 0]]
     )
-    assert numbered(families(fractions)) == ("mixed 1", "flap 1", "edge 1")
-    assert spoken(fractions[0]) == "55 % flap, 42 % edge"
-    assert spoken(fractions[2]) == "90 % edge, 8 % torsion"
+    assert numbered(families(fractions)) == ("mixed 1", "flapwise 1", "edgewise 1")
+    assert spoken(fractions[0]) == "55 % flapwise, 42 % edgewise"
+    assert spoken(fractions[2]) == "90 % edgewise, 8 % torsion"
 
 
 def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
@@ -156,5 +156,12 @@ def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
         found = solve(variant.blade, 2 * np.pi, 40, 6)
         fractions = participation(found, variant.blade)
         assert 4.1 < found.frequencies[2] / (2 * np.pi) < 4.4
-        assert numbered(families(fractions)) == ("flap 1", "edge 1", "flap 2", "edge 2", "flap 3", "torsion 1")
+        assert numbered(families(fractions)) == (
+            "flapwise 1",
+            "edgewise 1",
+            "flapwise 2",
+            "edgewise 2",
+            "flapwise 3",
+            "torsion 1",
+        )
         assert fractions[2, FLAP] > 0.99

@@ -134,11 +134,11 @@ def test_what_cannot_be_asked_is_told(changes: dict[str, object], phrase: str) -
 
 
 def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: Campbell) -> None:
-    assert [veering.label(t) for t in range(3)] == ["flap 1 → edge 1", "edge 1 → flap 1", "flap 2"]
-    assert veering.local[0] == ("flap 1", "edge 1", "flap 2")
-    assert [veering.label_at(0, omega) for omega in (0.1, 5.9)] == ["flap 1", "edge 1"]
-    assert veering.label_over(0, 0.0, 1.0) == "flap 1"
-    assert veering.label_over(0, 1.0, 5.0) == "flap 1 → edge 1"
+    assert [veering.label(t) for t in range(3)] == ["flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1", "flapwise 2"]
+    assert veering.local[0] == ("flapwise 1", "edgewise 1", "flapwise 2")
+    assert [veering.label_at(0, omega) for omega in (0.1, 5.9)] == ["flapwise 1", "edgewise 1"]
+    assert veering.label_over(0, 0.0, 1.0) == "flapwise 1"
+    assert veering.label_over(0, 1.0, 5.0) == "flapwise 1 → edgewise 1"
 
 
 def test_the_speed_without_a_steady_state_is_told() -> None:
@@ -177,7 +177,7 @@ def test_the_papers_figure_and_table_label_stand_ins_as_such(stand_ins: tuple[Va
     table = variation.sheet(stand_ins)
     assert table.rows[-1] == ("Park et al. (2010)", "largest", "+8.0 %", "+16.5 %")
     assert sum("not the paper's blade" in row[0] for row in table.rows) == 1
-    assert [row[1] for row in table.rows[:5]] == ["flap 1", "edge 1", "flap 2", "edge 2", "flap 3"]
+    assert [row[1] for row in table.rows[:5]] == ["flapwise 1", "edgewise 1", "flapwise 2", "edgewise 2", "flapwise 3"]
     shown = variation.figure(stand_ins)
     assert len(shown.axes) == 6
     for axes in shown.axes[1::2]:
@@ -212,7 +212,7 @@ def texts(figure: Figure) -> list[str]:
 def test_the_figure_names_modes_rays_the_range_and_the_veering(veering: Campbell) -> None:
     said = texts(draw(veering, RPM, "oscillators"))
     assert {"1P", "2P", "3P", "operating"} <= set(said)
-    for label in ("flap 1 → edge 1", "edge 1 → flap 1", "flap 2"):
+    for label in ("flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1", "flapwise 2"):
         assert any(text.startswith(f"{label}  ") for text in said)
     gap = next(text for text in said if text.startswith("veering\n"))
     exact = (np.sqrt(EDGE + 1.5) - np.sqrt(EDGE - 1.5)) / (2 * np.pi)
@@ -235,7 +235,7 @@ def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
     close = lambda omega: replace(southwell(omega), frequencies=np.array([5.0, 5.01]))  # noqa: E731
     shown = draw(campbell(BLADE, Wanted((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
     shown.canvas.draw()
-    labels = [t for t in shown.findobj(Text) if t.get_text().startswith(("flap 1 ", "edge 1 "))]  # type: ignore[attr-defined]
+    labels = [t for t in shown.findobj(Text) if t.get_text().startswith(("flapwise 1 ", "edgewise 1 "))]  # type: ignore[attr-defined]
     boxes = [t.get_window_extent() for t in labels]
     assert len(boxes) == 2
     assert not boxes[0].overlaps(boxes[1])
@@ -268,7 +268,7 @@ def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
         "Modes that come close",
     }
     modes_ = page["Modes"].rows
-    assert modes_[2][0] == "flap 2"
+    assert modes_[2][0] == "flapwise 2"
     assert float(modes_[2][2]) == pytest.approx(30.0 / (2 * np.pi), abs=5e-5)
     assert modes_[2][6:] == ("3.000", "< 0.0001 %")
     (met,) = page["Modes that come close"].rows
@@ -291,7 +291,7 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
     phrase = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
     assert "Not judged, because not tracked over the whole range: " in phrase
     (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Ambiguous tracking")
-    assert sheet.rows[0][0] == "edge 1"
+    assert sheet.rows[0][0] == "edgewise 1"
     assert sheet.rows[0][3] == "none"
     assert "?" in texts(draw(found, RAD_S, "jump"))
 
@@ -301,7 +301,7 @@ def test_the_answer_in_one_line() -> None:
         "Every mode stays at least 5 % away from every n per revolution at 1 to 2 rad/s."
     )
     phrase = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P
-    assert phrase == "✘ At 1.1 to 2 rad/s, flap 1 crosses 2P; edge 1 crosses 2P and comes within 10 % of 3P."
+    assert phrase == "✘ At 1.1 to 2 rad/s, flapwise 1 crosses 2P; edgewise 1 crosses 2P and comes within 10 % of 3P."
     assert "no margin is judged" in verdict(diagram(operating=None), RAD_S)
 
 
@@ -310,14 +310,14 @@ def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:
     with (tmp_path / "campbell.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == veering.tracks.place.size
-    third = [r for r in rows if r["name"] == "flap 2"]
+    third = [r for r in rows if r["name"] == "flapwise 2"]
     np.testing.assert_allclose(
         [float(r["frequency_rad_s"]) for r in third],
         np.sqrt(900 + 3 * np.array([float(r["omega_rad_s"]) for r in third]) ** 2),
         rtol=1e-12,
     )
     assert sum(int(r["asked_for"]) for r in third) == 13
-    assert all(float(r["flap"]) == pytest.approx(1.0) for r in third)
+    assert all(float(r["flapwise"]) == pytest.approx(1.0) for r in third)
     with (tmp_path / "encounters.csv").open() as file:
         (met,) = csv.DictReader(file)
     assert met["kind"] == "veering"

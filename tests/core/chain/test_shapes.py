@@ -34,21 +34,21 @@ BEAM = uniform_blade("beam", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=3e4, mass=
 @given(first=st.tuples(SOME, SOME, SOME, SOME), scale=st.sampled_from([-7.0, 0.02, 1.0]))
 def test_a_polynomial_is_fitted_as_itself_whatever_its_scale_and_sign(first: tuple[float, ...], scale: float) -> None:
     exact = np.append(first, 1.0 - sum(first))
-    found = fit("flap 1", 1.0, scale * (np.power.outer(STATIONS, POWERS) @ exact))
+    found = fit("flapwise 1", 1.0, scale * (np.power.outer(STATIONS, POWERS) @ exact))
     np.testing.assert_allclose(found.coefficients, exact, atol=2 * 10.0**-DIGITS)
     assert found.largest < 1e-5
 
 
 @given(values=st.lists(SOME, min_size=20, max_size=20))
 def test_coefficients_add_up_to_one_as_printed(values: list[float]) -> None:
-    found = fit("flap 1", 1.0, np.array([*values, 1.0]))
+    found = fit("flapwise 1", 1.0, np.array([*values, 1.0]))
     printed = [float(f"{c:.{DIGITS}f}") for c in found.coefficients]
     assert sum(printed) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_the_condition_number_is_of_the_problem_solved_and_large() -> None:
     """It is the largest ratio of the relative errors of coefficients and shape."""
-    found = fit("flap 1", 1.0, STATIONS**2)
+    found = fit("flapwise 1", 1.0, STATIONS**2)
     basis = np.stack([STATIONS**k - STATIONS**6 for k in (2, 3, 4, 5)], axis=1)
     sizes = np.linalg.svd(basis, compute_uv=False)
     assert found.condition == pytest.approx(sizes[0] / sizes[-1], rel=1e-9)
@@ -57,7 +57,7 @@ def test_the_condition_number_is_of_the_problem_solved_and_large() -> None:
 
 def test_errors_are_those_at_the_stations() -> None:
     wavy = STATIONS**2 + 0.1 * np.sin(9 * np.pi * STATIONS)
-    found = fit("flap 1", 1.0, wavy)
+    found = fit("flapwise 1", 1.0, wavy)
     deviation = found.at(STATIONS) - wavy
     assert found.largest == pytest.approx(np.abs(deviation).max(), rel=1e-12)
     assert found.rms == pytest.approx(np.sqrt(np.mean(deviation**2)), rel=1e-12)
@@ -65,18 +65,18 @@ def test_errors_are_those_at_the_stations() -> None:
 
 
 def test_a_tip_that_stands_still_is_refused() -> None:
-    with pytest.raises(CaseError, match="flap 2: its tip does not move"):
-        fit("flap 2", 1.0, STATIONS * (1.0 - STATIONS))
+    with pytest.raises(CaseError, match="flapwise 2: its tip does not move"):
+        fit("flapwise 2", 1.0, STATIONS * (1.0 - STATIONS))
 
 
 def test_a_uniform_beams_shapes_are_rayleighs() -> None:
     """Clamped-free beam (Rayleigh 1877): five powers follow mode 1 to 1e-4 and mode 2 to 3e-3 of the tip."""
     found = {p.mode: p for p in polynomials(BEAM, 0.0, 20)}
-    for name, k, within in (("flap 1", 0, 1e-4), ("edge 1", 0, 1e-4), ("flap 2", 1, 3e-3)):
+    for name, k, within in (("flapwise 1", 0, 1e-4), ("edgewise 1", 0, 1e-4), ("flapwise 2", 1, 3e-3)):
         exact = shape(ROOTS[k]) / shape(ROOTS[k])[-1]
         np.testing.assert_allclose(found[name].shape, exact, atol=2e-5)
         np.testing.assert_allclose(found[name].at(STATIONS), exact, atol=within)
-        stiffness = 3e4 if name == "edge 1" else 1e4
+        stiffness = 3e4 if name == "edgewise 1" else 1e4
         assert found[name].frequency == pytest.approx(ROOTS[k] ** 2 * np.sqrt(stiffness / 1.2) / 36.0, rel=1e-6)
 
 
@@ -119,13 +119,13 @@ def test_shapes_for_elastodyn_exclude_twist() -> None:
     for p, q in zip(polynomials(blade, 2.0, 20), polynomials(straight, 2.0, 20), strict=True):
         np.testing.assert_allclose(p.coefficients, q.coefficients, atol=3e-5)
     real = {p.mode: p for p in as_it_is(blade, modes(blade, 2.0, 20, 8))}
-    (edge,) = (p for p in polynomials(blade, 2.0, 20) if p.mode == "edge 1")
-    assert np.abs(real["edge 1"].shape - edge.shape).max() > 0.01
+    (edge,) = (p for p in polynomials(blade, 2.0, 20) if p.mode == "edgewise 1")
+    assert np.abs(real["edgewise 1"].shape - edge.shape).max() > 0.01
 
 
 def test_a_blade_without_the_modes_that_elastodyn_needs_is_reported() -> None:
     stiff = uniform_blade("stiff", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=1e10, mass=1.2)
-    with pytest.raises(CaseError, match="stiff, in ElastoDyn's terms: no edge 1 among the lowest modes"):
+    with pytest.raises(CaseError, match="stiff, in ElastoDyn's terms: no edgewise 1 among the lowest modes"):
         polynomials(stiff, 0.0, 12)
 
 
@@ -155,9 +155,9 @@ def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fracti
     figure = draw(found, 0, RPM, "oscillators: mode shapes")
     assert len(figure.axes) == 3
     texts = [t.get_text() for t in figure.findobj(Text)]  # type: ignore[attr-defined]
-    for k, name in enumerate(("flap 1", "edge 1", "flap 2")):
+    for k, name in enumerate(("flapwise 1", "edgewise 1", "flapwise 2")):
         assert f"{name}   {found.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in texts
-    assert "100 % flap" in texts
+    assert "100 % flapwise" in texts
     assert "a quarter period late" in texts  # edge lags by 0.3 rad in these oscillators
 
 
@@ -165,7 +165,7 @@ def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:
     with write_csv(found, 1, tmp_path).open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 3 * 21
-    first = [r for r in rows if r["name"] == "flap 1"]
+    first = [r for r in rows if r["name"] == "flapwise 1"]
     np.testing.assert_allclose([float(r["flap_re"]) for r in first], np.sin(0.5 * np.pi * STATIONS), atol=1e-8)
     assert {float(r["omega_rad_s"]) for r in rows} == {2.0}
 
@@ -182,7 +182,7 @@ def test_the_table_of_coefficients_states_its_conventions() -> None:
 def test_the_papers_blade_has_shapes_for_elastodyn() -> None:
     blade = library.load("park-blade").variants[0].blade
     found = polynomials(blade, 1.0, 20)
-    assert [p.mode for p in found] == ["flap 1", "flap 2", "edge 1"]
+    assert [p.mode for p in found] == ["flapwise 1", "flapwise 2", "edgewise 1"]
     assert all(p.largest < 0.01 for p in found)
 
 
@@ -190,9 +190,9 @@ BLADES = os.environ.get("SOUTHWELL_BLADES")
 real = pytest.mark.skipif(not BLADES, reason="set SOUTHWELL_BLADES to a folder of public blade files")
 
 PUBLISHED = {
-    "flap 1": (0.0622, 1.7254, -3.2452, 4.7131, -2.2555),
-    "flap 2": (-0.5809, 1.2067, -15.5349, 29.7347, -13.8255),
-    "edge 1": (0.3627, 2.5337, -3.5772, 2.376, -0.6952),
+    "flapwise 1": (0.0622, 1.7254, -3.2452, 4.7131, -2.2555),
+    "flapwise 2": (-0.5809, 1.2067, -15.5349, 29.7347, -13.8255),
+    "edgewise 1": (0.3627, 2.5337, -3.5772, 2.376, -0.6952),
 }
 """NREL 5-MW, in its ElastoDyn blade file (Jonkman et al., NREL/TP-500-38060, 2009); as printed, to 4 decimals."""
 
@@ -207,7 +207,7 @@ def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without
         return {p.mode: np.abs(p.at(x) - np.power.outer(x, POWERS) @ PUBLISHED[p.mode]).max() for p in found}
 
     plain, twisted = off(polynomials(blade, omega)), off(as_it_is(blade, modes(blade, omega, 50, 8)))
-    for name, within in (("flap 1", 5e-3), ("flap 2", 2e-2), ("edge 1", 2e-3)):
+    for name, within in (("flapwise 1", 5e-3), ("flapwise 2", 2e-2), ("edgewise 1", 2e-3)):
         assert plain[name] < within
         assert plain[name] < twisted[name]
 
@@ -221,5 +221,5 @@ def test_flap_and_edge_of_the_iea_15mw_blade_veer_near_0_8_hz() -> None:
     assert met.kind == "veering"
     assert met.frequency / (2 * np.pi) == pytest.approx(0.8, abs=0.03)
     assert met.exchanged > 0.8
-    assert [drawn.label(t) for t in (0, 1)] == ["flap 1 → edge 1", "edge 1 → flap 1"]
+    assert [drawn.label(t) for t in (0, 1)] == ["flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1"]
     assert not drawn.tracks.doubts

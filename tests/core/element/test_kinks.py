@@ -193,7 +193,7 @@ def test_a_file_declares_its_kinks(tmp_path: Path) -> None:
 
 
 def test_too_few_points_around_a_corner_are_refused(tmp_path: Path) -> None:
-    """With one spline through the kink, flap 2 was 6.7 % low."""
+    """With one spline through the kink, flapwise 2 was 6.7 % low."""
     path = tmp_path / "blade.toml"
     path.write_text(FILE.format(kinks="[]", k=K, m=M))
     with pytest.raises(CaseError, match=r"between 0 m and 8 m the spline.*30° at 8 m.*add points.*kinks = \[8\]"):

@@ -97,7 +97,7 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     assert (status, err) == (0, "")
     blade = library.load(str(beam)).variants[0].blade
     found = modes(blade, 200 * np.pi / 30, 8, 3)
-    row = next(text for text in shown.splitlines() if "flap 1" in text and " % flap" in text)
+    row = next(text for text in shown.splitlines() if "flapwise 1" in text and " % flapwise" in text)
     assert certain(found.frequencies[0] / (2 * np.pi), found.uncertainty[0]) in row.split()
     names = {p.name for p in out.iterdir()}
     assert names == {
@@ -200,7 +200,7 @@ def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
     assert first in shown
     rows = [row.split(",") for row in (tmp_path / "campbell.csv").read_text().splitlines()]
     name, place = rows[0].index("name"), rows[0].index("speed_number")
-    assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flap 1", "edge 1", "flap 2"]
+    assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flapwise 1", "edgewise 1", "flapwise 2"]
 
 
 @pytest.mark.slow

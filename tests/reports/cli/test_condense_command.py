@@ -314,7 +314,7 @@ def test_the_example(small: None, tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 def made(whole: tuple[float, ...], condensed_: tuple[float, ...]) -> example.Example:
-    names = ("flap 1", "torsion 1")
+    names = ("flapwise 1", "torsion 1")
     speeds = tuple(
         example.Speed(w, names, whole, condensed_, {"rigid": whole, "average": whole}, (), condensed_)
         for w in (0.0, 10.0)

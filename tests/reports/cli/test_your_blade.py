@@ -97,7 +97,7 @@ def test_each_line_of_the_diagram_has_its_uncertainty_and_who_confirms_it(
     assert status == 0
     rows = re.findall(r"^ (\w+ 1) +(\S+) +([\d.]+) ± (\S+) +(\S+) ", out[out.index("Independent confirmation") :], re.M)
     assert [(name, speed, codes) for name, speed, _, _, codes in rows] == [
-        (name, speed, "assumed-modes") for speed in ("0", "12") for name in ("flap 1", "edge 1")
+        (name, speed, "assumed-modes") for speed in ("0", "12") for name in ("flapwise 1", "edgewise 1")
     ]
     assert all(0 < float(u) < 1e-3 * float(f) for _, _, f, u, _ in rows)
     assert "## Independent confirmation" in (tmp_path / "campbell.md").read_text(encoding="utf-8")

@@ -154,7 +154,7 @@ def test_the_cells_of_the_notebook_run_in_their_order(tmp_path: Path) -> None:
     assert len(kinds) == len(sources)
     assert kinds.count("Axes") == 3
     assert "<p>" in kinds
-    assert "flap 1 crosses 4P" in done.stdout
+    assert "flapwise 1 crosses 4P" in done.stdout
 
 
 # ------------------------------------------------------------------------------------------------------------ the site
