@@ -131,10 +131,10 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     turn = sp.ad(k.Y)
     momentum = (M @ k.Y[..., None])[..., 0]
     out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
-    parts = (
-        np.abs(M) @ (np.abs(k.A) + np.abs(fall))[..., None]
-        + np.abs(np.swapaxes(turn, -1, -2)) @ np.abs(M) @ np.abs(k.Y)[..., None]  # M Y may cancel
-    )
+    lever = np.abs(sp.adjoint(sp.inverse(k.poses)))
+    parts_of_M = np.swapaxes(lever, -1, -2) @ np.abs(tree.inertia) @ lever  # M and M Y may cancel
+    parts = parts_of_M @ (np.abs(k.A) + np.abs(fall))[..., None]
+    parts += np.abs(np.swapaxes(turn, -1, -2)) @ parts_of_M @ np.abs(k.Y)[..., None]
     out.size[: len(M)] += parts[..., 0]
     mt = M @ turn
     C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
