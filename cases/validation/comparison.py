@@ -1,8 +1,8 @@
 """The Sandia rotor's frequencies, simulated over the speeds and compared with the measured ones point by point.
 
-Modes are distinguished by the rotor's symmetry: rotated by half a turn about its axis, a mode is itself (S) or its
-negative (A); and the blades move in their own plane (flatwise, F) or across it (edgewise, E). ``FA 2`` is the second
-flatwise antisymmetric one, counted from the lowest.
+Modes are named by symmetry and direction. Under half a turn about the rotor's axis a mode is unchanged (symmetric, S) or
+changes its sign (antisymmetric, A). The blades move in their own plane (flatwise, F) or normal to it (edgewise, E). ``FA 2``
+is the second flatwise antisymmetric mode.
 """
 
 import tomllib
@@ -26,27 +26,27 @@ from .sandia34 import Variation
 Array = NDArray[np.float64]
 
 SPEEDS = (0.0, 10.0, 20.0, 30.0, 40.0)
-"""rpm at which the model is solved; see ``at_speed`` for what lies between."""
+"""Rotor speeds in rpm at which the model is solved; ``at_speed`` interpolates between them."""
 
 VARIED_AT = (0.0, 20.0, 40.0)
-"""rpm at which the inputs are varied; u_input is linear between."""
+"""Rotor speeds in rpm at which the inputs are varied; u_input is interpolated linearly."""
 
 COUNT = 12
-"""Modes that are solved for, which hold all that were measured."""
+"""Number of modes computed; all measured modes are among them."""
 
 ORDER = 2
-"""Of convergence as elements are halved: straight ones on curved members. With every element in four it is seen at rest to be
-1.85 to 2.21 in all modes that were measured."""
+"""Order of convergence as elements are halved: curved members consist of straight elements. The order observed at rest, with
+every element divided into four, is 1.85 to 2.21 for all measured modes."""
 
 
 @cache
 def data() -> dict[str, Any]:
-    """The numbers of ``sandia34_measured.toml``."""
+    """The data in ``sandia34_measured.toml``."""
     return tomllib.loads((files(str(__package__)) / "sandia34_measured.toml").read_text(encoding="utf-8"))
 
 
 def named(found: mb.Solution) -> dict[str, float]:
-    """Frequencies (Hz) by name."""
+    """Frequencies (Hz) of a solution by mode name."""
     state = found.linear.state.kinematics
     bodies = [b.name for b in found.linear.tree.mechanism.bodies]
     number = sum(name.startswith("right ") for name in bodies)
@@ -69,12 +69,12 @@ def solved(rpm: float, how: Variation) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Simulated:
-    """The model over the speeds.
+    """Frequencies of the model over the rotor speeds.
 
     Attributes:
-        base: frequencies (Hz) by name at each of ``SPEEDS``.
-        inputs: u_input of each at each of ``VARIED_AT``, Hz.
-        numerical: relative error of each at rest, from its change when every element is halved.
+        base: frequencies (Hz) by mode name at each of ``SPEEDS``.
+        inputs: u_input (Hz) of each mode at each of ``VARIED_AT``.
+        numerical: relative discretisation error of each mode at rest, from the change when every element is halved.
     """
 
     base: tuple[dict[str, float], ...]
@@ -83,10 +83,10 @@ class Simulated:
 
 
 def changes(base: dict[str, float], other: dict[str, float]) -> dict[str, float]:
-    """Absolute change (Hz) of each mode of ``base`` in a slightly different model, ∞ where that has too few.
+    """Absolute change (Hz) of each mode of ``base`` in a slightly different model; ∞ if that model has too few modes.
 
-    Modes of one symmetry do not cross as a model changes, they veer, and what moves most in them may change places: S and A
-    apart, the k-th of one model is the k-th of the other.
+    Modes of equal symmetry veer instead of crossing as the model changes, and may exchange their dominant motion. The k-th
+    symmetric mode of one model therefore corresponds to the k-th symmetric mode of the other, likewise the antisymmetric.
     """
     out = {}
     for symmetry in "SA":
@@ -98,14 +98,14 @@ def changes(base: dict[str, float], other: dict[str, float]) -> dict[str, float]
 
 
 def inputs(at: Sequence[dict[str, float]]) -> dict[str, float]:
-    """u_input from the frequencies of all ``variations`` at one speed: root of the sum of the changes' squares."""
+    """u_input from the frequencies of all ``variations`` at one speed: root of the sum of squared changes."""
     plain, *others = at
     moved = [changes(plain, other) for other in others]
     return {name: float(np.sqrt(sum(m[name] ** 2 for m in moved))) for name in plain}
 
 
 def variations() -> tuple[Variation, ...]:
-    """The model, and one change of each input that is uncertain: by a standard uncertainty, or to the other choice."""
+    """The model, followed by one variation of each uncertain input: by its standard uncertainty, or to the alternative."""
     u = sandia34.data()["uncertainty"]
     return (
         Variation(),
@@ -118,7 +118,7 @@ def variations() -> tuple[Variation, ...]:
 
 
 def simulated() -> Simulated:
-    """The model at all speeds, its inputs varied, and refined: 21 solutions, some minutes' work in all."""
+    """Solve the model at all speeds, with varied inputs and with a refined mesh: 21 solutions, a few minutes."""
     base = tuple(solved(rpm, Variation()) for rpm in SPEEDS)
     varied = tuple(
         inputs([base[SPEEDS.index(rpm)], *(solved(rpm, how) for how in variations()[1:])]) for rpm in VARIED_AT
@@ -129,10 +129,10 @@ def simulated() -> Simulated:
 
 
 def at_speed(values: Sequence[float], rpm: float) -> tuple[float, float]:
-    """A frequency between ``SPEEDS``, and what its interpolation leaves open; both Hz.
+    """A frequency interpolated between ``SPEEDS``, and the error of the interpolation; both in Hz.
 
-    By Southwell's law f² runs straight in Ω². It bends a little, and where modes veer more: between the speeds it is a cubic
-    that does not overshoot (PCHIP), and its distance from straight lines is the error that it may have.
+    By Southwell's law f² is nearly linear in Ω², less so where modes veer. It is interpolated by a monotone cubic (PCHIP);
+    the difference from linear interpolation bounds the error.
     """
     x, y = np.square(SPEEDS), np.square(values)
     smooth = float(PchipInterpolator(x, y)(rpm**2))
@@ -141,7 +141,7 @@ def at_speed(values: Sequence[float], rpm: float) -> tuple[float, float]:
 
 
 def points(model: Simulated) -> tuple[Point, ...]:
-    """Every measured point that the model has a mode for, at every speed."""
+    """Every measured point of a mode that the model has, with the simulated frequency at its speed."""
     out = []
     for line in data()["lines"]:
         for rpm, measured in line["points"]:

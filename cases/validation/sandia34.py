@@ -2,14 +2,15 @@
 
 In the frame that rotates with the rotor about the tower's axis z, gravity along z included, all coefficients are constant.
 Every member is a chain of straight elements between nodes on its axis; the nodes' frames are parallel to the rotor's at
-rest. Loops close where the blades and struts meet the tower, and where the bearing holds its top. Numbers: ``sandia34.toml``.
+rest. Loops close where the blades and struts meet the tower, and at the bearing of its top. The data are in ``sandia34.toml``.
 
-**The mass centre.** The source's mass matrices put it 0.17 to 0.20 m from the axis *across* the chord, which is more than half
-the profile's thickness, while their moments of inertia put the chord along axis 2. Stiffness over mass is the same for
-stretch and for both bendings, E/ρ = 2.55e7 m²/s²: the section is of one material, so its mass centre is its tension centre,
-on axis 2. That is ``Centre = "tension"``, and the choice for S. The printed number read as across the chord or as along it
-serves the uncertainty of the inputs. Both take the printed moments of inertia about the mass centre: about the axis, those
-about axis 2 would be smaller than m z², which no section has.
+**Mass centre.** The source's mass matrices place the mass centre 0.17 to 0.20 m from the axis *across* the chord, which is
+more than half the profile's thickness; according to their moments of inertia, the chord lies along axis 2. The ratio of
+stiffness to mass is the same for stretch and for bending in both directions, E/ρ = 2.55e7 m²/s²: the section is of one
+material, and its mass centre is its tension centre, on axis 2. The simulated frequencies S use this (``Centre =
+"tension"``). The printed offset, across or along the chord, enters the uncertainty of the inputs. In both cases the printed
+moments of inertia are taken about the mass centre; about the axis, that about axis 2 would be less than m z², which is
+impossible.
 """
 
 import tomllib
@@ -34,13 +35,14 @@ Centre = Literal["tension", "across the chord", "along the chord"]
 
 @dataclass(frozen=True)
 class Variation:
-    """How a model differs from the one that gives S.
+    """Difference of a model from the nominal one.
 
     Attributes:
-        refine: every member has this many times the elements.
-        stiffness, mass: factors on all sections' stiffness and mass.
-        centre: where the blades' mass centre lies.
-        mirrored: whether axis 2 of the left blade is the right one's turned with it, −y, not y as in the source.
+        refine: factor on the number of elements of every member.
+        stiffness, mass: factors on the stiffness and the mass of all sections.
+        centre: position of the blades' mass centre.
+        mirrored: whether axis 2 of the left blade is −y, the right blade's axis 2 after half a turn, instead of y as in the
+            source.
     """
 
     refine: int = 1
@@ -52,7 +54,7 @@ class Variation:
 
 @cache
 def data() -> dict[str, Any]:
-    """The numbers of ``sandia34.toml``."""
+    """The data in ``sandia34.toml``."""
     return tomllib.loads((files(str(__package__)) / "sandia34.toml").read_text(encoding="utf-8"))
 
 
@@ -83,7 +85,7 @@ def _element(length: float, K: Array, M: Array) -> Beams:
 
 @dataclass(frozen=True)
 class Member:
-    """Nodes (n+1, 3) along a member, each element's section, and axis 2 (3,) of them all."""
+    """Nodes (n+1, 3) of a member, m, the section of each of its n elements, and their common axis 2 (3,)."""
 
     name: str
     nodes: Array
@@ -92,7 +94,7 @@ class Member:
 
 
 def _between(ends: list[float], elements: list[int]) -> tuple[Array, list[int]]:
-    """Places that divide the intervals between ``ends``, and the interval that each piece lies in."""
+    """Positions that divide the intervals between ``ends`` into ``elements`` pieces, and the interval of each piece."""
     pieces = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], elements, strict=True)]
     return np.concatenate([*pieces, ends[-1:]]), np.repeat(np.arange(len(elements)), elements).tolist()
 
@@ -140,7 +142,7 @@ def mechanism(omega: float, how: Variation | None = None) -> mb.Mechanism:
     joints.append(mb.Joint("base", "fixed", "rotor", "tower 0"))
 
     def node(member: Member, k: int) -> str:
-        """The body at a member's k-th node: the tower's own where the member begins there."""
+        """The body at the k-th node of a member; the tower's body where the member begins at the tower."""
         if member.name != "tower" and k == 0:
             return {"low": f"tower {low}", "high": f"tower {high}"}.get(member.name.split()[0], "tower 0")
         return f"{member.name} {k}"
