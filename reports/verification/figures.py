@@ -1,6 +1,7 @@
 """The Campbell diagram and the differences of one blade, drawn from the rows of a run."""
 
 from collections.abc import Sequence
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from ..shared.units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 """Orders n per revolution that are drawn as rays."""
+
+LONGEST = 22
+"""Characters of a code's name in one line beside an axis."""
 
 
 def campbell(run: Run, case: str, units: Units) -> Figure | None:
@@ -184,7 +188,7 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
             worst = max(mine, key=lambda c: abs(c.difference or 0.0))
             text = f"{amount(worst.difference or 0.0, worst.target)}\n{modes[worst]}, {units.at(worst.omega)}"
             axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
-        axes.set_yticks(range(len(names)), names)
+        axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])
         axes.tick_params(axis="y", length=0, pad=8)
         axes.xaxis.set_major_locator(LogLocator(numticks=20))
         axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
