@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from html import escape
 
-import pandas as pd
+from tabulate import tabulate
 
 TEXT = re.compile(r"([\\`*_{}\[\]|~])")
 """Characters and patterns that Markdown could interpret as markup."""
@@ -17,7 +17,7 @@ def plain(text: object) -> str:
 
 def table(rows: Sequence[dict[str, str]]) -> str:
     """A Markdown table of formatted cells; numbers stay as written, and columns are not padded."""
-    text = pd.DataFrame(list(rows)).to_markdown(index=False, disable_numparse=True)
+    text = tabulate(list(rows), headers="keys", tablefmt="pipe", disable_numparse=True)
     return re.sub(r":-+\|", ":--|", re.sub(r" +\|", " |", text))
 
 
