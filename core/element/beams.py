@@ -75,6 +75,11 @@ class Beams:
         return self.law.undeformed
 
     @property
+    def bushings(self) -> NDArray[np.bool_]:
+        """(n,) whether an element is a bushing, which has no shape between its ends."""
+        return np.asarray(~self.law.shortening.any(axis=(1, 2)))
+
+    @property
     def inner(self) -> int:
         """Number of internal coordinates of an element: six if it has mass inside, else none."""
         return 6 if len(self.points.element) else 0

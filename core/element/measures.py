@@ -37,7 +37,7 @@ LARGE_STRAIN, LARGEST_STRAIN = 0.02, 0.2
 """Steady strains from which they are reported, and refused: sections are linear elastic."""
 
 RANGE = 0.5
-"""Largest second-order part of an element's axial strain, by its rate; in elements that are short enough it is below 1e-3."""
+"""Largest change of the rate of an element's axial strain by its second-order part; short elements stay below 1e-3."""
 
 
 @dataclass(frozen=True)

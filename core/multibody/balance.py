@@ -65,14 +65,14 @@ class Tangent:
     def relaxation(self, here: Residual, weight: float, towards: bool) -> Array:
         """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own.
 
-        ``towards``: with the sign of its own, so that it moves towards an equilibrium that is unstable.
+        With ``towards``, the added stiffness has the sign of its own: the step leads towards an unstable equilibrium.
         """
         root = np.sqrt(self.scale)
         added = np.diag(weight * self._sign(towards))
         return -here.part.spread(factored(self.matrix + added).solve(here.reduced / root) / root)
 
     def attracts(self, towards: bool) -> bool:
-        """Whether short steps of ``relaxation`` from every point nearby lead here: D⁻¹ K̂ has no eigenvalue with Re < 0."""
+        """Whether short steps of ``relaxation`` from all nearby points lead here: no eigenvalue of D⁻¹ K̂ has Re < 0."""
         rates = np.linalg.eigvals(self._sign(towards)[:, None] * self.matrix)
         return bool((rates.real >= -TOLERANCE * np.abs(rates).max(initial=0.0)).all())
 

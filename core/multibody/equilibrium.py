@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 from . import partition
 from .balance import residual_at, tangent_at
 from .continuation import followed
-from .kinematics import poses
 from .loops import assemble, closed, size_of
 from .mechanism import MechanismError
 from .newton import Found, newton, relaxed
 from .state import ContradictionError, State, check_rates
-from .strained import out_of_range, undeformed
+from .strained import out_of_range
 from .tree import Tree
 
 Array = NDArray[Any]
@@ -29,15 +28,10 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     rates and loads grow while the dead forces fade. If a mechanism has no equilibrium at rest, as a pendulum whose weight
     grows with the loads, only the dead forces fade. Without a guess, relaxation is the last resort.
 
-    Of a guess that deforms beams beyond the range of their strain measure, coordinates of elastic joints and of the inside
-    of beams are not used.
-
     Raises:
         MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
     """
     q = assemble(tree, guess)
-    if guess and out_of_range(tree, poses(tree, q)[0]):
-        q = assemble(tree, undeformed(tree, guess))
     contradiction = None
     try:
         found = newton(tree, q) or (_relaxed(tree, q) if guess else None)
@@ -52,19 +46,20 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
         raise contradiction
     if found is None and not guess:
         found = _relaxed(tree, q)
+    beams = out_of_range(tree, found.state.kinematics.poses) if found else []
+    elsewhere = _elsewhere(tree, q) if guess and (beams or not found) else ""
     if found is None:
         raise MechanismError(
             "no steady state was found near the guess: neither Newton's method nor relaxation converges from it, and "
             f"continuation reached {100 * reached[0]:.3g} % from rest with rates and loads growing, {100 * reached[1]:.3g} % "
-            f"from the guess with dead forces fading{_elsewhere(tree, q) if guess else ''}: give a better guess, or check for "
-            "a missing spring or joint"
+            f"from the guess with dead forces fading{elsewhere}: give a better guess, or check for a missing spring or joint"
         )
     check_rates(tree, found.state)
     _check_balance(tree, found)
-    if beams := out_of_range(tree, found.state.kinematics.poses):
+    if beams:
         raise MechanismError(
-            f"beam {beams[0]}: the only steady state found deforms it beyond the range of its strain measure: divide it into "
-            "shorter beams, or give a better guess"
+            f"beam {beams[0]}: the steady state found deforms it beyond the range of its strain measure{elsewhere}: divide it "
+            "into shorter beams, or give a better guess"
         )
     return found.state
 

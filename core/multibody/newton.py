@@ -18,7 +18,7 @@ Array = NDArray[Any]
 _MAX_STEPS, _MAX_RELAXATIONS = 60, 200
 _SMALL_CORRECTION = 0.05  # rad, or fraction of the length
 _NEARLY = 1e-3  # weight of the added stiffness below which Newton's method alone is tried
-_RUNS_AWAY = 20  # steps in succession after which more force is left
+_RUNS_AWAY = 20  # successive steps that increase the unbalanced forces, after which it gives up
 _MAX_WEIGHT = 1e12  # of the added stiffness: beyond, steps vanish in rounding
 
 
@@ -61,9 +61,9 @@ def newton(tree: Tree, q: Array, dead: Array | float = 0.0, far: float = np.inf)
 def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
     """Newton's method with pseudo-time steps: the path of an overdamped mechanism from q to a stable equilibrium.
 
-    ``towards``: coordinates with a negative stiffness, as those of a free body in a rotating frame, move the other way, so that
-    those of a body that is unstable alone are found too. Other unstable equilibria are no result: which of them is reached is a
-    matter of chance.
+    With ``towards``, coordinates with a negative stiffness, such as those of a free body in a rotating frame, move in the
+    opposite direction: the equilibrium of such a body is found although it is unstable. No other unstable equilibrium is
+    accepted, since rounding would decide which of them is reached.
 
     An implicit step adds the damping divided by the time step to the stiffness. Time steps grow as the forces left decrease
     (C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523) and shrink if a step is long or forces double.
@@ -98,7 +98,7 @@ def relaxed(tree: Tree, q: Array, towards: bool = False) -> Found | None:
 
 
 def _moved(tree: Tree, here: Residual, step: Array, dead: Array | float) -> Residual | None:
-    """The residual after a step (f,) of the free coordinates; None where loops do not close or beams are out of range."""
+    """The residual after a step (f,) of the free coordinates; None if loops do not close or beams are out of range."""
     free = partition.free_coordinates(tree)
     q = here.state.q.copy()
     q[free] += step

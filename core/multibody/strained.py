@@ -1,6 +1,6 @@
 """The strain of a mechanism's beams, and whether their strain measure is valid at it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,8 @@ def largest_strain(tree: Tree, state: State) -> float:
     for batch, x in _relative(tree, state.kinematics.poses):
         law = batch.beams.law
         beta = state.q[batch.inner[:, None] + np.arange(6)] if batch.beams.inner else np.zeros((len(x), 0))
-        real = law.shortening.any(axis=(1, 2))
-        largest = max(largest, float(measures.relative_strain(law, x, beta)[real].max(initial=0.0)))
+        strain = measures.relative_strain(law, x, beta)[~batch.beams.bushings]
+        largest = max(largest, float(strain.max(initial=0.0)))
     return largest
 
 
@@ -33,13 +33,6 @@ def out_of_range(tree: Tree, poses: Array) -> list[str]:
             beam = tree.mechanism.beams[k]
             out.append(f"{beam.body_a}–{beam.body_b}")
     return out
-
-
-def undeformed(tree: Tree, guess: Mapping[str, float]) -> dict[str, float]:
-    """A guess without the coordinates of elastic joints and of the inside of beams."""
-    inner = {tree.coordinates[j + i] for j in tree.inner for i in range(6)}
-    elastic = tuple(f"{j.name}." for j in tree.mechanism.joints if j.kind == "elastic")
-    return {name: value for name, value in guess.items() if name not in inner and not name.startswith(elastic)}
 
 
 def _relative(tree: Tree, poses: Array) -> Iterator[tuple[Batch, Array]]:

@@ -9,12 +9,12 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ...cases.input.properties import sections
+from ...cases.regression.history import this_machine
+from ...cases.verify.identity import LIBRARIES
 from ...core.blade import Blade
 from ...core.regular_files import read_bytes
 from ..shared import markdown
 from .properties import COLUMNS, PROPERTIES, cell, facts, picked, rows
-
-LIBRARIES = ("numpy", "scipy", "numba")
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Origin:
 UNKNOWN = Origin()
 
 
-def cover(origin: Origin, now: datetime | None = None) -> str:
+def cover(origin: Origin) -> str:
     """The section on the input: origin, digests of the files, date and versions.
 
     Raises:
@@ -48,11 +48,10 @@ def cover(origin: Origin, now: datetime | None = None) -> str:
     ]
     if origin.unused:
         found.append({"": "not used", "value": f"{len(origin.unused)} non-zero quantities, listed below"})
-    date = (now or datetime.now(UTC)).astimezone(UTC)
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
-    found.append({"": "computed", "value": f"{date:%Y-%m-%d %H:%M} UTC"})
+    found.append({"": "computed", "value": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"})
     program = f"southwell {version('southwell')}, Python {platform.python_version()}, {libraries}"
-    found.append({"": "program", "value": f"{program}; {platform.system()} {platform.machine()}"})
+    found.append({"": "program", "value": f"{program}; {this_machine()}"})
     return f"## Input\n\n{markdown.table(found)}\n"
 
 
@@ -70,7 +69,9 @@ def properties(blade: Blade) -> str:
 
 
 def unused(origin: Origin) -> str:
-    """The section on quantities of the files that are not used."""
+    """The section on quantities of the files that are not used; nothing is stated of a blade of unknown origin."""
+    if origin is UNKNOWN:
+        return ""
     lines = (
         "\n".join(f"- {markdown.plain(line.removeprefix('not used: '))}" for line in origin.unused)
         or "All non-zero quantities are used."

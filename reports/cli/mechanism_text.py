@@ -64,7 +64,7 @@ def redundant(found: Solution) -> str:
 def notes(found: Solution) -> list[str]:
     """Explanation of the uncertainties, and a remark on a large steady strain."""
     what = "± rounding: relative for frequencies, absolute for damping ratios; "
-    if any(beam.beams.law.shortening.any() for beam in found.linear.tree.mechanism.beams):
+    if not all(beam.beams.bushings.all() for beam in found.linear.tree.mechanism.beams):
         out = [
             what
             + "each beam is one element: the error of this discretisation is not included; divide the beams to see it"

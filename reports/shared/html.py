@@ -97,8 +97,8 @@ def pdf(report: Path) -> Path:
         from weasyprint import HTML  # pyright: ignore[reportMissingImports]
     except (ImportError, OSError) as error:
         raise PdfError(
-            f"--pdf: WeasyPrint cannot be used ({error}): {install.extra('pdf')}, and the system's Pango; or print "
-            "report.html from a browser"
+            f"--pdf: WeasyPrint cannot be used ({error}): {install.extra('pdf')}, and the system's Pango; or give "
+            "--html and print that page from a browser"
         ) from error
     path = report.with_suffix(".pdf")
     page = HTML(string=render(report.read_text(encoding="utf-8"), report.parent))

@@ -11,7 +11,6 @@ from southwell.core.element import measures
 from southwell.core.multibody import equilibrium
 from southwell.core.multibody.tree import compile_tree
 from southwell.core.space import spatial as sp
-from southwell.tests.support import guesses
 
 ARC = ring(0.0, 12).beams[0].beams
 """One element of a thin ring."""
@@ -42,13 +41,13 @@ def test_a_folded_element_has_no_strain_and_is_out_of_range() -> None:
     assert not measures.out_of_range(replace(ARC.law, measure="body_fixed"), x).any()
 
 
-def test_a_guess_that_folds_a_beam_reaches_the_same_state() -> None:
+def test_a_guess_that_folds_a_beam_is_refused_and_the_state_named() -> None:
+    """Before, the state found had frequencies several percent off."""
     tree = compile_tree(ring(0.0, 12))
     step = sp.log(sp.inverse(ARC.law.undeformed[0]) @ folded())
-    assert np.abs(step).max() < 0.05
     guess = {f"j4.{name}": float(v) for name, v in zip(("x", "y", "z", "rx", "ry", "rz"), step, strict=True)}
-    expected = equilibrium.steady(tree)
-    guesses.same(tree, guess, expected, [0])
+    with pytest.raises(mb.MechanismError, match=r"without a guess one is found, with j4.x = "):
+        equilibrium.steady(tree, guess)
 
 
 def test_a_beam_that_is_held_folded_is_refused() -> None:
