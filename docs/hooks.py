@@ -1,6 +1,7 @@
 """What mkdocs does not do by itself: pages made from the package, and formulas as MathML, which browsers draw unaided."""
 
 import re
+import shutil
 from collections.abc import Sequence
 from html import unescape
 from pathlib import Path
@@ -20,7 +21,20 @@ BOLD = re.compile(r'<m[in] mathvariant="bold(?:-italic)?">(.*?)</m[in]>')
 RUN = Path(__file__).parents[1] / "reports" / "out"
 """Where `make verify` leaves its results; the site shows them if they are there."""
 
+SOURCE = Path(__file__).parents[1] / "build" / "source" / "southwell"
+"""A copy of the package alone, from which mkdocstrings reads the API: the package's own folder holds .venv as well."""
+
 made: dict[str, str] = {}
+
+
+def on_startup(**_: Any) -> None:
+    """Copy the package before mkdocstrings looks for it."""
+    shutil.rmtree(SOURCE, ignore_errors=True)
+    SOURCE.mkdir(parents=True)
+    root = Path(__file__).parents[1]
+    shutil.copy(root / "__init__.py", SOURCE)
+    for floor in ("core", "references", "cases", "reports"):
+        shutil.copytree(root / floor, SOURCE / floor, ignore=shutil.ignore_patterns("__pycache__", "out"))
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:

@@ -1,9 +1,7 @@
 """The dashboard in a real browser, from the file system: by mouse and by keyboard, wide and narrow; hostile names stay text."""
 
 import re
-import shutil
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +14,10 @@ from southwell.reports.dashboard.write import write
 from southwell.reports.shared.summary import plus_minus
 from southwell.reports.verification import code_pages
 
+from ...support import browsers
 from ...support.dashboards import ABSENT, HOSTILE, LOST, WORSE, hostile, kept, run
 
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
-pytestmark = [
-    pytest.mark.skipif(
-        BROWSER is None or find_spec("playwright") is None,
-        reason="needs Chromium (Debian: apt install chromium), and: pip install playwright",
-    ),
-    pytest.mark.slow,
-]
+pytestmark = [browsers.needed, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")
@@ -38,26 +28,14 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        open_ = playwright.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        yield open_
-        open_.close()
+    with browsers.browser() as running:
+        yield running
 
 
 @pytest.fixture
 def tab(browser: Any) -> Iterator[Any]:
-    """A page whose console must stay silent, which asks nothing, and fetches nothing from elsewhere."""
-    found = browser.new_page(viewport={"width": 1280, "height": 900})
-    said: list[str] = []
-    found.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
-    found.on("pageerror", lambda e: said.append(str(e)))
-    found.on("dialog", lambda d: (said.append(d.message), d.dismiss()))
-    found.on("request", lambda r: said.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
-    yield found
-    found.close()
-    assert said == []
+    with browsers.tab(browser) as page:
+        yield page
 
 
 def test_every_page_opens_and_every_link_leads_somewhere(tab: Any, site: Path) -> None:

@@ -24,7 +24,7 @@ from southwell.reports.cli.arguments import RESULTS
 from southwell.reports.site import pages as site
 from southwell.reports.verification import report as matrix_report
 
-from ...support import samples
+from ...support import browsers, samples
 
 ROOT = Path(__file__).parents[3]
 DOCS = ROOT / "docs"
@@ -203,6 +203,18 @@ def test_nothing_is_fetched_to_read_it(built: Path) -> None:
         assert not re.search(r"(@import|url\()\s*[\"']?(https?:)?//", path.read_text(encoding="utf-8")), path
 
 
+@browsers.needed
+def test_search_works_from_the_file_system(built: Path) -> None:
+    with browsers.browser() as running, browsers.tab(running) as page:
+        start = (built / "cases" / "index.html").as_uri()
+        page.goto(start)
+        page.click(".md-search__input")
+        page.keyboard.type("precone")
+        page.click(".md-search-result__link >> nth=0")
+        page.wait_for_url(lambda url: url != start)
+        assert "precone" in page.inner_text(".md-content").lower()
+
+
 def test_formulas_are_there_without_a_script(built: Path) -> None:
     text = (DOCS / "theory.md").read_text(encoding="utf-8")
     inline = re.sub(r"\$\$.*?\$\$", "", text, flags=re.S)
@@ -212,9 +224,14 @@ def test_formulas_are_there_without_a_script(built: Path) -> None:
     assert not re.findall(r"\\[a-z]{3,}", re.sub(r"<script.*?</script>", "", html, flags=re.S))
 
 
-def test_the_api_is_filled_from_docstrings(built: Path) -> None:
-    html = (built / "api" / "core.html").read_text(encoding="utf-8")
-    assert "A rotating blade on its hub; properties vary linearly between stations." in html
+def test_the_api_is_filled_from_docstrings_without_internals(built: Path) -> None:
+    pages = {path.stem: path.read_text(encoding="utf-8") for path in (built / "api").glob("*.html")}
+    assert "A rotating blade on its hub; properties vary linearly between stations." in pages["core"]
+    assert "A rotating blade on its hub; properties vary linearly between stations." in pages["index"]
+    for text in pages.values():
+        assert not re.search(r'id="[\w.]*__\w+__', text)
+        assert "Built-in" not in text
+        assert str(ROOT) not in text
 
 
 def test_a_runs_report_is_on_the_site_with_its_figures(tmp_path: Path) -> None:
