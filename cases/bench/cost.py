@@ -47,7 +47,7 @@ class Timing:
         sweep: all of ``SWEEP``, likewise.
         spread: largest over smallest of the single speeds' times.
         error: largest relative difference of the six lowest frequencies from the exact beam's, at one speed.
-        equal: what core needs to be as accurate; none of core itself, nor where ``ELEMENTS`` are too few.
+        equal: core with the fewest elements that are as accurate; None for core itself, and if ``ELEMENTS`` are too few.
         note: why it was not run.
     """
 
@@ -72,7 +72,7 @@ class Equal:
 
 @dataclass(frozen=True)
 class Growth:
-    """Core's cost at one speed: seconds (median), and the memory its process came to beyond that of one element, bytes."""
+    """Core's cost at one speed: time (median, s), and the peak memory of its process less that with one element, bytes."""
 
     elements: int
     seconds: float
@@ -187,12 +187,12 @@ def _answer(name: str, omega: float, elements: int = ELEMENTS) -> tuple[float, t
     found = code.solve(blade, omega, elements, COUNT) if code else mesh_modes(blade, omega, elements, COUNT)
     seconds = time.perf_counter() - begun
     if len(found.frequencies) < 6:
-        raise CodeError(f"{name}: {len(found.frequencies)} modes found of {COUNT} asked for")
+        raise CodeError(f"{name}: {len(found.frequencies)} modes found of {COUNT} requested")
     return seconds, tuple(found.frequencies[:6].tolist())
 
 
 def _swept(name: str, elements: int, speeds: Sequence[float]) -> float:
-    """Seconds for all speeds, the blade new."""
+    """Seconds for all speeds, starting from a new blade."""
     blade = library.load(CASE).variants[0].blade
     code = None if name == "core" else registry.code(name)
     begun = time.perf_counter()

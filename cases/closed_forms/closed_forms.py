@@ -19,20 +19,20 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """A mechanism, its closed form, and where both are looked at.
+    """A mechanism, its closed form, and the speeds at which they are compared.
 
     Attributes:
-        name: short, of its figure's file.
+        name: short name, also of its figure's file.
         title: what it is.
         formula: in LaTeX.
         source: author and year, or the textbook's derivation.
-        about: what there is to see.
-        branches: names of what ``exact`` gives, in its order.
+        about: remarks on the comparison.
+        branches: names of the eigenvalues that ``exact`` returns, in its order.
         speeds: (k,) Ω, rad/s.
         critical: speeds at which the steady state changes its stability, rad/s.
         exact: Ω → (branches,) λ, 1/s; nan where a branch does not exist.
         solve: Ω → core's λ (m,), 1/s, of the steady state in question.
-        target: relative difference that core must keep: of rounding, or of its discretisation.
+        target: largest relative difference allowed: rounding, or core's discretisation error.
     """
 
     name: str
@@ -49,7 +49,7 @@ class ClosedForm:
 
 
 def differences(form: ClosedForm, omega: float) -> tuple[Complex, Array]:
-    """Core's eigenvalue nearest to each branch's, none taken twice, and the relative difference (branches,); nan if none."""
+    """For each branch, core's nearest eigenvalue, used once, and the relative difference; both (branches,), nan if none."""
     exact, found = form.exact(omega), list(form.solve(omega))
     taken, off = np.full(len(exact), np.nan, complex), np.full(len(exact), np.nan)
     for k in np.flatnonzero(np.isfinite(exact)):
@@ -192,4 +192,4 @@ FORMS: tuple[ClosedForm, ...] = (
         1e-3,
     ),
 )
-"""Those of the documentation's page; ``tests`` hold core to each."""
+"""The closed forms on the documentation's page; the tests check each."""

@@ -1,6 +1,6 @@
-"""Closed loops whose eigenvalues are known: plane linkages on a turntable and a spinning ring, as core is given them.
+"""Closed loops whose eigenvalues are known: plane linkages on a turntable and a spinning ring.
 
-Of each: the mechanism at a speed Ω (rad/s), and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
+For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
-"""Pendulums, a top and a turntable: mechanisms without loops whose eigenvalues are known, as core is given them.
+"""Pendulums, a top and a turntable: mechanisms without loops whose eigenvalues are known.
 
-Of each: the mechanism at a speed Ω (rad/s), and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
+For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
 """
 
 import numpy as np
@@ -70,7 +70,7 @@ _I1, _I3, _WEIGHT, TILT = 0.5, 0.2, 2.0, 0.6
 
 
 def top(precession: float) -> mb.Mechanism:
-    """A symmetric top in gimbals, precessing steadily at a tilt that its spin is made for; nothing is held."""
+    """A symmetric top in gimbals that precesses steadily at a tilt, with the spin that this requires; nothing is prescribed."""
     arm = _WEIGHT / G
     spin = (_I1 * precession**2 * np.cos(TILT) + _WEIGHT) / (_I3 * precession) - precession * np.cos(TILT)
     moments = np.array([_I1 - arm**2, _I1 - arm**2, _I3])

@@ -52,9 +52,9 @@ def modes(blade: Condensed, omega: float, count: int, allow_large_strain: bool =
 
 
 def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
-    """Each mode's family and its ordinal in it, by the shares of kinetic energy; see ``core.participation``.
+    """The family of each mode and its number in it, from the fractions of kinetic energy; see ``core.participation``.
 
-    Bodies move as the samples beside them do, sections' frames taken as parallel to the hub's.
+    Each body is assumed to move like the sample beside it, and the sections' frames to be parallel to the hub's.
     """
     ends = np.append(0.0, np.cumsum([np.linalg.norm(s.undeformed[:3, 3]) for s in segments]))
     at = 0.5 * (ends[:-1] + ends[1:]) / ends[-1]

@@ -93,7 +93,7 @@ def _apart(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[lis
 
 
 def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:
-    """A segment from its own model; of one without nodes between its ends, or of given mass, as ``segment_from_matrix``."""
+    """A segment from its own model; by ``segment_from_matrix`` if it has no nodes between its ends, or its mass is given."""
     name = f"{a.name} to {b.name}"
     tied = np.union1d(a.freedoms, b.freedoms)
     if piece.body is not None:
@@ -164,7 +164,7 @@ def _axis(path: Path, field: str, spec: Axis) -> Array:
 
 
 def _root(path: Path, spec: CondenseFile, first: Array) -> Array:
-    """The first section's pose in the hub's axes, its span and the rotor's axis being x and z."""
+    """The first section's pose in the hub's axes: x along the span, z along the rotor's axis."""
     x = _axis(path, "span", spec.span)
     z = _axis(path, "rotor", spec.rotor)
     if abs(x @ z) > NEAR:
@@ -202,8 +202,8 @@ def _tie(spec: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> T
 def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Sequence[Array]) -> Array:
     """(m, n) lumped mass of each segment at the model's freedoms.
 
-    A node on a section has mass from both sides: shared as its entries of the mass matrix with the nodes off the section
-    are, which is exact where elements are prisms; alike where it has none (a lumped mass matrix).
+    The mass of a node on a section is divided between both sides in proportion to its entries of the mass matrix with
+    nodes off the section, which is exact for prismatic elements; equally if there are none (a lumped mass matrix).
 
     Raises:
         CaseError: nodes beyond the first or last section.

@@ -70,13 +70,13 @@ class Example:
     Attributes:
         freedoms: of the whole solid.
         hexahedra: likewise.
-        segments: what they became.
+        segments: number of segments.
         speeds: the blade.
         exact: the cantilever in one plane, Timoshenko, rad/s.
         cantilever: ``rigid`` and ``average`` → both planes, rad/s.
         torsion: ``rigid``, ``average`` and ``in place`` → G J of a flat bar over St Venant's at each of ``lengths``.
         lengths: of the piece of the bar, in chords.
-        versions: of the codes; of one that was not run, why.
+        versions: versions of the codes, or why one was not run.
     """
 
     freedoms: int
@@ -92,7 +92,7 @@ class Example:
 
 @dataclass(frozen=True)
 class Drawn:
-    """What the picture is made of."""
+    """The data of the figure."""
 
     bricks: Bricks
     segments: list[Segment]

@@ -1,4 +1,4 @@
-"""Exported matrices and tables of nodes, as a file for ``southwell condense`` names them, made into a model in SI."""
+"""The exported matrices and node tables that a file for ``southwell condense`` names, as a model in SI units."""
 
 import os
 from collections.abc import Sequence
@@ -23,13 +23,13 @@ NODES = ("id", "x", "y", "z")
 FREEDOMS = ("node", "freedom")
 
 ROUNDING = 1e-9
-"""Of the largest entry: a negative one on the diagonal within it is zero."""
+"""Negative diagonal entries up to this fraction of the largest entry count as zero."""
 
 LARGEST_ID = 2**31
 """Of a node."""
 
 METRES = {"m kg s": 1.0, "mm t s": 1e-3}
-"""Length of the unit. In mm t s a force is still one of N: stiffness and mass scale alike, N/mm and t by 1000."""
+"""Metres per unit of length. In mm t s forces are still in N: stiffness (N/mm) and mass (t) are both multiplied by 1000."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def _load(folder: Path, spec: str | Matrix, what: str) -> Exported:
 
 
 def _no_negative(where: str, matrix: Exported) -> None:
-    """Refuse what no finite element model has: a negative diagonal entry."""
+    """Reject negative diagonal entries, which no finite element model has."""
     diagonal = matrix.matrix.diagonal()
     if diagonal.size and diagonal.min() < -ROUNDING * np.abs(diagonal).max():
         k = int(diagonal.argmin())
@@ -158,7 +158,7 @@ def _named(
 
 
 def _in_order(mass: Exported, stiffness: Exported) -> ss.csr_array:
-    """The mass matrix in the order of the stiffness's freedoms, which are the same."""
+    """The mass matrix in the order of the stiffness matrix's freedoms, which must be the same."""
     keys = [list(zip(e.nodes.tolist(), e.directions.tolist(), strict=True)) for e in (mass, stiffness)]
     where = {key: k for k, key in enumerate(keys[0])}
     pick = np.array([where[key] for key in keys[1]])
@@ -180,7 +180,7 @@ def _si(model: FiniteElements, metres: float) -> FiniteElements:
 
 
 def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
-    """How far a rigid motion of the whole is resisted, which it must not be.
+    """The largest relative force against a rigid motion of the whole, which must vanish.
 
     Raises:
         CaseError: naming the motion.

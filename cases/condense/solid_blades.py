@@ -1,4 +1,4 @@
-"""The solids that condensation is shown on: the paper's cantilever, a flat bar, and a tapered, twisted blade of steel."""
+"""Solids for the examples of condensation: the paper's cantilever, a flat bar, and a tapered, twisted blade of steel."""
 
 from functools import cache
 from itertools import pairwise
@@ -47,7 +47,7 @@ def square_bar(length: float, layers: int, across: int = 2, start: float = 0.0) 
 
 
 def cantilever_segment(kind: ties.Kind, count: int = SEGMENTS) -> Segment:
-    """One of the paper's cantilever's segments, all alike, condensed alone."""
+    """A segment of the paper's cantilever, condensed alone; all segments are equal."""
     length = LENGTH / count
     model = hexahedra.finite_elements(square_bar(length, 4), SQUARE)
     return condensation.segment(model, *(ties.section(model, at(x), f"{x:g} m", kind) for x in (0.0, length)))

@@ -210,7 +210,7 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
     Raises:
         CaseError: if the table is invalid; the message names file, line and column.
     """
-    found = files.table(path, absent="a case's is looked for beside the case file; correct the name")
+    found = files.table(path, absent="paths in a case are relative to its file; correct the name")
     numbers, rows = zip(*found, strict=True)
     header = rows[0]
     for column in header:

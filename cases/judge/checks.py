@@ -63,7 +63,7 @@ def _cell(row: Any) -> Iterator[str]:
         yield f"difference: none, with the verdict {row.verdict}"
     measured = getattr(row, "role", row.verdict) == "measured"
     if measured != (row.verdict == "measured") and not (measured and row.verdict in UNANSWERED):
-        yield f"verdict: {row.verdict}, with the role {getattr(row, 'role', '')}: measured data, and nothing else, are measured"
+        yield f"verdict: {row.verdict}, with the role {getattr(row, 'role', '')}: this verdict and this role belong together"
     ordinal = getattr(row, "ordinal", None)
     if ordinal is not None and not 1 <= ordinal <= MOST_MODES:
         yield f"ordinal: {ordinal}: counted from 1"

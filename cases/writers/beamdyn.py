@@ -43,7 +43,7 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
     }
     for what, here in lacks.items():
         if here:
-            raise CaseError(f"{path}: BeamDyn cannot hold {what}: write TOML, which holds any blade")
+            raise CaseError(f"{path}: BeamDyn cannot represent {what}: write TOML, which can represent any blade")
     axis = _axis(blade)
     z = axis.z
     degrees = np.degrees(roll(axis, z) - blade.twist)

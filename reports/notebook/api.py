@@ -96,7 +96,7 @@ def modes(
         count: number of modes.
         accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
         mass: ``consistent``, or ``half_end`` (lumped, Park et al. 2010).
-        stiffness: ``corotational``, or ``parent`` (Park et al. 2010).
+        stiffness: ``corotational``, or ``body_fixed`` (Park et al. 2010).
         effects: physical effects included.
         gravity: (3,) m/s², in hub axes.
         load: (n, 3) steady force per length at the blade's stations, N/m, in hub axes.

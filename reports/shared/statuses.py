@@ -3,7 +3,7 @@
 PASSED, FAILED, BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
 
 MEANING: dict[int, str] = {
-    PASSED: "everything asked for was done, and all is within target or explained",
+    PASSED: "everything requested was done, and all results are within target or explained",
     FAILED: "something fails, is inconclusive, or got worse",
     BAD_INPUT: "bad input, or a file or folder that cannot be read or written",
     INCOMPLETE: "incomplete: the run was stopped before its end, or its results were cut short",

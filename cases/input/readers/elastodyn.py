@@ -98,7 +98,7 @@ def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Pat
             found.append(other)
     if len(found) > 1:
         names = ", ".join(f.name for f in found)
-        raise CaseError(f"{path}: {len(found)} main files beside it name it ({names}): say which by --main")
+        raise CaseError(f"{path}: {len(found)} main files beside it name it ({names}): choose one with --main")
     return found[0] if found else None
 
 
@@ -161,7 +161,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     mounted = complete(mount, stated.mount if stated else None)
     if mounted.length is None:
         raise CaseError(
-            f"{text.path}: length: stations are fractions of it, and the main file that says it is not here: "
+            f"{text.path}: length: stations are fractions of it, and no main file defines it: "
             "give --main FILE, or --length and --hub-radius"
         )
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())

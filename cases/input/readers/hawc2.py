@@ -132,7 +132,7 @@ def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:
     if wanted is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(
-            f"{text.path}: {len(heads)} sets: subsets {names}: say which by --subset, or give the htc by --main"
+            f"{text.path}: {len(heads)} sets: subsets {names}: choose one with --subset, or give the htc with --main"
         )
     wanted = wanted or next(iter(heads))
     if wanted not in heads:

@@ -121,7 +121,10 @@ UNUSED = {
     "damping": ("s", "modes are undamped"),
     "damping_posdef": ("s", "modes are undamped"),
     "damping_aniso": ("s", "modes are undamped"),
-    "concentrated_mass": ("kg", "a lumped mass on the blade is not held: spread it into the structural file's m"),
+    "concentrated_mass": (
+        "kg",
+        "concentrated masses on the blade are not supported: distribute them in the structural file's m",
+    ),
 }
 """Commands of a main_body that affect its modes and are not used: unit and reason."""
 

@@ -129,7 +129,8 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
         ),
     ] = None
     kinks: Annotated[
-        list[float], Meta(description="those of s where the curve's tangent jumps, m: it is splined between them")
+        list[float],
+        Meta(description="stations where the curve's tangent jumps, m; each piece between them is a separate spline"),
     ] = []
     rigid: Annotated[
         tuple[Literal["axial", "shear_y", "shear_z", "torsion"], ...], Meta(description="rigid strains")
@@ -146,7 +147,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
         for what in ("stiffness", "mass", "twist_deg", "curve"):
             given = getattr(self, what)
             if given is not None and len(given) != n:
-                raise CaseError(f"blade.{what}: {len(given)} entries for {n} stations in blade.s: give one a station")
+                raise CaseError(f"blade.{what}: {len(given)} entries for {n} stations in blade.s: give one per station")
         stiffness = symmetric(np.array(self.stiffness))
         for i in (STRAINS.index(r) for r in self.rigid):
             if stiffness[:, i, :].any():
@@ -174,18 +175,25 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     file: Annotated[str, Meta(description="path from the case file's folder, or from `files`")]
     files: Annotated[str | None, Meta(description="environment variable that names the folder `file` is in")] = None
     main: Annotated[
-        str | None, Meta(description="main file that says how it is mounted, from the case file's folder")
+        str | None, Meta(description="main file that defines the mounting, relative to the case file's folder")
     ] = None
-    length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="m, where no file says it")] | None = None
-    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="m, where no file says it")] | None = None
+    length: (
+        Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="from root to tip, m, if no file states it")] | None
+    ) = None
+    hub_radius: (
+        Annotated[
+            float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor axis to the root, m, if no file states it")
+        ]
+        | None
+    ) = None
     subset: Annotated[tuple[int, int] | None, Meta(description="set and subset of a HAWC2 structural file")] = None
     multipliers: Annotated[
         tuple[Positive, Positive, Positive] | None,
         Meta(description="of an ElastoDyn table, in place of the file's AdjBlMs, AdjFlSt, AdjEdSt"),
     ] = None
-    offsets: Annotated[bool | None, Meta(description="whether a FAST 7 table's offset columns are used; they are")] = (
-        None
-    )
+    offsets: Annotated[
+        bool | None, Meta(description="whether the offset columns of a FAST 7 table are used; default: yes")
+    ] = None
 
     def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
         """The blade and the unused quantities of its file; the path is relative to ``folder``.

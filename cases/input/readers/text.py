@@ -244,7 +244,7 @@ def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -
         f"is {near[0]!r} at line {named[near[0]][0] + 1} meant for it?" if near else "cut short, or the names removed?"
     )
     raise CaseError(
-        f"{text.path}: {names[0]}: not there: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
+        f"{text.path}: {names[0]}: missing: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
     )
 
 

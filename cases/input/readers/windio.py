@@ -167,7 +167,7 @@ def _grid(found: Field) -> Array:
 def _paired(values: Array, field: Field, found: Field) -> Array:
     count = len(found.get("grid").numbers())
     if len(values) != count:
-        raise CaseError(f"{field.at}: {len(values)} values for {count} grid points: give one a point")
+        raise CaseError(f"{field.at}: {len(values)} values for {count} grid points: give one per point")
     return values
 
 
@@ -277,7 +277,7 @@ def _tip(elastic: Field) -> Array:
     for k, (where, m) in enumerate(zip(at, masses, strict=True)):
         if m and abs(where - 1) > SAME:
             raise CaseError(
-                f"{field.item(k)}: {m:g} kg at grid {where:g}: only the tip's can be held: spread it into mass"
+                f"{field.item(k)}: {m:g} kg at grid {where:g}: only a point mass at the tip is supported: distribute it in mass"
             )
         out[range(3), range(3)] += m
     return out

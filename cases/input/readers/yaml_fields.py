@@ -111,7 +111,7 @@ class Field:
 
     def _keys(self) -> dict[str, yaml.Node]:
         if isinstance(self.node, yaml.ScalarNode) and self.node.tag == "!include":
-            raise CaseError(f"{self.at}: stands in another file ({self.node.value}): put its text here")
+            raise CaseError(f"{self.at}: is in another file ({self.node.value}): put its text here")
         if not isinstance(self.node, yaml.MappingNode):
             raise CaseError(f"{self.at}: keys are needed: indented wrongly? correct it")
         return {str(key.value): value for key, value in self.node.value}

@@ -111,7 +111,7 @@ def test_blades_of_a_case_each_have_a_folder(
     ("arguments", "said"),
     [
         (["none.dat"], "none.dat: no such file"),
-        ([str(DATA / "hawc2_st.dat")], "say which by --subset"),
+        ([str(DATA / "hawc2_st.dat")], "choose one with --subset"),
         ([str(DATA / "hawc2_st.dat"), "--subset", "one"], "--subset: 'one' is not set:subset"),
         ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,2"], "--multipliers: '1,2' is not mass,flap,edge"),
         ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,0,1"], "--multipliers: '1,0,1': they multiply: give"),

@@ -67,7 +67,7 @@ def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) ->
     for name in ("a.dat", "b.dat"):
         (tmp_path / name).write_text(MAIN.read_text())
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
-    with pytest.raises(CaseError, match=r"2 main files beside it name it \(a.dat, b.dat\): say which by --main"):
+    with pytest.raises(CaseError, match=r"2 main files beside it name it \(a.dat, b.dat\): choose one with --main"):
         readers.read(tmp_path / BLADE.name)
 
 
@@ -89,7 +89,7 @@ def test_written_and_read_again_it_is_the_same(tmp_path: Path) -> None:
 
 def test_what_the_format_cannot_hold_is_not_written(tmp_path: Path) -> None:
     beam = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=1.2)
-    with pytest.raises(CaseError, match="ElastoDyn cannot hold finite stiffness in stretch"):
+    with pytest.raises(CaseError, match="ElastoDyn cannot represent finite stiffness in stretch"):
         elastodyn_write.write(beam, tmp_path / "x.dat")
     assert not (tmp_path / "x.dat").exists()
 
@@ -194,7 +194,7 @@ BAD = {
         ("2.0000000E-01  3.0", "1e-300  3.0"),
         r"line 18: BlFract: 1e-300: not beyond the station before it",
     ),
-    "no name": (("AdjBlMs ", ""), r"bad.dat: AdjBlMs: not there: cut short, or the names removed"),
+    "no name": (("AdjBlMs ", ""), r"bad.dat: AdjBlMs: missing: cut short, or the names removed"),
     "multiplier": (("1.5   AdjFlSt", "-1   AdjFlSt"), r"line 12: AdjFlSt: -1: a factor must be positive"),
     "multiplier no number": (("1.5   AdjFlSt", "one   AdjFlSt"), r"line 12: AdjFlSt: 'one' is not a finite number"),
     "no column": (("StrcTwst ", "Twist "), r"line 15: no column StrcTwst"),

@@ -130,7 +130,7 @@ def test_iea_15_in_hawc2_and_in_beamdyn_is_one_blade() -> None:
 
 def test_nrel_5mw_in_hawc2_weighs_what_it_does_in_elastodyn() -> None:
     st, ed = real("nrel5mw/NREL_5MW_st.txt"), real("nrel5mw/NRELOffshrBsline5MW_Blade.dat")
-    with pytest.raises(CaseError, match=r"subsets 1:1, 1:2, .*5:2: say which by --subset"):
+    with pytest.raises(CaseError, match=r"subsets 1:1, 1:2, .*5:2: choose one with --subset"):
         readers.read(st)
     ours = readers.read(st, Mount(subset=(5, 1)))
     theirs = elastodyn.read(ed, Mount(length=61.5)).blade

@@ -60,7 +60,7 @@ BAD: list[tuple[int, str, object, str]] = [
         2,
         f"{EP}.point_mass",
         {"grid": [0.5, 1], "mass": [100.0, 0]},
-        "point_mass.mass: 100 kg at grid 0.5: only the tip's",
+        "point_mass.mass: 100 kg at grid 0.5: only a point mass at the tip",
     ),
     (2, "components", None, "no key components"),
 ]
@@ -93,7 +93,7 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
         ("# nothing\n", "nothing but comments"),
         (
             "components: !include blade.yaml\n",
-            r"line 1: components: stands in another file \(blade.yaml\): put its text here",
+            r"line 1: components: is in another file \(blade.yaml\): put its text here",
         ),
         ("components:\n\tblade: 1\n", r"line 2: not YAML"),
         ("- 1\n", "keys are needed"),
