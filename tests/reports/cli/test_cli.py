@@ -425,7 +425,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
         ("show {blade} --precone 95", "--precone 95: beyond ±89 degrees"),
         ("show {blade} --pitch 1e6", "--pitch 1e+06: beyond ±180 degrees"),
         ("show {blade} --length 1e300", "--length 1e+300: not a length"),
-        ("show {blade} --main {blade}", "TipRad: not there"),
+        ("show {blade} --main {blade}", "TipRad: missing"),
     ],
 )
 def test_what_went_wrong_before_is_told_in_one_line(
