@@ -8,7 +8,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, redirect_stderr, redirect_stdout
 
-from cyclopts import App, CycloptsError, Group, UnusedCliTokensError
+from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
 from ..shared import streams
 from ..shared.log_safe import LogSafe
@@ -17,6 +17,12 @@ from .errors import IncompleteError, UsageError
 
 OUTSIDE = "--allow-outside"
 """An option that every command accepts, at any position."""
+
+ABOUT = (
+    "Verify the natural frequencies of rotating blades.",
+    "Southwell solves a blade with its own multibody solver and with independent codes, and reports every difference with its "
+    "uncertainty and, where known, its cause. For one command: southwell COMMAND --help.",
+)
 
 ONE_BLADE, VERIFY, OTHER, CI, LAST = (
     Group.create_ordered(name)
@@ -67,20 +73,20 @@ def _version() -> str:
     return version("southwell")
 
 
+def _default(value: object) -> str | None:
+    """The default of an option in its help; None, which shows nothing, for switches and options without a value."""
+    return None if value in (None, "", ()) or value is False else str(value)
+
+
 def build(listing: bool = False) -> App:
     """Build the application; with ``listing``, commands are listed but not imported."""
     built = App(
         name="southwell",
-        help=f"""Verify the natural frequencies of rotating blades.
-
-        Southwell solves a blade with its own multibody solver and with independent codes, and reports every difference
-        with its uncertainty and, where known, its cause. For one command: southwell COMMAND --help.
-
-        Exit status: {listed()}.
-        """,
+        help="\n\n".join((*ABOUT, f"Exit status: {listed()}.")),
         help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
         help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
         group_commands=LAST,
+        default_parameter=Parameter(negative=(), show_default=_default),
         version=_version,
         suppress_keyboard_interrupt=False,
     )

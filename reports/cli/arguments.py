@@ -39,13 +39,10 @@ Positive = Annotated[float, Parameter(validator=Number(gt=0, lte=86_400))]
 Accuracy = Annotated[float, Parameter(validator=Number(gte=1e-12, lte=0.1))]
 """A relative uncertainty."""
 
-Flag = Annotated[bool, Parameter(negative=())]
-
-
 CONTINUE = "run the same `southwell verify` again, which continues where it was stopped"
 """The remedy for an incomplete run."""
 
-Changes = Annotated[tuple[str, ...], Parameter(name="--set", negative=(), show_default=False, consume_multiple=False)]
+Changes = Annotated[tuple[str, ...], Parameter(name="--set", consume_multiple=False)]
 """Changes of a blade's properties, each as ``NAME=*FACTOR``."""
 
 

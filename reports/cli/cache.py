@@ -2,9 +2,8 @@
 
 import sys
 import time
-from typing import Annotated
 
-from cyclopts import App, Parameter
+from cyclopts import App
 from rich import box
 from rich.table import Table
 
@@ -48,7 +47,7 @@ def verify() -> int:
 
 
 @app.command
-def prune(*, days: Annotated[Positive, Parameter(negative=())] = 30.0) -> int:
+def prune(*, days: Positive = 30.0) -> int:
     """Remove stored answers.
 
     Parameters

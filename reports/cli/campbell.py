@@ -38,7 +38,7 @@ from ..shared.paths import file_name
 from ..shared.units import RPM, Units
 from . import campbell_options as options
 from . import measured
-from .arguments import Accuracy, Changes, Elements, Flag, Whole, Workers
+from .arguments import Accuracy, Changes, Elements, Whole, Workers
 from .errors import UsageError
 from .mounting import Mounting
 from .subjects import Subject, changed, single
@@ -58,7 +58,7 @@ def command(
     margin: str = "10%",
     elements: Elements | None = None,
     accuracy: Accuracy = 1e-6,
-    allow_large_strain: Flag = False,
+    allow_large_strain: bool = False,
     azimuth: float | None = None,
     tilt: float = 0.0,
     load: Path | None = None,
@@ -67,10 +67,10 @@ def command(
     against: str | None = None,
     add: tuple[str, ...] = (),
     data_uncertainty: str | None = None,
-    verify: Flag = False,
-    strict: Flag = False,
-    html: Flag = False,
-    pdf: Flag = False,
+    verify: bool = False,
+    strict: bool = False,
+    html: bool = False,
+    pdf: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
     """Compute the Campbell diagram of a blade and judge its margins.

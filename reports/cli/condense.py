@@ -19,7 +19,7 @@ from ..condense import page
 from ..shared.console import output
 from ..shared.units import RAD_S
 from . import campbell_options
-from .arguments import Flag, Whole
+from .arguments import Whole
 
 EXAMPLE = "example"
 FILE, SEGMENTS, DATA = page.FILE, "segments.json", "condensation.json"
@@ -30,11 +30,11 @@ def command(
     file: str | None = None,
     /,
     *,
-    example: Annotated[bool, Parameter(negative=())] = False,
+    example: bool = False,
     omega: str | None = None,
     rpm: str | None = None,
     modes: Whole = 6,
-    allow_large_strain: Flag = False,
+    allow_large_strain: bool = False,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
 ) -> int:
     """Condense finite element matrices of a blade to a multibody model.

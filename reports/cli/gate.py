@@ -26,8 +26,6 @@ from ..verification import report as matrix_report
 from .arguments import RESULTS, finished, found
 from .history import load
 
-Flag = Annotated[bool, Parameter(negative=())]
-
 
 def command(
     folder: Path,
@@ -35,12 +33,12 @@ def command(
     *,
     against: Path | None = None,
     commit: str = "",
-    strict: Flag = False,
-    partial: Flag = False,
+    strict: bool = False,
+    partial: bool = False,
     tolerance: Annotated[float, Parameter(validator=Number(gte=0))] = MOVED,
     junit_file: Annotated[Path | None, Parameter(name="--junit")] = None,
     summary: Path | None = None,
-    annotations: Flag = False,
+    annotations: bool = False,
 ) -> int:
     """Compare a run with an earlier one; status 1 if anything got worse.
 

@@ -22,7 +22,7 @@ from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import Accuracy, Changes, Elements, Flag, Whole
+from .arguments import Accuracy, Changes, Elements, Whole
 from .errors import UsageError
 from .mounting import Mounting
 
@@ -37,8 +37,8 @@ def modes(
     accuracy: Accuracy = 1e-6,
     modes: Whole = 10,
     method: Method = "chain",
-    allow_large_strain: Flag = False,
-    json: Flag = False,
+    allow_large_strain: bool = False,
+    json: bool = False,
     changes: Changes = (),
     against: str | None = None,
     mounting: Mounting | None = None,
@@ -123,8 +123,8 @@ def mechanism(
     *,
     modes: Whole = 10,
     time: float = 0.0,
-    allow_large_strain: Flag = False,
-    json: Flag = False,
+    allow_large_strain: bool = False,
+    json: bool = False,
 ) -> int:
     """Compute the steady state and the modes of any mechanism.
 

@@ -7,7 +7,7 @@ upwind rotor. OpenFAST's BlPitch rotates the leading edge upwind, to feather: th
 from dataclasses import dataclass
 from math import isfinite, radians
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -53,7 +53,7 @@ class Mounting:
     pitch_convention: Literal["southwell", "openfast"] = "southwell"
     subset: str | None = None
     multipliers: str | None = None
-    offsets: bool | None = None
+    offsets: Annotated[bool | None, Parameter(negative="--no-offsets")] = None
 
     def mount(self) -> Mount:
         """The mount for a reader, in radians.

@@ -7,11 +7,11 @@ from ...cases.verify import journal
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
-from .arguments import RESULTS, Flag, found, writing
+from .arguments import RESULTS, found, writing
 from .errors import UsageError
 
 
-def command(folder: Path, /, *, html: Flag = False, pdf: Flag = False) -> int:
+def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     """Rewrite the report of a finished run from its results.jsonl.
 
     Of a run that was stopped, what there is of it is shown, with status 3; the report of an earlier complete run is kept.

@@ -31,7 +31,7 @@ def command(
     /,
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
-    all: Annotated[bool, Parameter(negative=())] = False,
+    all: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
     """Show the mass, sections and axes of a blade, and how its file was read.
