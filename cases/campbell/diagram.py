@@ -59,7 +59,7 @@ class Campbell:
         blade: the blade.
         wanted: the settings.
         tracks: the modes over speed.
-        shares: (n, t, 4) fractions of kinetic energy in the order of ``FAMILIES``; NaN where there is no mode.
+        energy_fractions: (n, t, 4) fractions of kinetic energy in the order of ``FAMILIES``; NaN where there is no mode.
         names: name of each track at its first speed, ``flapwise 2``.
         last: name of each track at its last speed, which differs if the dominant motion has changed.
         local: (n, t) names at each speed; empty where there is no mode.
@@ -72,7 +72,7 @@ class Campbell:
     blade: Blade
     wanted: Wanted
     tracks: Tracks
-    shares: Array
+    energy_fractions: Array
     names: tuple[str, ...]
     last: tuple[str, ...]
     local: tuple[tuple[str, ...], ...]
@@ -145,26 +145,26 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
     _check(wanted)
     weight = weights(blade)
     tracks = track(solve or solver(blade, wanted), wanted.speeds, weight, wanted.modes)
-    shares = np.full((*tracks.place.shape, 4), np.nan)
+    energy_fractions = np.full((*tracks.place.shape, 4), np.nan)
     local: list[tuple[str, ...]] = []
     for k, found in enumerate(tracks.solved):
         there = np.flatnonzero(tracks.place[k] >= 0)
         whole = participation(found, blade)
-        shares[k, there] = whole[tracks.place[k, there]]
+        energy_fractions[k, there] = whole[tracks.place[k, there]]
         named = numbered(families(whole))
         local.append(tuple(named[p] if p >= 0 else "" for p in tracks.place[k]))
-    held = [np.flatnonzero(tracks.place[:, t] >= 0) for t in range(tracks.count)]
+    exists = [np.flatnonzero(tracks.place[:, t] >= 0) for t in range(tracks.count)]
     lines = [line_of(tracks, t) for t in range(tracks.count)]
     return Campbell(
         blade=blade,
         wanted=wanted,
         tracks=tracks,
-        shares=shares,
-        names=_distinct([local[k[0]][t] for t, k in enumerate(held)]),
-        last=_distinct([local[k[-1]][t] for t, k in enumerate(held)]),
+        energy_fractions=energy_fractions,
+        names=_distinct([local[k[0]][t] for t, k in enumerate(exists)]),
+        last=_distinct([local[k[-1]][t] for t, k in enumerate(exists)]),
         local=tuple(local),
         southwell=tuple(southwell(tracks, t) for t in range(tracks.count)),
-        encounters=encounters(tracks, shares, weight),
+        encounters=encounters(tracks, energy_fractions, weight),
         resonances=resonances(lines, wanted.per_rev, wanted.operating),
         margins=margins(lines, wanted.per_rev, wanted.operating, wanted.margin),
     )

@@ -60,18 +60,18 @@ class Encounter:
         return 2.0 * self.uncertainty * self.frequency
 
 
-def encounters(tracks: Tracks, shares: Array, weight: Array) -> tuple[Encounter, ...]:
-    """All encounters, by speed; ``shares`` (n, t, 4) are the energy fractions of the tracks at each speed."""
+def encounters(tracks: Tracks, fractions: Array, weight: Array) -> tuple[Encounter, ...]:
+    """All encounters, by speed; ``fractions`` (n, t, 4) are the energy fractions of the tracks at each speed."""
     found = []
     for i in range(tracks.count):
         for j in range(i + 1, tracks.count):
             both = np.flatnonzero((tracks.place[:, i] >= 0) & (tracks.place[:, j] >= 0))
             for run in np.split(both, np.flatnonzero(np.diff(both) > 1) + 1):
-                found += _of_pair(tracks, shares, weight, i, j, run)
+                found += _of_pair(tracks, fractions, weight, i, j, run)
     return tuple(sorted(found, key=lambda e: (e.omega, e.frequency)))
 
 
-def _of_pair(tracks: Tracks, shares: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
+def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
     if len(k) < 2:
         return []
     x = tracks.omega[k] ** 2
@@ -86,18 +86,34 @@ def _of_pair(tracks: Tracks, shares: Array, weight: Array, i: int, j: int, k: In
         square = float(np.interp(at, x, squares.mean(1)))
         gap = float(tracks.bound[k[a + 1], i, j])
         pair = (i, j) if above[a] else (j, i)
-        found.append(_encounter("crossing", tracks, shares, weight, pair, where, square, gap, (k[a], k[a + 1]), True))
+        found.append(
+            _encounter("crossing", tracks, fractions, weight, pair, where, square, gap, (k[a], k[a + 1]), True)
+        )
     size = np.abs(d)
     ends = [0, *(swaps + 1).tolist(), len(k)]  # between crossings
     for first, last in pairwise(ends):
         found += _veerings(
-            tracks, shares, weight, (i, j), k[first:last], x[first:last], size[first:last], squares[first:last]
+            tracks,
+            fractions,
+            weight,
+            (i, j),
+            k[first:last],
+            x[first:last],
+            size[first:last],
+            squares[first:last],
         )
     return found
 
 
 def _veerings(
-    tracks: Tracks, shares: Array, weight: Array, pair: tuple[int, int], k: Index, x: Array, size: Array, squares: Array
+    tracks: Tracks,
+    fractions: Array,
+    weight: Array,
+    pair: tuple[int, int],
+    k: Index,
+    x: Array,
+    size: Array,
+    squares: Array,
 ) -> list[Encounter]:
     """Interior minima of the distance with exchange of shapes; ``size`` is the distance of the squared frequencies."""
     found = []
@@ -111,7 +127,7 @@ def _veerings(
         order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
         window = (int(k[a]), int(k[b]))
         e = _encounter(
-            "veering", tracks, shares, weight, order, float(np.sqrt(at)), square, gap, window, left and right
+            "veering", tracks, fractions, weight, order, float(np.sqrt(at)), square, gap, window, left and right
         )
         if e.exchanged >= EXCHANGED:
             found.append(e)
@@ -138,7 +154,7 @@ def _passed(size: Array, m: int, step: int, smallest: float) -> tuple[int, bool]
 def _encounter(
     kind: Literal["crossing", "veering"],
     tracks: Tracks,
-    shares: Array,
+    fractions: Array,
     weight: Array,
     pair: tuple[int, int],
     omega: float,
@@ -161,6 +177,6 @@ def _encounter(
         exchanged=float(swapped / max(table.sum(), 1e-300)),
         window=(float(tracks.omega[a]), float(tracks.omega[b])),
         whole=whole,
-        before=shares[a, two],
-        after=shares[b, two],
+        before=fractions[a, two],
+        after=fractions[b, two],
     )

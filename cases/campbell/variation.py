@@ -54,7 +54,7 @@ def variations(case: str = "park-blade", elements: int | None = None) -> tuple[V
                 LOWEST + 4,
                 mass=lumping.mass,
                 stiffness=lumping.stiffness,
-                effects=lumping.model,
+                effects=lumping.effects,
             ),
         )
         at = [rpm * np.pi / 30 for rpm in PRINTED]

@@ -65,8 +65,8 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
     lever = np.cross([1.0, 0.0, 0.0], centre)
     energy = mass[:, None] * np.abs(sample[..., :3] + sample[..., 3:] * lever) ** 2
     turning = tensor[:, :1, 0] * np.abs(sample[..., 3:]) ** 2
-    shares = np.concatenate([energy[..., [2, 1]], turning, energy[..., :1]], axis=2).sum(axis=1)
-    return numbered(families(shares / shares.sum(axis=1, keepdims=True)))
+    fractions = np.concatenate([energy[..., [2, 1]], turning, energy[..., :1]], axis=2).sum(axis=1)
+    return numbered(families(fractions / fractions.sum(axis=1, keepdims=True)))
 
 
 def body(s: Segment) -> tuple[float, Array, Array]:

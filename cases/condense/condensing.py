@@ -23,7 +23,7 @@ from .schema import At, Axis, Body, CondenseFile, Piece
 
 Array = NDArray[np.float64]
 
-NEAR = ties.ON_SECTION
+TOLERANCE = ties.ON_SECTION
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def _frames(path: Path, spec: CondenseFile) -> list[Array]:
         point, along = (at.point, at.axis) if isinstance(at, At) else (at * span, None)
         x = span if along is None else _axis(path, f"sections[{k}].axis", along)
         z = rotor - x * (x @ rotor)
-        if np.linalg.norm(z) < NEAR:
+        if np.linalg.norm(z) < TOLERANCE:
             field = "rotor" if along is None else f"sections[{k}].axis"
             raise CaseError(
                 f"{path}: {field}: along {'the span' if along is None else 'the rotor'}: they differ; correct it"
@@ -167,7 +167,7 @@ def _root(path: Path, spec: CondenseFile, first: Array) -> Array:
     """The first section's pose in the hub's axes: x along the span, z along the rotor's axis."""
     x = _axis(path, "span", spec.span)
     z = _axis(path, "rotor", spec.rotor)
-    if abs(x @ z) > NEAR:
+    if abs(x @ z) > TOLERANCE:
         raise CaseError(
             f"{path}: rotor: not perpendicular to the span: give the rotor axis; precone is part of the sections' positions"
         )
@@ -208,7 +208,7 @@ def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Seque
     Raises:
         CaseError: nodes beyond the first or last section.
     """
-    size = NEAR * float(np.ptp(model.points, axis=0).max())
+    size = TOLERANCE * float(np.ptp(model.points, axis=0).max())
     ahead = np.stack([(model.points - f[:3, 3]) @ f[:3, 0] for f in frames])  # (sections, freedoms)
     passed = (ahead > size).sum(axis=0)  # sections behind each freedom
     on = np.abs(ahead) <= size

@@ -162,8 +162,8 @@ def _in_order(mass: Exported, stiffness: Exported) -> ss.csr_array:
     keys = [list(zip(e.nodes.tolist(), e.directions.tolist(), strict=True)) for e in (mass, stiffness)]
     where = {key: k for k, key in enumerate(keys[0])}
     pick = np.array([where[key] for key in keys[1]])
-    turned = ss.csr_array((np.ones(len(pick)), (np.arange(len(pick)), pick)))
-    return ss.csr_array(turned @ (mass.matrix @ turned.T))
+    permutation = ss.csr_array((np.ones(len(pick)), (np.arange(len(pick)), pick)))
+    return ss.csr_array(permutation @ (mass.matrix @ permutation.T))
 
 
 def _unit(directions: NDArray[np.intp], metres: float) -> ss.csr_array:

@@ -13,7 +13,7 @@ from ...references.protocol.mechanism_interface import MechanismCode
 
 Array = NDArray[np.float64]
 
-NEAR = 1e-3
+TOLERANCE = 1e-3
 """Required relative agreement after extrapolation from the two coarsest levels, or the code's error bound if wider."""
 
 ROUNDING = 1e-6
@@ -99,4 +99,4 @@ def agrees(code: Code, blade: Blade, omega: float, exact: float, axis: int | Non
     limit, fine, bracket = limit_of(code, blade, omega)
     k = 0 if axis is None else along(fine, axis)
     where = "" if axis is None else f" along {'xyz'[axis]}"
-    close(limit[k], exact, f"{blade.name} at {omega:g} rad/s, lowest{where}", max(bracket, NEAR))
+    close(limit[k], exact, f"{blade.name} at {omega:g} rad/s, lowest{where}", max(bracket, TOLERANCE))

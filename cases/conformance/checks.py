@@ -7,11 +7,24 @@ import numpy as np
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.interface import Code, CodeError, digits
 from . import blades as known
-from .asking import NEAR, BrokenError, NotForItError, agrees, along, ask, close, keep, limit_of, named, rounding, same
+from .asking import (
+    TOLERANCE,
+    BrokenError,
+    NotForItError,
+    agrees,
+    along,
+    ask,
+    close,
+    keep,
+    limit_of,
+    named,
+    rounding,
+    same,
+)
 from .blades import BEAM, CANTILEVER, LENGTH, PLANK, PROPERTIES
 
 FEWEST = 5
-"""Fewest digits of a code's answers with which ``NEAR`` can be checked."""
+"""Fewest digits of a code's answers with which ``TOLERANCE`` can be checked."""
 
 
 def declares(code: Code) -> None:
@@ -52,7 +65,7 @@ def refuses(code: Code) -> None:
 def at_rest(code: Code) -> None:
     """A uniform cantilever, two modes in each plane."""
     limit, _, bracket = limit_of(code, BEAM, 0.0)
-    close(limit, np.repeat(CANTILEVER[:2], 2), "beam at rest, in pairs", max(bracket, NEAR))
+    close(limit, np.repeat(CANTILEVER[:2], 2), "beam at rest, in pairs", max(bracket, TOLERANCE))
 
 
 def turning(code: Code) -> None:
@@ -169,13 +182,13 @@ def torsion(code: Code) -> None:
     bend = np.abs(fine.shapes[:, :, :3]).max((1, 2)) / LENGTH
     turns = np.flatnonzero(np.abs(fine.shapes[:, :, 3]).max(1) > 10 * bend)
     if not turns.size:
-        there = (np.abs(limit / exact - 1.0) < NEAR).any()
+        there = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
         keep(
             not there,
             f"soft shaft: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
         )
         raise NotForItError("the code has no torsion")
-    close(limit[turns[0]], exact, "soft shaft at rest, lowest torsional mode", NEAR)
+    close(limit[turns[0]], exact, "soft shaft at rest, lowest torsional mode", TOLERANCE)
     shape = fine.shapes[turns[0], :, 3]
     wrong = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
     keep(wrong < 0.01, f"soft shaft: its rotation differs from a quarter sine by {wrong:.3f} of the tip's")

@@ -15,7 +15,7 @@ from .asking import BrokenError, NotForItError, keep, named
 Array = NDArray[Any]
 Ask = Callable[[MechanismCode], None]
 
-NEAR = 1e-7
+TOLERANCE = 1e-7
 """Tolerance on eigenvalues, relative to the largest: no discretisation error, but a code may use finite differences."""
 
 G, LENGTH, MASS = 9.81, 0.7, 3.0
@@ -40,7 +40,7 @@ def _are(found: MechanismModes, expected: Any, what: str) -> None:
     left = [complex(v.real, abs(v.imag)) for v in found.values]
     for value in wanted:
         near = min(left, key=lambda v: abs(v - value))
-        keep(abs(near - value) <= NEAR * np.abs(wanted).max(), said)
+        keep(abs(near - value) <= TOLERANCE * np.abs(wanted).max(), said)
         left.remove(near)
 
 

@@ -19,8 +19,8 @@ def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
     """Core omits effects without declaring it."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
-            return right(body, omega, gravity, replace(model, **lacks), guess)
+        def wrong(body: Chain, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+            return right(body, omega, gravity, replace(effects, **lacks), guess)
 
         return wrong
 
@@ -31,8 +31,8 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     """Spin softening is multiplied by ``factor``; effects in ``lacks`` are also omitted."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, model: Effects, guess: Any = None) -> Steady:
-            state = right(body, omega, gravity, replace(model, **lacks), guess)
+        def wrong(body: Chain, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+            state = right(body, omega, gravity, replace(effects, **lacks), guess)
             return replace(state, pencil=core_faults.softened(body, state, omega, factor))
 
         return wrong

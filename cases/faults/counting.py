@@ -48,7 +48,7 @@ COUNTS: dict[str, tuple[Run, int]] = {
         _run(ONE, (_cell("wren", difference=0.1, verdict="known difference"), _origin("wren"))), 1),
     "an inconclusive one": (
         _run(ONE, (_cell("wren", difference=0.1, uncertainty=0.5, verdict="estimate"), _origin("wren"))), 1),
-    "a table held to a wider target": (
+    "a table with a wider target": (
         _run(ONE, (_cell("wren", role="table", target=2e-2, difference=1e-2), _origin("wren"))), 1),
 }  # fmt: skip
 

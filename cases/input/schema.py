@@ -82,7 +82,7 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
     tables: Annotated[tuple[str, ...], Meta(description="series of compare.tables computed with it: table/series")] = ()
 
     @property
-    def model(self) -> Effects:
+    def effects(self) -> Effects:
         """The effects kept."""
         return Effects(**dict.fromkeys(self.lacks, False))
 

@@ -77,7 +77,7 @@ def _norm(shapes: NDArray[np.complex128], weight: Array) -> Array:
     return np.einsum("msi,sij,msj->m", shapes.conj(), weight, shapes, optimize=True).real
 
 
-def shares(modes: Modes, weight: Array) -> Array:
+def mass_fractions(modes: Modes, weight: Array) -> Array:
     """Fractions (m, 4) of each mode's modal mass in motion along x, y, z and about x; each row sums to 1."""
     parts = np.einsum("msi,sij,msj->mi", modes.shapes.conj(), weight, modes.shapes, optimize=True).real
     total = parts.sum(1, keepdims=True)
@@ -86,7 +86,7 @@ def shares(modes: Modes, weight: Array) -> Array:
 
 def families(modes: Modes, weight: Array) -> tuple[str, ...]:
     """Name of each mode: the motion that carries at least ``DOMINANT_FRACTION`` of its modal mass, else ``mixed``."""
-    share = shares(modes, weight)
+    share = mass_fractions(modes, weight)
     return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT_FRACTION else "mixed" for row in share)
 
 

@@ -128,7 +128,7 @@ class Control:
 
 
 @dataclass(frozen=True)
-class Share:
+class BudgetEntry:
     """Effect of one cause on one of core's frequencies: one entry of the error budget.
 
     Attributes:
@@ -219,7 +219,7 @@ class Run:
         command: command line that reproduces the run.
         settings: description of each case's blade.
         controls: results of the seeded faults.
-        shares: error budget.
+        error_budget: one entry per cause and mode.
         origins: origin of the answers of each column.
         plan: every planned column.
         unfinished: one sentence on what is missing; empty if the run is complete.
@@ -231,7 +231,7 @@ class Run:
     command: str = ""
     settings: tuple[Setting, ...] = ()
     controls: tuple[Control, ...] = ()
-    shares: tuple[Share, ...] = ()
+    error_budget: tuple[BudgetEntry, ...] = ()
     origins: tuple[Origin, ...] = ()
     plan: tuple[Planned, ...] = ()
     unfinished: str = ""
@@ -242,12 +242,12 @@ KINDS: dict[str, type] = {
     "cell": Cell,
     "level": Level,
     "control": Control,
-    "share": Share,
+    "budget": BudgetEntry,
     "origin": Origin,
 }
 """Kind of line → its type, in the order of the file."""
 
-ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS}
+ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS} | {"budget": "error_budget"}
 """Kind of line → the field of ``Run`` that holds such lines."""
 
 

@@ -55,8 +55,8 @@ def named(found: mb.Solution) -> dict[str, float]:
     for shape in found.shapes:
         twist = state.B @ shape  # of every body, taken at the ground's origin
         right, left = (twist[s, :3] + np.cross(twist[s, 3:], state.poses[s, :3, 3]) for s in sides)
-        turned = left * [-1.0, -1.0, 1.0]
-        symmetric = np.linalg.norm(right + turned) > np.linalg.norm(right - turned)
+        half_turn = left * [-1.0, -1.0, 1.0]
+        symmetric = np.linalg.norm(right + half_turn) > np.linalg.norm(right - half_turn)
         across = np.linalg.norm(right[:, 1])
         kinds.append(("E" if across > np.linalg.norm(right[:, [0, 2]]) else "F") + ("S" if symmetric else "A"))
     return dict(zip(numbered(kinds), (found.frequencies / (2.0 * np.pi)).tolist(), strict=True))

@@ -9,7 +9,7 @@ from ...core.modes import Modes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..judge.measured import Validation, explained
-from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, numbered, pair, shares
+from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, mass_fractions, numbered, pair
 from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
 from ..judge.verdict import Judgement, bracketed, discretised, judge, known
@@ -100,17 +100,17 @@ def rounding(mine: Answer, again: Sequence[Answer]) -> Array:
     if isinstance(mine, Failure) or len(found) <= len(again) or len({len(m.frequencies) for m in found}) > 1:
         return np.zeros(0)
     change = max(float(np.abs(other.frequencies / mine.frequencies - 1.0).max()) for other in found)
-    noise = np.full(len(mine.frequencies), max(ROUNDING, WARY * change))
-    return np.maximum(noise, mine.rounding) if len(mine.rounding) else noise
+    rounding_of_core = np.full(len(mine.frequencies), max(ROUNDING, WARY * change))
+    return np.maximum(rounding_of_core, mine.rounding) if len(mine.rounding) else rounding_of_core
 
 
 def same(
-    head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer, noise: Array | None = None
+    head: Head, omega: float, reference: Reference, theirs: Answer, mine: Answer, rounding_of_core: Array | None = None
 ) -> Rows:
     """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements.
 
-    ``noise``: (m,) relative uncertainty of core's frequencies due to rounding. The other code's equations are equally
-    sensitive, so it is assumed to have the same uncertainty, or the one that it reports.
+    ``rounding_of_core``: (m,) relative uncertainty of core's frequencies due to rounding. The other code's equations
+    are equally sensitive, so it is assumed to have the same uncertainty, or the one that it reports.
     """
     if isinstance(theirs, Failure):
         return [failed(head, omega, theirs)], []
@@ -123,7 +123,11 @@ def same(
         cell = _row(head, omega, i, reference, theirs, partner)
         if base.mode is not None and partner.mode is not None:
             f, f0 = float(theirs.frequencies[partner.mode]), float(mine.frequencies[base.mode])
-            core = float(noise[base.mode]) if noise is not None and len(noise) else ROUNDING
+            core = (
+                float(rounding_of_core[base.mode])
+                if rounding_of_core is not None and len(rounding_of_core)
+                else ROUNDING
+            )
             own = float(theirs.rounding[partner.mode]) if len(theirs.rounding) else core
             sure = core + max(own, core)
             verdict, reason = _unless_ambiguous(judge(f / f0 - 1.0, sure, head.target), partner)
@@ -275,7 +279,7 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
     The shapes themselves are not inspected: a column that is empty because of an adapter fault looks the same.
     """
     wanted = reference.core.wanted
-    motion = MOTIONS[int(shares(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
+    motion = MOTIONS[int(mass_fractions(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
     return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 

@@ -48,7 +48,7 @@ class Column:
 
     Attributes:
         name: as shown while it is being solved.
-        model: effects that its references keep.
+        effects: effects that its references keep.
         head: fields common to its cells.
         work: function that returns its rows from core's references.
         origin: declared origin of its answers; None if undeclared.
@@ -57,7 +57,7 @@ class Column:
     """
 
     name: str
-    model: Effects
+    effects: Effects
     head: Head
     work: Callable[[Any], Rows]
     origin: Independence | None = None
@@ -87,7 +87,7 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
     if source:
         head = Head(variant.name, "core", version("southwell"), "discretisation", target)
         out.append(
-            Column("core, as in the source", felt(source.model, blade), head, partial(_source, head, blade, source))
+            Column("core, as in the source", felt(source.effects, blade), head, partial(_source, head, blade, source))
         )
     head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
     out.append(Column(OTHER_METHOD, ALL_EFFECTS, head, partial(_other_method, head, blade), due="highest speed"))
@@ -119,17 +119,17 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
         return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure))
     if code.refused and code.refused[0]:
         return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", code.refused[0]))
-    name, model = code.asked, felt(code.effects, blade)
+    name, effects = code.asked, felt(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)
         return Column(
             code.name,
-            model,
+            effects,
             head,
             partial(_same, head, name, blade, code.levels[-1], code.effects, limits),
         )
     refining = Refining(code.levels, code.order, cap(code), bracket=code.bracket)
-    return Column(code.name, model, head, partial(_refined, head, name, blade, refining, limits))
+    return Column(code.name, effects, head, partial(_refined, head, name, blade, refining, limits))
 
 
 def _origin(code: Description, blade: Blade) -> Independence | None:
@@ -171,7 +171,7 @@ def _refined(head: Head, name: str, blade: Blade, refining: Refining, limits: Li
 
 def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
-        return core_solver.answers(blade, runs, source.mass, source.stiffness, source.model)
+        return core_solver.answers(blade, runs, source.mass, source.stiffness, source.effects)
 
     refining = core_solver.as_given(source)
     count = max(r.core.count for _, r in core)
@@ -181,14 +181,16 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     )
 
 
-def _same(head: Head, name: str, blade: Blade, elements: int, model: Effects, limits: Limits, core: References) -> Rows:
+def _same(
+    head: Head, name: str, blade: Blade, elements: int, effects: Effects, limits: Limits, core: References
+) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
     theirs = answers(name, blade, runs, limits)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
-    mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", model) for b in (blade, *scaled))
+    mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", effects) for b in (blade, *scaled))
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
     rows = zip(core, theirs, mine, noises, strict=True)
-    return _join(same(head, omega, r, a, b, noise) for (omega, r), a, b, noise in rows)
+    return _join(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
 
 
 def _other_method(head: Head, blade: Blade, core: References) -> Rows:

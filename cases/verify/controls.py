@@ -16,12 +16,12 @@ from ...core.modes import Modes
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, families, pair, weights
 from .core_faults import CORE_FAULTS, Solve
-from .core_solver import START, qualifying
+from .core_solver import COARSEST, qualifying
 
-ELEMENTS = START
+ELEMENTS = COARSEST
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
 
-NEAR = 5e-2
+SAME_MODE = 5e-2
 """Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error
 of lumped mass is 2 %, and modes of a family are farther apart."""
 

@@ -55,24 +55,24 @@ class CoreFault:
     at_rest: bool = False
 
 
-def right(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def right(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """Core without a fault."""
-    return solve.mesh_modes(blade, omega, elements, count, effects=model)
+    return solve.mesh_modes(blade, omega, elements, count, effects=effects)
 
 
-def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def no_geometric_stiffness(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """The steady internal forces do not contribute to the stiffness."""
-    return right(blade, omega, elements, count, replace(model, geometric=False))
+    return right(blade, omega, elements, count, replace(effects, geometric=False))
 
 
-def no_coriolis(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def no_coriolis(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """No gyroscopic terms."""
-    return right(blade, omega, elements, count, replace(model, coriolis=False))
+    return right(blade, omega, elements, count, replace(effects, coriolis=False))
 
 
-def no_hub(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def no_hub(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """The root lies on the rotor's axis."""
-    return right(replace(blade, hub_radius=0.0), omega, elements, count, model)
+    return right(replace(blade, hub_radius=0.0), omega, elements, count, effects)
 
 
 def shifted(blade: Blade) -> Blade:
@@ -93,25 +93,25 @@ def shifted(blade: Blade) -> Blade:
     return replace(blade, stiffness=stiffness, mass=mass)
 
 
-def shifted_axis(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def shifted_axis(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """The reference axis is shifted; see ``shifted``."""
-    return right(shifted(blade), omega, elements, count, model)
+    return right(shifted(blade), omega, elements, count, effects)
 
 
-def softening_reversed(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def softening_reversed(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """Spin softening has the wrong sign and stiffens."""
-    return _altered(blade, omega, elements, count, model, softening=-1.0)
+    return _altered(blade, omega, elements, count, effects, softening=-1.0)
 
 
-def frozen_frame(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def frozen_frame(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """Linearised in absolute coordinates of a fixed frame: neither spin softening nor Coriolis terms."""
-    return _altered(blade, omega, elements, count, replace(model, coriolis=False), softening=0.0)
+    return _altered(blade, omega, elements, count, replace(effects, coriolis=False), softening=0.0)
 
 
-def _altered(blade: Blade, omega: float, elements: int, count: int, model: Effects, softening: float) -> Modes:
+def _altered(blade: Blade, omega: float, elements: int, count: int, effects: Effects, softening: float) -> Modes:
     """Core with its spin softening multiplied by ``softening``."""
-    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements)
-    state = solution.balance(body, omega, STILL, model)
+    body = discretize(blade if effects.rotary_inertia else without_rotary_inertia(blade), elements)
+    state = solution.balance(body, omega, STILL, effects)
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
 
 
@@ -144,18 +144,18 @@ LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
 """The paper's discretisation; the last fault has the wrong mass at its end node. Refined from its 50 elements."""
 
 
-def lumped(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def lumped(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """Core with point masses, half of each element's mass at either end."""
     mass, stiffness = LUMPED
-    return solve.mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=model)
+    return solve.mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
 
 
-def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, model: Effects) -> Modes:
+def whole_end_mass(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
     """Every node has the mass of one element, including the tip, which should have half of it."""
-    body = discretize(blade if model.rotary_inertia else without_rotary_inertia(blade), elements, *LUMPED)
+    body = discretize(blade if effects.rotary_inertia else without_rotary_inertia(blade), elements, *LUMPED)
     lumps = body.lumps.copy()
     lumps[-1] += lumps[-1] - blade.tip_mass
-    return solve.chain_modes(replace(body, lumps=lumps), omega, count, effects=model)
+    return solve.chain_modes(replace(body, lumps=lumps), omega, count, effects=effects)
 
 
 PLAIN = ("park-cantilever",)

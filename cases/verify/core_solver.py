@@ -16,14 +16,14 @@ from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare, Discretisation
-from ..judge.pairing import MOTIONS, Array, aligned, families, shares, weights
+from ..judge.pairing import MOTIONS, Array, aligned, families, mass_fractions, weights
 from ..judge.uncertainty import widened
 from .refinement import RefinedMode, Refining, Wanted, follow, solve
 
 SURE = 5e-5
 """Core is refined until its relative uncertainty is at most this: a quarter of the limit for a code."""
 
-START, MOST, CAP = 15, 100, 960
+COARSEST, LARGEST_START, FINEST = 15, 100, 960
 """Elements of core's reference: the coarsest, the most to start with for many stations, and the finest."""
 
 JUMP = 1e-4
@@ -93,8 +93,8 @@ def refining(blade: Blade) -> Refining:
     """
     intervals = np.diff(blade.stations) / blade.length
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))
-    start = min(max(START, math.ceil(1.0 / shortest - 1e-9)), MOST)
-    return Refining((start, 2 * start, 3 * start), order=4, cap=CAP, sure=SURE)
+    start = min(max(COARSEST, math.ceil(1.0 / shortest - 1e-9)), LARGEST_START)
+    return Refining((start, 2 * start, 3 * start), order=4, cap=FINEST, sure=SURE)
 
 
 def as_given(source: Discretisation) -> Refining:
@@ -103,20 +103,20 @@ def as_given(source: Discretisation) -> Refining:
     return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
 
 
-def converged(blade: Blade, omega: float, compare: Compare, model: Effects) -> Converged | Failure:
-    """Core's converged modes at one speed, with the effects of ``model``.
+def converged(blade: Blade, omega: float, compare: Compare, effects: Effects) -> Converged | Failure:
+    """Core's converged modes at one speed, with the given effects.
 
     Raises:
         CaseError: if the blade has fewer modes than the case compares.
     """
-    return _converged(blade, omega, compare, model, weights(blade), 2 * compare.modes + MARGIN)
+    return _converged(blade, omega, compare, effects, weights(blade), 2 * compare.modes + MARGIN)
 
 
 def _converged(
-    blade: Blade, omega: float, compare: Compare, model: Effects, weight: Array, count: int
+    blade: Blade, omega: float, compare: Compare, effects: Effects, weight: Array, count: int
 ) -> Converged | Failure:
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, effects=model)
+        return answers(blade, runs, effects=effects)
 
     def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
         finest = aligned(solved[-1], weight)
@@ -133,10 +133,10 @@ def _converged(
                 f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s only {len(target.indices)} of the lowest "
                 f"{len(refinements.answers[-1].frequencies)} modes qualify; reduce it"
             )
-        return _converged(blade, omega, compare, model, weight, DEEPER * count)
+        return _converged(blade, omega, compare, effects, weight, DEEPER * count)
     named = families(target.reference, weight)
     meshes = [answer.elements for answer in refinements.answers]
-    factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, model)
+    factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, effects)
     refined_modes = tuple(
         _corrected(one, float(factor[k]), float(unsure[k]))
         for k, one in zip(target.indices, follow(refinements.answers, target, plan.order), strict=True)
@@ -154,5 +154,5 @@ def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
 
 def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:
     """Indices of the lowest ``compare.modes`` modes with at least half their modal mass in ``compare.motions``."""
-    share = shares(modes, weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
+    share = mass_fractions(modes, weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
     return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

@@ -28,7 +28,7 @@ from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.solve import mesh_modes
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Share
+from ..judge.results import BudgetEntry, Cell
 from .controls import changed
 from .published_tables import about
 
@@ -60,7 +60,7 @@ Altered = tuple[str, str, Modes | None]
 """Cause, part, and core's modes with that part altered."""
 
 
-def solve(case: Case, variant: Variant) -> list[Share]:
+def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
     """Error budget of one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
     blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
     printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
@@ -73,7 +73,7 @@ def solve(case: Case, variant: Variant) -> list[Share]:
     for cause, part, found in _altered(blade, omega, source.elements if source else ELEMENTS, count):
         if found is not None:
             mine = changed(right, found, blade, compare)
-            rows += [Share(variant.name, omega, mode.name, cause, part, mode.change) for mode in mine]
+            rows += [BudgetEntry(variant.name, omega, mode.name, cause, part, mode.change) for mode in mine]
     return rows
 
 
@@ -81,8 +81,8 @@ def _altered(blade: Blade, omega: float, elements: int, count: int) -> Iterator[
     for what, (mass, stiffness) in WAYS.items():
         coarse = _solved(blade, omega, elements, count, mass=mass, stiffness=stiffness)
         yield "discretisation", f"{what}, {elements} elements", coarse
-    for what, model in EFFECTS.items():
-        yield "model form", what, _solved(blade, omega, FINE, count, model)
+    for what, effects in EFFECTS.items():
+        yield "model form", what, _solved(blade, omega, FINE, count, effects)
     for what, other in _with_other_strains(blade):
         yield "model form", what, _solved(other, omega, FINE, count)
 
@@ -92,14 +92,14 @@ def _solved(
     omega: float,
     elements: int,
     count: int,
-    model: Effects = ALL_EFFECTS,
+    effects: Effects = ALL_EFFECTS,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
 ) -> Modes | None:
     """None without an answer: a blade without the omitted stiffness may be unconstrained."""
     try:
         with np.errstate(invalid="ignore"):
-            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=model)
+            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
 
@@ -127,7 +127,7 @@ def _held(blade: Blade, strains: Sequence[int]) -> Blade:
     return replace(blade, stiffness=stiffness)
 
 
-def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[Share]:
+def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> list[BudgetEntry]:
     """Largest numerical uncertainty of the codes and rounding of printed numbers, for the modes and speed of ``rows``."""
     out = []
     for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
@@ -141,7 +141,7 @@ def uncertain(case: str, rows: Sequence[Share], cells: Sequence[Cell]) -> list[S
             if role == "code":  # an error bound given by a code is not a discretisation error
                 sizes = [c.uncertainty or 0.0 for c in known if c.role == role and c.order is not None]
             if sizes:
-                out.append(Share(case, omega, name, cause, part, max(sizes), bound=True))
+                out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out
 
 

@@ -17,7 +17,7 @@ from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Level, Origin, Planned, Run, Share
+from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
 from . import error_budget, mechanism_columns
 from .columns import Column, Rows, columns, failing
 from .identity import adapter
@@ -58,7 +58,7 @@ class _Task:
     core: Callable[[], dict[Any, list[Any]]]
     modes: int
     column: Column | None = None
-    shares: Callable[[], list[Share]] | None = None
+    error_budget: Callable[[], list[BudgetEntry]] | None = None
 
     @property
     def label(self) -> str:
@@ -106,11 +106,11 @@ def run(
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
-    split: list[tuple[_Task, Future[list[Share]]]] = []
+    split: list[tuple[_Task, Future[list[BudgetEntry]]]] = []
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
-        split = [(task, executor.submit(task.shares)) for task in plans if task.shares and parts]
+        split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget and parts]
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -124,7 +124,7 @@ def run(
                     rows[task.variant.name, task.column.name] = new = answer
                 else:
                     for column in task.columns:
-                        pending[executor.submit(column, speeds, answer[column.model])] = replace(task, column=column)
+                        pending[executor.submit(column, speeds, answer[column.effects])] = replace(task, column=column)
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
@@ -137,7 +137,7 @@ def run(
         levels=tuple(level for _, levels in ordered for level in levels),
         versions=versions(known, user_results),
         settings=tuple(setting for case in cases for setting in settings(case)),
-        shares=tuple(made_of),
+        error_budget=tuple(made_of),
         origins=tuple(
             Origin(task.variant.name, column.head.code, **asdict(column.origin))
             for task in plans
@@ -196,9 +196,9 @@ def _tasks(
     for v in case.variants:
         made = _dated(columns(case, v, shown[v.name], limits), codes)
         made += tuple(added_columns(v, user_results, case.text.compare))
-        models = [column.model for column in made]
-        question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, models)
-        out.append(_Task(v, made, question, case.text.compare.modes, shares=partial(error_budget.solve, case, v)))
+        kept = [column.effects for column in made]
+        question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, kept)
+        out.append(_Task(v, made, question, case.text.compare.modes, error_budget=partial(error_budget.solve, case, v)))
     return out
 
 
@@ -208,7 +208,7 @@ def _dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column
     return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)
 
 
-def _parts(task: _Task, parts: list[Share], rows: dict[tuple[str, str], Rows]) -> list[Share]:
+def _parts(task: _Task, parts: list[BudgetEntry], rows: dict[tuple[str, str], Rows]) -> list[BudgetEntry]:
     """The error budget of core, with the uncertainties of the compared numbers."""
     return parts + error_budget.uncertain(task.variant.name, parts, _cells(task, rows))
 

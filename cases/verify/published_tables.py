@@ -88,9 +88,9 @@ def rows(
 ) -> tuple[list[Cell], list[Level]]:
     """Cells of every number in the table for core's modes; ``source`` is the discretisation of the source, if known."""
     cells = []
-    held = table.series
-    if held.target:
-        head = replace(head, target=max(head.target, held.target))
+    series = table.series
+    if series.target:
+        head = replace(head, target=max(head.target, series.target))
     for omega, reference in core:
         data = table.at(omega, reference.core.names)
         if any(data):
@@ -102,20 +102,20 @@ def rows(
                     value = from_print(datum.printed, table.unit)
                     note = f"suspect print: {datum.evidence}" if datum.suspect else ""
                     cell = printed(head, omega, i, reference, value, note)
-                    if held.grounds and cell.verdict == "pass":
-                        cell = replace(cell, reason=f"held to {unsigned(head.target)}: {held.grounds}")
+                    if series.grounds and cell.verdict == "pass":
+                        cell = replace(cell, reason=f"target {unsigned(head.target)}: {series.grounds}")
                     cells.append(excused(cell, coarse[i], source.what) if source else cell)
     return cells, []
 
 
 def discretised(
-    blade: Blade, omega: float, model: Effects, reference: Reference, source: Discretisation
+    blade: Blade, omega: float, effects: Effects, reference: Reference, source: Discretisation
 ) -> list[Coarse | None]:
     """Core's answers for the reference's modes in the source's discretisation, with limits; None without a partner."""
     n, wanted = source.elements, reference.core.wanted
 
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, source.mass, source.stiffness, model)
+        return answers(blade, runs, source.mass, source.stiffness, effects)
 
     plan = as_given(source)
     (refinements,) = solve(ask, [omega], plan, reference.core.count, lambda *_: wanted)

@@ -16,13 +16,13 @@ from .core_solver import Converged, converged
 
 @dataclass(frozen=True)
 class Reference:
-    """Core's modes at one speed with the effects of one model.
+    """Core's modes at one speed with given effects.
 
     Attributes:
         core: converged modes.
         full: frequencies of the same modes with all effects, rad/s; None if no mode with all effects corresponds.
         likeness: MAC of each mode with its counterpart with all effects.
-        effects: for each mode, its change due to each effect that the model lacks; empty if the change due to all of
+        effects: for each mode, its change due to each effect that is left out; empty if the change due to all of
             them together is within the target.
     """
 
@@ -36,54 +36,54 @@ MAJORITY = 0.5
 """Least MAC of core's modes with and without an effect that also changes shapes: at most one mode can reach it."""
 
 References = dict[Effects, list[Reference | Failure]]
-"""Model → references at each speed."""
+"""Effects → references at each speed."""
 
 
-def felt(model: Effects, blade: Blade, omega: float = 1.0) -> Effects:
-    """The model without irrelevant omissions: an effect that cannot change this blade at this speed is not missing.
+def felt(effects: Effects, blade: Blade, omega: float = 1.0) -> Effects:
+    """The effects without irrelevant omissions: an effect that cannot change this blade at this speed is not missing.
 
     A blade without rotary inertia cannot lack it; at rest only rotary inertia can be missing.
     """
-    inertia = model.rotary_inertia or not blade.mass[:, 3:, 3:].any()
-    return replace(model if omega else ALL_EFFECTS, rotary_inertia=inertia)
+    inertia = effects.rotary_inertia or not blade.mass[:, 3:, 3:].any()
+    return replace(effects if omega else ALL_EFFECTS, rotary_inertia=inertia)
 
 
-def references(blade: Blade, speeds: Sequence[float], compare: Compare, models: Iterable[Effects]) -> References:
-    """Core's references with all effects, and with the effects of each of ``models``.
+def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: Iterable[Effects]) -> References:
+    """Core's references with all effects, and with each of the effects ``kept``.
 
     Raises:
         CaseError: if core with all effects has no stable steady state at one of the speeds, or too few modes.
     """
-    models = set(models) | {ALL_EFFECTS}
-    by_speed = [_at(blade, omega, compare, models) for omega in speeds]
-    return {model: [solved[model] for solved in by_speed] for model in models}
+    kept = set(kept) | {ALL_EFFECTS}
+    by_speed = [_at(blade, omega, compare, kept) for omega in speeds]
+    return {effects: [solved[effects] for solved in by_speed] for effects in kept}
 
 
-def _at(blade: Blade, omega: float, compare: Compare, models: Iterable[Effects]) -> dict[Effects, Reference | Failure]:
+def _at(blade: Blade, omega: float, compare: Compare, kept: Iterable[Effects]) -> dict[Effects, Reference | Failure]:
     @cache
-    def solve(model: Effects) -> Converged | Failure:
-        return converged(blade, omega, compare, model)
+    def solve(effects: Effects) -> Converged | Failure:
+        return converged(blade, omega, compare, effects)
 
     full = solve(ALL_EFFECTS)
     if isinstance(full, Failure):
         raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
     out: dict[Effects, Reference | Failure] = {}
-    for model in models:
-        keeps = felt(model, blade, omega)
+    for effects in kept:
+        keeps = felt(effects, blade, omega)
         mine = solve(keeps)
-        out[model] = mine if isinstance(mine, Failure) else _reference(mine, full, compare.target, keeps, solve)
+        out[effects] = mine if isinstance(mine, Failure) else _reference(mine, full, compare.target, keeps, solve)
     return out
 
 
 def _reference(
-    mine: Converged, full: Converged, target: float, model: Effects, solve: Callable[[Effects], Converged | Failure]
+    mine: Converged, full: Converged, target: float, kept: Effects, solve: Callable[[Effects], Converged | Failure]
 ) -> Reference:
     whole, likeness = _partners(mine, full)
     values = [s.estimate.value if s.estimate else None for s in mine.modes]
     shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
     effects: list[list[Effect]] = [[] for _ in values]
     if any(shift is None or abs(shift) > target for shift in shifts):  # solve for each effect alone
-        for name in (f.name for f in fields(model) if not getattr(model, f.name)):
+        for name in (f.name for f in fields(kept) if not getattr(kept, f.name)):
             without, _ = _partners(mine, solve(replace(ALL_EFFECTS, **{name: False})))
             for found, f, reference in zip(effects, without, whole, strict=True):
                 found.append(Effect(name.replace("_", " "), _change(f, reference)))

@@ -17,7 +17,7 @@ from ...core.modes import Modes
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.worker import Failure
 from ..judge.pairing import Pair
-from ..judge.results import Cell, Control, Level, Share
+from ..judge.results import BudgetEntry, Cell, Control, Level
 from ..judge.uncertainty import Estimate
 from ..judge.verdict import Effect
 from . import mechanism_columns
@@ -27,7 +27,7 @@ from .refinement import RefinedMode, Wanted
 
 TYPES: dict[str, type] = {
     kind.__name__: kind
-    for kind in (Cell, Control, Level, Share, Effects, Modes, MechanismModes, Failure, Pair, Estimate, Effect)
+    for kind in (Cell, Control, Level, BudgetEntry, Effects, Modes, MechanismModes, Failure, Pair, Estimate, Effect)
 } | {
     "Converged": Converged,
     "Reference": Reference,

@@ -44,7 +44,7 @@ ALIASES = {"chordwise": "edgewise", "edge": "edgewise", "lag": "edgewise", "flap
 NUMBER = re.compile(r"\d+(\.\d*)?([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?")
 
 
-MOST, DIGITS = 1e9, 40
+LARGEST, DIGITS = 1e9, 40
 """Largest speed or frequency in any unit, and the maximum number of characters of a number."""
 
 
@@ -163,7 +163,7 @@ def _header(header: Sequence[str], where: str) -> _Columns:
 
 
 def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaults: Defaults) -> Given:
-    def number(column: str, least: float = 0.0, most: float = MOST) -> float:
+    def number(column: str, least: float = 0.0, most: float = LARGEST) -> float:
         text = row[column]
         if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
             wanted = "a number above 0" if least else "a number, 0 or more"

@@ -22,7 +22,7 @@ from ..judge.results import Cell
 from ..judge.verdict import judge, percent, unsigned
 from . import published_tables
 from .cells import Head, Rows, empty, refined
-from .controls import NEAR, Wrong
+from .controls import SAME_MODE, Wrong
 from .reference import References, felt, references
 from .refinement import Refining, solve
 
@@ -46,7 +46,7 @@ class UserSolver:
     """
 
     solve: Callable[..., tuple[Any, Any]]
-    name: str = "yours"
+    name: str = "user-solver"
     lacks: tuple[str, ...] = ()
     levels: tuple[int, ...] = (10, 20, 40)
     order: int = 4
@@ -79,9 +79,9 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
     speeds = variant.speeds.tolist()
     if why := solver.unsupported(variant.blade):
         return [empty(head, omega, "not applicable", why) for omega in speeds], []
-    model = felt(solver.effects, variant.blade)
-    solved = references(variant.blade, speeds, compare, [model])
-    core = [(w, r) for w, r in zip(speeds, solved[model], strict=True) if not isinstance(r, Failure)]
+    effects = felt(solver.effects, variant.blade)
+    solved = references(variant.blade, speeds, compare, [effects])
+    core = [(w, r) for w, r in zip(speeds, solved[effects], strict=True) if not isinstance(r, Failure)]
     if len(core) < len(speeds):
         raise CaseError(f"{variant.name}: core without {', '.join(solver.lacks)} has no steady state at every speed")
     finest = 4 * solver.levels[-1]
@@ -130,19 +130,19 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
     """The solver's frequencies against the printed numbers that core, with the effects of the table, passes."""
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
-        model = felt(table.series.effects, variant.blade)
-        if model not in solved:
-            solved |= references(variant.blade, variant.speeds.tolist(), compare, [model])
+        effects = felt(table.series.effects, variant.blade)
+        if effects not in solved:
+            solved |= references(variant.blade, variant.speeds.tolist(), compare, [effects])
         core = [
-            (w, r) for w, r in zip(variant.speeds.tolist(), solved[model], strict=True) if not isinstance(r, Failure)
+            (w, r) for w, r in zip(variant.speeds.tolist(), solved[effects], strict=True) if not isinstance(r, Failure)
         ]
         head = Head(variant.name, table.name, "", "table", compare.target, "nothing")
-        held, _ = published_tables.rows(head, table, variant.blade, None, core)
-        agreed = {(c.omega, c.mode): c for c in held if c.verdict == "pass"}
+        printed, _ = published_tables.rows(head, table, variant.blade, None, core)
+        agreed = {(c.omega, c.mode): c for c in printed if c.verdict == "pass"}
         for mine in cells:
             number = agreed.get((mine.omega, mine.mode))
             if number and mine.family == number.family and _agrees(mine.reference, number):
-                out.append(_against(mine, number, number.frequency or 0.0))
+                out.append(_compared(mine, number, number.frequency or 0.0))
     return out
 
 
@@ -153,7 +153,7 @@ def _agrees(reference: float | None, number: Cell) -> bool:
     return judge(reference / number.frequency - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
-def _against(mine: Cell, number: Cell, printed: float) -> Cell:
+def _compared(mine: Cell, number: Cell, printed: float) -> Cell:
     """One frequency against one printed number; a known difference of the frequency remains known."""
     difference = (mine.frequency or 0.0) / printed - 1.0
     unsure = None if mine.uncertainty is None else mine.uncertainty + (number.uncertainty or 0.0)
@@ -177,7 +177,7 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
     found: list[tuple[float, str]] = []
     for wrong in wrongs:
         for m in wrong.modes:
-            same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < NEAR
+            same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < SAME_MODE
             if wrong.omega == cell.omega and same and m.change is not None:
                 rest = cell.frequency / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):

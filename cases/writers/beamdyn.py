@@ -54,7 +54,7 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
     return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 
-def moved(blade: Blade) -> float:
+def spline_error(blade: Blade) -> float:
     """Largest displacement of stations along the axis by BeamDyn's spline, as a fraction of the length."""
     return float(np.abs(_axis(blade).arc - blade.stations).max() / blade.length)
 

@@ -130,15 +130,15 @@ def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Mode
         if len(solved) < 3 or len({len(s.modes.frequencies) for s in solved[-3:]}) > 1:
             continue
         found = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
-        noise = one.rounding(solved[-1])
+        rounded = one.rounding(solved[-1])
         factor, of_factor = without_bias(*(meshes.bias(k - level, solved[-1 - k]) for k in (2, 1)))
         values = factor * found.values
         order = np.argsort(values)
-        sure = (found.of_values + of_factor + noise)[order]
-        now = replace(last, frequencies=values[order], uncertainty=sure, rounding=noise, shapes=last.shapes[order])
+        sure = (found.of_values + of_factor + rounded)[order]
+        now = replace(last, frequencies=values[order], uncertainty=sure, rounding=rounded, shapes=last.shapes[order])
         if best is None or sure.max() < best.uncertainty.max():
             best = now
-        if (sure <= wanted).all() or noise.max() > 0.5 * sure.max():  # accurate enough, or limited by rounding
+        if (sure <= wanted).all() or rounded.max() > 0.5 * sure.max():  # accurate enough, or limited by rounding
             break
     if best is None:
         raise EigensolverError(
@@ -162,13 +162,13 @@ def as_given(meshes: Meshes, omega: float, elements: int, fastest: float) -> Mod
     """
     one = meshes.of(elements)
     solved = one.at(omega)
-    noise, last = one.rounding(solved), solved.modes
+    rounded, last = one.rounding(solved), solved.modes
     sure = None
     if elements // 4 >= max(_FEWEST, meshes.count) and _aligned(meshes.blade, elements // 4, elements // 2, elements):
         sure = _coarser(meshes, last)
     if sure is None:
         sure = _from_default(meshes, last, fastest)
-    return replace(last, uncertainty=sure + noise, rounding=noise)
+    return replace(last, uncertainty=sure + rounded, rounding=rounded)
 
 
 def _aligned(blade: Blade, *meshes: int) -> bool:

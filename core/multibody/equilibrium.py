@@ -47,18 +47,18 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     if found is None and not guess:
         found = _relaxed(tree, q)
     beams = out_of_range(tree, found.state.kinematics.poses) if found else []
-    elsewhere = _elsewhere(tree, q) if guess and (beams or not found) else ""
+    unguessed = _without_guess(tree, q) if guess and (beams or not found) else ""
     if found is None:
         raise MechanismError(
             "no steady state was found near the guess: neither Newton's method nor relaxation converges from it, and "
             f"continuation reached {100 * reached[0]:.3g} % from rest with rates and loads growing, {100 * reached[1]:.3g} % "
-            f"from the guess with dead forces fading{elsewhere}: give a better guess, or check for a missing spring or joint"
+            f"from the guess with dead forces fading{unguessed}: give a better guess, or check for a missing spring or joint"
         )
     check_rates(tree, found.state)
     _check_balance(tree, found)
     if beams:
         raise MechanismError(
-            f"beam {beams[0]}: the steady state found deforms it beyond the range of its strain measure{elsewhere}: divide it "
+            f"beam {beams[0]}: the steady state found deforms it beyond the range of its strain measure{unguessed}: divide it "
             "into shorter beams, or give a better guess"
         )
     return found.state
@@ -74,7 +74,7 @@ def _relaxed(tree: Tree, q: Array) -> Found | None:
     return None
 
 
-def _elsewhere(tree: Tree, q: Array) -> str:
+def _without_guess(tree: Tree, q: Array) -> str:
     """The steady state found without a guess, in words: its coordinates furthest from the guess q (n,)."""
     try:
         state = steady(tree)

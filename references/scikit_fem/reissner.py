@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 COARSEST = 8
 """Elements of the coarsest level, and the largest number of intervals between stations that needs no more."""
 
-MOST = 300
+MAX_ELEMENTS = 300
 """Largest number of elements: the matrices are dense, with up to 12 rows per element."""
 
 RIGID_BODY = 1e-6
@@ -88,8 +88,8 @@ class ScikitFemReissner:
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
         ends = element_ends(blade, elements, COARSEST)
-        if len(ends) - 1 > MOST:
-            raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MOST}")
+        if len(ends) - 1 > MAX_ELEMENTS:
+            raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MAX_ELEMENTS}")
         beam = beam_of(blade, ends)
         state = steady(beam, omega)
         coordinates = _coordinates(beam, state)
@@ -118,7 +118,7 @@ def _matrices(beam: Beam, state: State, omega: float, Z: Array) -> tuple[Array, 
     """M, C, K of the coordinates, whose motions are the columns of ``Z``."""
     fem = skfem()
     M = C = sp.csr_array((beam.basis.N, beam.basis.N))
-    for part, axes in zip(beam.parts, state.turned, strict=True):
+    for part, axes in zip(beam.parts, state.part_axes, strict=True):
         about, form = spatial(part, axes), fem.BilinearForm(forms.quadratic)
         M = M + form.assemble(part.basis, on=forms.for_fem(forms.inertia(about), 2))
         C = C + omega * form.assemble(part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))

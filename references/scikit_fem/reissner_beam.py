@@ -79,7 +79,7 @@ class State:
 
     Attributes:
         slope, axes, curvature: (e, q, …) at the strains' points; curvature is the change from the undeformed one.
-        place, turned: per part (e, q, 3) and (e, q, 3, 3).
+        place, part_axes: per part (e, q, 3) and (e, q, 3, 3).
         force: coefficients of the section forces.
         root: (free,) the root's displacements and rotations, in its axes, zero elsewhere.
     """
@@ -88,7 +88,7 @@ class State:
     axes: Array
     curvature: Array
     place: tuple[Array, ...]
-    turned: tuple[Array, ...]
+    part_axes: tuple[Array, ...]
     force: Array
     root: Array
 
@@ -166,29 +166,29 @@ def at_rest(beam: Beam) -> State:
         axes=beam.axes,
         curvature=np.zeros(shape),
         place=tuple(part.place for part in beam.parts),
-        turned=tuple(part.axes for part in beam.parts),
+        part_axes=tuple(part.axes for part in beam.parts),
         force=np.zeros(beam.forces.N),
         root=np.zeros(len(beam.springs)),
     )
 
 
-def moved(beam: Beam, state: State, step: Array, force: Array) -> State:
+def after_step(beam: Beam, state: State, step: Array, force: Array) -> State:
     """The state after a motion ``step`` of the free coordinates, with section forces ``force``."""
     q = beam.to_free @ step
     u = beam.basis.interpolate(q)
     w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], np.asarray(u)[3:], u.grad[3:, 0]))
     back = np.swapaxes(state.axes, -1, -2)
-    place, turned = [], []
-    for part, at, axes in zip(beam.parts, state.place, state.turned, strict=True):
+    place, part_axes = [], []
+    for part, at, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
         value = np.moveaxis(np.asarray(part.basis.interpolate(q)), 0, -1)
         place.append(at + value[..., :3])
-        turned.append(forms.exponential(value[..., 3:]) @ axes)
+        part_axes.append(forms.exponential(value[..., 3:]) @ axes)
     return State(
         slope=state.slope + w_s,
         axes=forms.exponential(phi) @ state.axes,
         curvature=state.curvature + (back @ forms.bending_rate(phi, phi_s)[..., None])[..., 0],
         place=tuple(place),
-        turned=tuple(turned),
+        part_axes=tuple(part_axes),
         force=force,
         root=state.root + np.where(np.arange(len(step)) < np.isfinite(beam.blade.root).sum(), step, 0.0),
     )
@@ -213,7 +213,7 @@ def stiffening(beam: Beam, state: State, omega: float) -> Any:
     force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
     on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
     K = fem.BilinearForm(forms.quadratic_local).assemble(beam.basis, on=on)
-    for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):
+    for part, place, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
         on = forms.for_fem(forms.centrifugal(place, spatial(part, axes)), 2)
         K = K + omega**2 * fem.BilinearForm(forms.quadratic).assemble(part.basis, on=on)
     return K
@@ -223,7 +223,7 @@ def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
     """Centrifugal force on all coordinates."""
     fem = skfem()
     force = np.zeros(beam.basis.N)
-    for part, place, axes in zip(beam.parts, state.place, state.turned, strict=True):
+    for part, place, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
         on = forms.for_fem(forms.centrifugal_force(place, spatial(part, axes)), 1)
         force = force + omega**2 * fem.LinearForm(forms.linear).assemble(part.basis, on=on)
     return force

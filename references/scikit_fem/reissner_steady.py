@@ -7,7 +7,7 @@ from scipy.sparse import linalg as spla
 
 from ..protocol.interface import CodeError
 from . import reissner_forms as forms
-from .reissner_beam import Beam, State, at_rest, centrifugal_force, moved, skfem, stiffening, strain, strain_rate
+from .reissner_beam import Beam, State, after_step, at_rest, centrifugal_force, skfem, stiffening, strain, strain_rate
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def _raised(beam: Beam, omega: float, steps: int) -> State | None:
     for k in range(1, steps + 1):
         speed = omega * np.sqrt(k / steps)
         if k == 1:
-            state = moved(beam, state, 0 * state.root, _statics(beam, state, speed))
+            state = after_step(beam, state, 0 * state.root, _statics(beam, state, speed))
         found = _equilibrium(beam, state, speed)
         if found is None:
             return None
@@ -90,7 +90,7 @@ def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:
         if not np.isfinite(size) or size > 1e3:
             return None
         largest = max(1.0, size / 0.5)  # at most half a radian, or half the length, per step
-        state = moved(beam, state, change[:n] / largest, state.force + change[n:] / largest)
+        state = after_step(beam, state, change[:n] / largest, state.force + change[n:] / largest)
         if size < ROUNDING or (size < CONVERGED and size > 0.5 * last):
             return state
         last = size
@@ -101,5 +101,5 @@ def _size(beam: Beam, step: Array) -> float:
     """Size of a step: the largest displacement over the length, or the largest rotation."""
     q = np.abs(beam.to_free @ step)
     first = beam.basis.nodal_dofs[:3].ravel(), beam.basis.interior_dofs[:3].ravel()
-    moved = np.concatenate([q[i] for i in first]).max() / beam.blade.length
-    return float(max(moved, q[beam.basis.nodal_dofs[3:]].max(), q[beam.basis.interior_dofs[3:]].max()))
+    after_step = np.concatenate([q[i] for i in first]).max() / beam.blade.length
+    return float(max(after_step, q[beam.basis.nodal_dofs[3:]].max(), q[beam.basis.interior_dofs[3:]].max()))

@@ -34,7 +34,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
             f"{tracks.uncertainty[k, t]:.6g}",
             f"{tracks.solved[k].strain:.6g}",
-            *[f"{share:.6f}" for share in diagram.shares[k, t]],
+            *[f"{share:.6f}" for share in diagram.energy_fractions[k, t]],
             f"{tracks.mac[k, t]:.6f}" if np.isfinite(tracks.mac[k, t]) else "",
         )
         for k in range(len(tracks.omega))

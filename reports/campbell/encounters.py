@@ -18,16 +18,16 @@ ACROSS = 3
 WIDE = 0.96
 """Fraction of the figure's width that the panels take."""
 
-MOST = 9
+MAX_PANELS = 9
 """Largest number of panels; the table has all encounters."""
 
 
 def draw(diagram: Campbell, units: Units, heading: str) -> Figure | None:
-    """Draw one panel per encounter, the first ``MOST`` by speed; None if there are no encounters.
+    """Draw one panel per encounter, the first ``MAX_PANELS`` by speed; None if there are no encounters.
 
     Colours are those of the motion, as in the diagram; dots are solved speeds.
     """
-    met = diagram.encounters[:MOST]
+    met = diagram.encounters[:MAX_PANELS]
     if not met:
         return None
     across = min(ACROSS, len(met))
@@ -57,17 +57,17 @@ def _panel(axes: Axes, diagram: Campbell, e: Encounter, units: Units) -> None:
         omega, squares = tracks.omega[k], tracks.frequencies[k, t] ** 2
         x = np.linspace(max(low, omega[0]), min(high, omega[-1]), 161)
         y = np.sqrt(PchipInterpolator(omega**2, squares)(x**2))
-        shares = np.stack([np.interp(x, omega, diagram.shares[k, t, i]) for i in range(4)], axis=1)
+        fractions = np.stack([np.interp(x, omega, diagram.energy_fractions[k, t, i]) for i in range(4)], axis=1)
         points = np.stack([x * units.speeds, y * units.frequencies], axis=1)
         segments = np.stack([points[:-1], points[1:]], axis=1)
-        colours = [blend(s) for s in 0.5 * (shares[1:] + shares[:-1])]
+        colours = [blend(s) for s in 0.5 * (fractions[1:] + fractions[:-1])]
         axes.add_collection(LineCollection(list(segments), colors=colours, linewidths=1.8, capstyle="round", zorder=3))
         inside = (omega >= low) & (omega <= high)
         axes.scatter(
             omega[inside] * units.speeds,
             np.sqrt(squares[inside]) * units.frequencies,
             s=9,
-            c=[blend(s) for s in diagram.shares[k, t][inside]],
+            c=[blend(s) for s in diagram.energy_fractions[k, t][inside]],
             edgecolors="white",
             linewidths=0.5,
             zorder=4,

@@ -138,11 +138,11 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
     k = np.flatnonzero(tracks.place[:, t] >= 0)
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
     x, y = _fine(omega, frequency)
-    shares = np.stack([np.interp(x, omega, diagram.shares[k, t, i]) for i in range(4)], axis=1)
+    fractions = np.stack([np.interp(x, omega, diagram.energy_fractions[k, t, i]) for i in range(4)], axis=1)
     near(axes, diagram, x, y, units)
     places = np.stack([x * units.speeds, y * units.frequencies], axis=1)
-    for start, stop, pure in _stretches(shares):
-        part, share = places[start : stop + 1], shares[start : stop + 1]
+    for start, stop, pure in _stretches(fractions):
+        part, share = places[start : stop + 1], fractions[start : stop + 1]
         if pure:
             axes.plot(*part.T, color=blend(share.mean(0)), lw=1.8, ls=DASHES[pure], zorder=4)
         else:
@@ -153,7 +153,7 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
             )
     if k[-1] != len(tracks.omega) - 1:
         return []
-    return [(places[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.shares[-1, t])))]
+    return [(places[-1, 1], _label(diagram, t, units), to_hex(blend(diagram.energy_fractions[-1, t])))]
 
 
 def _label(diagram: Campbell, t: int, units: Units) -> str:
@@ -167,8 +167,8 @@ def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndar
     return x, np.sqrt(np.interp(x**2, omega**2, frequency**2))
 
 
-def _stretches(shares: np.ndarray) -> list[tuple[int, int, str]]:
+def _stretches(fractions: np.ndarray) -> list[tuple[int, int, str]]:
     """(first point, last point, family) of each stretch of a line; the family is empty where motions are mixed."""
-    kind = np.where(shares.max(1) >= PURE, shares.argmax(1), -1)
+    kind = np.where(fractions.max(1) >= PURE, fractions.argmax(1), -1)
     breaks = [0, *(np.flatnonzero(np.diff(kind)) + 1).tolist(), len(kind) - 1]
     return [(a, b, FAMILIES[kind[a]] if kind[a] >= 0 else "") for a, b in pairwise(breaks) if b > a]

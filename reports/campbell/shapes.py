@@ -74,7 +74,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
             shown = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
             axes.set_title(f"{name}   {shown} {units.frequency}", size=9.5, pad=17)
             axes.annotate(
-                spoken(diagram.shares[k, t]),
+                spoken(diagram.energy_fractions[k, t]),
                 (0, 1),
                 (0, 6),
                 "axes fraction",

@@ -56,7 +56,7 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
     for t in range(tracks.count):
         k = np.flatnonzero(tracks.place[:, t] >= 0)
         fit = diagram.southwell[t]
-        row = [diagram.label(t), spoken(diagram.shares[k[0], t])]
+        row = [diagram.label(t), spoken(diagram.energy_fractions[k[0], t])]
         for end in (0, -1):
             f, sure = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
             row.append(certain(float(f), float(sure)) if np.isfinite(f) else "–")

@@ -139,7 +139,7 @@ def command(
         raise UsageError("--verify: the other codes solve the blade without gravity and steady loads: leave those out")
     given = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
-    files = [measured.added(text, measured.defaults(data_uncertainty, None)) for text in add]
+    files = [measured.user_results(text, measured.defaults(data_uncertainty, None)) for text in add]
     measured.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
     other = single(against, mount) if against else None

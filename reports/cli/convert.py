@@ -83,7 +83,7 @@ def command(
     if left is not None:
         console.print(escape(_main_file(left)), soft_wrap=True)
     not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[chosen]), console)
-    if chosen == "beamdyn" and (moved := beamdyn.moved(subjects[0].blade)) > KEPT:
+    if chosen == "beamdyn" and (moved := beamdyn.spline_error(subjects[0].blade)) > KEPT:
         message = f"the curve between stations changes: BeamDyn's spline moves stations by {moved:.2g} of the length"
         console.print(f"{message}: give more stations where it bends", style="yellow", markup=False, soft_wrap=True)
     for name in _unknown(subjects[0].unused, chosen):

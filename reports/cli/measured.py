@@ -4,8 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...cases.verify import user_results
-from ...cases.verify.user_results import Defaults, UserResults
+from ...cases.verify.user_results import Defaults, UserResults, read
 from .errors import UsageError
 
 
@@ -29,7 +28,7 @@ def _percent(option: str, text: str) -> float:
     return value
 
 
-def added(text: str, u: Defaults) -> UserResults:
+def user_results(text: str, u: Defaults) -> UserResults:
     """Read the file of one ``--add``.
 
     Raises:
@@ -39,7 +38,7 @@ def added(text: str, u: Defaults) -> UserResults:
     name, equals, path = text.partition("=")
     if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
         raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
-    return user_results.read(name, Path(path), u)
+    return read(name, Path(path), u)
 
 
 def check(files: Sequence[UserResults], data: str | None, inputs: str | None) -> None:

@@ -129,7 +129,7 @@ def command(
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
     known = describe(names, [v.blade for v in blades])
     defaults = measured.defaults(data_uncertainty, input_uncertainty)
-    files = [measured.added(text, defaults) for text in add]
+    files = [measured.user_results(text, defaults) for text in add]
     measured.check(files, data_uncertainty, input_uncertainty)
     names_of.unique(chosen, known, files)
     user_results.check(files, blades, [c.name for c in known])

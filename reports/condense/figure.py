@@ -150,5 +150,5 @@ def _basis() -> Array:
 
 def _project(points: Array) -> tuple[Array, Array]:
     """Parallel projection of points (…, 3): positions (…, 2) in the picture and depths (…)."""
-    turned = points @ _basis().T
-    return turned[..., :2], turned[..., 2]
+    projected = points @ _basis().T
+    return projected[..., :2], projected[..., 2]

@@ -28,7 +28,7 @@ REPORT = "report.md"
 
 FLOORS = {
     "core": "The language (blade, modes) and the in-house solver.",
-    "references": "Answers from elsewhere: one module for each foreign code, closed forms, printed tables.",
+    "references": "Answers of other sources: one module for each foreign code, closed forms, printed tables.",
     "cases": "Which blade, which codes, which target; runs, compares, judges.",
     "reports": "Shows: Markdown, figures, command line.",
 }

@@ -109,7 +109,7 @@ def _differences(axes: Axes, form: ClosedForm, off: Array) -> None:
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
         axes.plot(form.speeds, np.maximum(off[:, k], LEAST), ls="", marker=marker, ms=3.5, mfc="white", mec=colour)
     axes.axhline(form.target, color=INK, lw=1.2, zorder=1)
-    axes.annotate(f"held to {form.target:.0e}", (0, form.target), (4, -10), textcoords="offset points", size=8)
+    axes.annotate(f"target {form.target:.0e}", (0, form.target), (4, -10), textcoords="offset points", size=8)
     axes.set_ylim(max(LEAST, np.nanmin(off)) / 3, 10 * form.target)
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
     axes.yaxis.set_minor_locator(NullLocator())

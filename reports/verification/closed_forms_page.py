@@ -65,7 +65,7 @@ def _rows(found: Sequence[Found]) -> list[dict[str, str]]:
             "source": plain(form.source),
             "speeds": str(len(form.speeds)),
             "largest difference": f"{np.nanmax(off):.1e}",
-            "held to": f"{form.target:.0e}",
+            "target": f"{form.target:.0e}",
             "verdict": "✔ pass" if np.nanmax(off) < form.target else "✘ fail",
         }
         for form, _, off in found

@@ -1,6 +1,6 @@
 """The error budget of a case as a table: one row per cause, one column per mode."""
 
-from ...cases.judge.results import Run, Share
+from ...cases.judge.results import BudgetEntry, Run
 from ...cases.judge.verdict import percent, unsigned
 from ..shared.units import Units
 
@@ -10,7 +10,7 @@ TINY = 1e-9
 
 def rows(run: Run, case: str) -> list[dict[str, str]]:
     """One row per cause (discretisation, model form, rounding) with its effect on each mode."""
-    mine = [s for s in run.shares if s.case == case]
+    mine = [s for s in run.error_budget if s.case == case]
     modes = list(dict.fromkeys(s.mode for s in mine))
     by = {(s.cause, s.part, s.mode): s for s in mine}
     order = {cause: k for k, cause in enumerate(("discretisation", "model form", "rounding"))}
@@ -23,10 +23,10 @@ def rows(run: Run, case: str) -> list[dict[str, str]]:
 
 def heading(run: Run, case: str, units: Units) -> str:
     """The speed of the error budget; empty for a case without one."""
-    return next((units.at(s.omega) for s in run.shares if s.case == case), "")
+    return next((units.at(s.omega) for s in run.error_budget if s.case == case), "")
 
 
-def _shown(share: Share | None) -> str:
+def _shown(share: BudgetEntry | None) -> str:
     if share is None:
         return ""
     if share.change is None:

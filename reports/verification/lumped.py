@@ -42,7 +42,7 @@ class Taken:
         return self.errors[name][self.elements.tolist().index(PAPER)]
 
     @property
-    def shares(self) -> np.ndarray:
+    def fractions(self) -> np.ndarray:
         """(modes,) fraction of the whole error due to the lumped mass, at the paper's number of elements."""
         return self.at(MASS) / self.at(BOTH)
 
@@ -62,9 +62,9 @@ def taken(run: Run) -> Taken | None:
 
 def sentence(found: Taken) -> str:
     """One sentence: how much of the paper's error is due to lumping."""
-    percent = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
+    percent = ", ".join(f"{100 * s:.0f} %" for s in found.fractions)
     return (
-        f"With {PAPER} elements, lumping the mass causes {percent} of the error of edgewise modes 1 to {len(found.shares)}; "
+        f"With {PAPER} elements, lumping the mass causes {percent} of the error of edgewise modes 1 to {len(found.fractions)}; "
         "the rest is due to a beam stiffness that is linear in the parent body's frame."
     )
 
@@ -80,22 +80,22 @@ def lumping(run: Run) -> Figure | None:
         right = figure.add_axes((0.6, 0.125, 0.205, 0.64))
         _parts(left, found)
         _falling(right, found)
-        shares = ", ".join(f"{100 * s:.0f} %" for s in found.shares)
-        about = f"{CASE}, {OMEGA:g} rad/s, edgewise modes 1 to {len(found.shares)}; from core with its switches"
-        title(figure, f"How much of the error is the lumped mass? {shares}", about)
+        fractions = ", ".join(f"{100 * s:.0f} %" for s in found.fractions)
+        about = f"{CASE}, {OMEGA:g} rad/s, edgewise modes 1 to {len(found.fractions)}; from core with its switches"
+        title(figure, f"How much of the error is the lumped mass? {fractions}", about)
     return figure
 
 
 def _parts(axes: Axes, found: Taken) -> None:
-    modes = range(len(found.shares))
+    modes = range(len(found.fractions))
     parts = {name: 100 * found.at(name) for name in (MASS, FRAME)}
-    base = np.zeros(len(found.shares))
+    base = np.zeros(len(found.fractions))
     for name, part in parts.items():
         label, colour, _ = LOOKS[name]
         axes.barh(modes, part, 0.4, left=base, color=colour)
         for k in modes:
             axes.annotate(_signed(part[k]), (base[k] + part[k] / 2, k + 0.33), ha="center", va="center", size=7.5)
-        end = (base[-1] + part[-1] / 2, len(found.shares) - 0.33)
+        end = (base[-1] + part[-1] / 2, len(found.fractions) - 0.33)
         axes.annotate(label, end, ha="center", va="center", size=7.5, color=colour, weight="bold")
         base = base + part
     for k, both in enumerate(100 * found.at(BOTH)):
@@ -130,4 +130,4 @@ def _falling(axes: Axes, found: Taken) -> None:
     axes.set_xticks(found.elements, [str(n) for n in found.elements])
     axes.set_xlabel("elements")
     axes.set_ylabel("|error|, relative")
-    axes.set_title(f"edgewise {len(found.shares)}, refined", size=9)
+    axes.set_title(f"edgewise {len(found.fractions)}, refined", size=9)

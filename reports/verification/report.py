@@ -198,8 +198,8 @@ class Section:
     figures: list[str]
     reasons: str
     count: int
-    shares: str
-    shares_at: str
+    error_budget: str
+    error_budget_at: str
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
@@ -226,8 +226,8 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
-        shares=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
-        shares_at=error_budget.heading(run, case, unit),
+        error_budget=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
+        error_budget_at=error_budget.heading(run, case, unit),
     )
 
 

@@ -219,7 +219,7 @@ def test_the_column_is_there_for_every_blade_and_is_no_witness(name: str) -> Non
     ):  # the matrix's tests run the column for the others
         return
     speeds = variant.speeds.tolist()[-2:]
-    cells, _ = column(speeds, references(variant.blade, speeds, case.text.compare, [column.model])[column.model])
+    cells, _ = column(speeds, references(variant.blade, speeds, case.text.compare, [column.effects])[column.effects])
     assert [c.mode for c in cells] == list(range(1, case.text.compare.modes + 1))
     assert {(c.verdict, c.omega, c.role, c.shares) for c in cells} == {
         ("pass", speeds[-1], "same discretisation", "everything")

@@ -59,14 +59,14 @@ def plan(blade: str) -> dict[str, Column]:
 @cache
 def core(blade: str) -> References:
     case, variant = CASES[blade]
-    models = [column.model for column in plan(blade).values()]
+    models = [column.effects for column in plan(blade).values()]
     return references(variant.blade, variant.speeds.tolist(), case.text.compare, models)
 
 
 @cache
 def column(blade: str, name: str) -> tuple[list[Cell], list[Level]]:
     one = plan(blade)[name]
-    return one(CASES[blade][1].speeds.tolist(), core(blade)[one.model])
+    return one(CASES[blade][1].speeds.tolist(), core(blade)[one.effects])
 
 
 def at(blade: str, name: str, omega: float) -> list[Cell]:
@@ -149,7 +149,7 @@ def test_the_surrogate_rises_as_the_papers_blade_does() -> None:
     """Park et al. (2010), Fig. 3: 8 % at 20 rpm, 16.5 % at 30 rpm at most, which imply 1.06 Hz at rest."""
     (rest, _, twenty, thirty) = [
         r.core.modes[0].estimate.value
-        for r in core("park-blade/surrogate")[plan("park-blade/surrogate")["exudyn-tree"].model]
+        for r in core("park-blade/surrogate")[plan("park-blade/surrogate")["exudyn-tree"].effects]
         if isinstance(r, Reference) and r.core.modes[0].estimate
     ]
     assert rest / 6.283185307 == pytest.approx(1.06, abs=0.01)

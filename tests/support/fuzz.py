@@ -235,7 +235,7 @@ BESIDE = {
 
 
 def _run():
-    from southwell.cases.judge.results import Cell, Control, Level, Origin, Planned, Run, Setting, Share
+    from southwell.cases.judge.results import BudgetEntry, Cell, Control, Level, Origin, Planned, Run, Setting
 
     def cell(mode: int, code: str, **more: Any) -> Cell:
         row: dict[str, Any] = {
@@ -279,7 +279,7 @@ def _run():
         "southwell verify beam",
         (Setting("beam", "A beam", "It shows.", "made up", "rpm", {"length": "1 m"}, 1, "", 1e-3),),
         (Control("no Coriolis", "core", "leaves it out", "1 %", "beam", 10.0, ("a: flapwise 1",), 0.01),),
-        (Share("beam", 10.0, "flapwise 1", "discretisation", "lumped mass", 1e-3),),
+        (BudgetEntry("beam", 10.0, "flapwise 1", "discretisation", "lumped mass", 1e-3),),
         (Origin("beam", "a", "e", "t", "r", "s", "q"),),
         (Planned("beam", "a", 1, 2), Planned("beam", "b", 1, 1), Planned("beam", "c", 1, 2)),
     )

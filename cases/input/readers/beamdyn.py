@@ -1,7 +1,7 @@
 """BeamDyn's main file (key points: prebend, sweep, twist) and its blade file (6×6 matrices at stations), old and new.
 
 BeamDyn's axes are x downwind, y to the trailing edge, z along the blade; matrices are about the reference curve, order
-(Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a y-component, both then turned by the
+(Fx, Fy, Fz, Mx, My, Mz), in section axes: z along the tangent, x across it without a y-component, both then rotated by the
 twist (BeamDyn's ``BD_ComputeIniNodalCrv``; positive with the leading edge upwind, as in ElastoDyn). The section axes of
 ``core.blade`` follow from the blade's axes by the smallest rotation, which differs by half the product of the slopes of
 prebend and sweep. Positions and twist between key points are natural cubic splines in z; stations are fractions of the

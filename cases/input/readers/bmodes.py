@@ -1,8 +1,8 @@
 """BModes 3 main files (.bmi) of a blade, with the section properties file they reference.
 
-Section axes are x flapwise (downwind), y to the trailing edge, z along the blade, turned by the structural twist, positive
+Section axes are x flapwise (downwind), y to the trailing edge, z along the blade, rotated by the structural twist, positive
 with the leading edge upwind; offsets are along y, from the reference axis. The mass acts at ``cg_offst`` with principal
-moments of inertia about it in axes turned by ``tw_iner``, stretch and bending at ``tc_offst``, torsion about ``sc_offst``.
+moments of inertia about it in axes rotated by ``tw_iner``, stretch and bending at ``tc_offst``, torsion about ``sc_offst``.
 Shear is rigid, which fixes the centre of torsion: if a shear centre is off the axis, the line of shear centres is used
 as the blade's axis and the other centres are measured from it, as in BModes. Source: G. Bir, *User's Guide to BModes*,
 NREL/TP-500-39133, 2005.
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
 from ..errors import CaseError
 from .elastodyn import complete
-from .matrices import BEAMDYN, about, bending, in_axes, rigid, shearing, turned
+from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
 from .source import OPENFAST_AXES, Mount, Reading, Source
 from .text import Text, fractions, keys, leading, load, table, value, whole, word
 
@@ -87,7 +87,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     mounted = complete(mount or Mount(), stated)
     y_mass, y_tension = -(p["cg_offst"] - p["sc_offst"]), -(p["tc_offst"] - p["sc_offst"])
     stretch = about(bending(p["axial_stff"], p["flp_stff"], p["edge_stff"]), y_tension, 0.0)
-    inertia = turned(section_mass(p["mass_den"], p["flp_iner"], p["edge_iner"]), np.radians(p["str_tw"] - p["tw_iner"]))
+    inertia = rotated(
+        section_mass(p["mass_den"], p["flp_iner"], p["edge_iner"]), np.radians(p["str_tw"] - p["tw_iner"])
+    )
     try:
         blade = Blade(
             name=path.stem,

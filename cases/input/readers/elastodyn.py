@@ -204,7 +204,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     if used:
         largest = ", ".join(f"{name} {max(there[name], key=abs):g} m" for name in used)
         notes += (
-            f"offsets used (largest): {largest}; turned by the structural twist; `offsets = false` or --no-offsets leaves "
+            f"offsets used (largest): {largest}; rotated by the structural twist; `offsets = false` or --no-offsets leaves "
             "them out, as FAST itself does",
         )
     return Reading(blade, Source(NAME, files, axes, notes, left))

@@ -20,7 +20,7 @@ from ....core.blade import Blade, BladeError
 from ..errors import CaseError
 from . import hawc2_htc
 from .elastodyn import complete
-from .matrices import HAWC2, about, bending, fault, in_axes, shearing, turned
+from .matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
 from .source import Mount, Reading, Source
 from .text import ROUNDING, Table, Text, leading, load, table
 
@@ -82,11 +82,11 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     stiffness, mass = _stiffness(found), _mass(found)
     if htc is not None and body is not None:
-        stations, curve, twist, at, (bent, turned) = hawc2_htc.half_chords(body, r)
+        stations, curve, twist, at, (bent, swung) = hawc2_htc.half_chords(body, r)
         stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
         notes.append(
             f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
-            f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(turned):.1g}°"
+            f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(swung):.1g}°"
         )
         notes.append(
             "section planes are perpendicular to the half-chord line, rotated from the blade axes by the smallest angle"
@@ -156,10 +156,10 @@ def _stiffness(p: Table) -> Array:
         for k, matrix in enumerate(full):
             if wrong := fault(matrix):
                 raise CaseError(f"{p.text.at(p.lines[k])}: stiffness: {wrong}")
-        return about(turned(in_axes(full, HAWC2), angle), p["x_e"], p["y_e"])
-    bend = turned(bending(p["E"] * p["A"], p["E"] * p["I_x"], p["E"] * p["I_y"]), angle)
+        return about(rotated(in_axes(full, HAWC2), angle), p["x_e"], p["y_e"])
+    bend = rotated(bending(p["E"] * p["A"], p["E"] * p["I_x"], p["E"] * p["I_y"]), angle)
     ga = p["G"] * p["A"]
-    shear = turned(shearing(p["G"] * p["I_p"], p["k_x"] * ga, p["k_y"] * ga), angle)
+    shear = rotated(shearing(p["G"] * p["I_p"], p["k_x"] * ga, p["k_y"] * ga), angle)
     return about(bend, p["x_e"], p["y_e"]) + about(shear, p["x_sh"], p["y_sh"])
 
 
@@ -168,7 +168,7 @@ def _mass(p: Table) -> Array:
     m, y, z = p["m"], p["x_cg"] - p["x_e"], p["y_cg"] - p["y_e"]
     rotary = np.zeros((len(m), 6, 6))
     rotary[:, 4, 4], rotary[:, 5, 5] = m * p["ri_x"] ** 2, m * p["ri_y"] ** 2
-    rotary = turned(rotary, np.radians(p["pitch"]))
+    rotary = rotated(rotary, np.radians(p["pitch"]))
     rotary[:, 4, 4] -= m * z**2
     rotary[:, 5, 5] -= m * y**2
     rotary[:, 4, 5] += m * y * z

@@ -180,8 +180,8 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     curve, twist = at[:, [2, 0, 1]], np.radians(at[:, 3])
     fine = spline(z)
     bent = np.linalg.norm(CubicSpline(s, curve)(arc) - fine[:, [2, 0, 1]], axis=1).max()
-    turned = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
-    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(turned)))
+    swung = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
+    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(swung)))
 
 
 def _section(command: Command) -> list[float]:

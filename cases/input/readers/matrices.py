@@ -27,7 +27,7 @@ def in_axes(matrix: Array, axes: Array) -> Array:
     return turn @ matrix @ np.swapaxes(turn, -1, -2)
 
 
-def turned(matrix: Array, angle: ArrayLike) -> Array:
+def rotated(matrix: Array, angle: ArrayLike) -> Array:
     """Transform matrices (n, 6, 6) to section axes, from axes rotated by ``angle`` (n,) rad about x (y towards z)."""
     return in_axes(matrix, rotation(0, np.asarray(angle, float)))
 

@@ -257,9 +257,9 @@ def symmetric(upper: Array) -> Array:
 def describe(blade: Blade) -> Sections:
     """Describe a blade by full sections."""
     finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
-    held = np.isinf(blade.root)
+    clamped = np.isinf(blade.root)
     names = ("x", "y", "z", "torsion", "flap", "lag")
-    loose = Springs(**{n: float(k) for n, k, h in zip(names, blade.root, held, strict=True) if not h})
+    loose = Springs(**{n: float(k) for n, k, h in zip(names, blade.root, clamped, strict=True) if not h})
     out = Sections(
         s=blade.stations.tolist(),
         stiffness=finite[:, UPPER[0], UPPER[1]].tolist(),
@@ -272,7 +272,7 @@ def describe(blade: Blade) -> Sections:
         precone_deg=float(np.degrees(blade.precone)),
         pitch_deg=float(np.degrees(blade.pitch)),
     )
-    out = out if held.all() else changed(out, root=loose)
+    out = out if clamped.all() else changed(out, root=loose)
     return changed(out, tip_mass=_body(blade.tip_mass)) if blade.tip_mass.any() else out
 
 

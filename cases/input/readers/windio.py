@@ -1,7 +1,7 @@
 """windIO 1 and 2: a turbine's YAML with 6×6 matrices of the blade.
 
 In both the matrices are about the reference axis, order (shear x, shear y, axial, bending about x, about y, torsion), x
-downwind (to the suction side), y to the trailing edge, z along the blade, in axes turned by the twist, positive with the
+downwind (to the suction side), y to the trailing edge, z along the blade, in axes rotated by the twist, positive with the
 leading edge upwind: BeamDyn's conventions. (windIO 2's text on K11 has x to the trailing edge, which contradicts its
 reference axis, its inertia and its example files; the latter are followed.) ``i_edge`` and ``i_flap`` are about the x
 and y of the reference axis, not of the mass centre, and ``i_cp = −M45`` (windIO's converter from 1 to 2).

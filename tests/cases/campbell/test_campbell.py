@@ -226,7 +226,7 @@ def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> 
     assert shown.axes[0].get_title(loc="left") == f"veering, {np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi:.4g} rpm"
     many = encounters.draw(replace(veering, encounters=veering.encounters * 12), RPM, "close")
     assert many
-    assert len(many.axes) == encounters.MOST
+    assert len(many.axes) == encounters.MAX_PANELS
     assert any("3 more in the table" in text for text in texts(many))
     assert encounters.draw(replace(veering, encounters=()), RPM, "close") is None
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from southwell.cases.judge.pairing import aligned, families, groups, mac, pair, shares, weights
+from southwell.cases.judge.pairing import aligned, families, groups, mac, mass_fractions, pair, weights
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
 
@@ -78,7 +78,7 @@ def test_metres_and_radians_are_weighed_by_mass() -> None:
     """A metre of flap with a whole radian of twist is still flapping: I/ρA = 0.0025 m²."""
     both = shape(FLAP, 1) + shape(TORSION, 1)
     assert families(modes([1.0], [both]), WEIGHT) == ("flapwise",)
-    assert shares(modes([1.0], [both]), WEIGHT)[0, TORSION] == pytest.approx(0.0025 / 1.0025)
+    assert mass_fractions(modes([1.0], [both]), WEIGHT)[0, TORSION] == pytest.approx(0.0025 / 1.0025)
 
 
 @given(TURN, TURN)
@@ -147,7 +147,7 @@ def test_equal_frequencies_are_turned_to_one_motion_each(angle: float) -> None:
     a, b = shape(CHORD, 1), shape(FLAP, 1)
     turned = aligned(modes([10.0, 10.0], [c * a + s * b, -s * a + c * b]), WEIGHT)
     assert sorted(families(turned, WEIGHT)) == ["edgewise", "flapwise"]
-    assert shares(turned, WEIGHT).max(1) == pytest.approx([1.0, 1.0])
+    assert mass_fractions(turned, WEIGHT).max(1) == pytest.approx([1.0, 1.0])
 
 
 def test_an_even_mixture_is_called_mixed() -> None:

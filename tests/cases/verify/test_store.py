@@ -77,7 +77,7 @@ def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
         store.question(column(), [1.0]),
         store.question(column(head=replace(head, version="1.1")), [0.0]),
         store.question(column(head=replace(head, code="other")), [0.0]),
-        store.question(column(model=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
+        store.question(column(effects=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
         store.question(double, 1.0),
         store.question(double, 2.0),
     }

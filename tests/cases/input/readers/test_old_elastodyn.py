@@ -59,7 +59,7 @@ def test_columns_are_where_the_table_says() -> None:
         (0.0, "EdgcgOf", [0, -1, 0]),  # towards the trailing edge: against the motion
         (90.0, "FlpcgOf", [0, 1, 0]),  # feathered, leading edge upwind: the suction side faces the motion
         (90.0, "EdgcgOf", [0, 0, 1]),  # … and the trailing edge is downwind
-        (90.0, "PrecrvRef", [0, 0, 1]),  # in blade axes: not turned by the twist
+        (90.0, "PrecrvRef", [0, 0, 1]),  # in blade axes: not rotated by the twist
         (90.0, "PreswpRef", [0, -1, 0]),
         (90.0, "FlpEAOf", None),  # moves the axis only: the mass stays where it is
     ],
@@ -98,7 +98,7 @@ def test_an_axis_parallel_to_the_pitch_axis_is_a_beam_with_its_mass_off_its_axis
 
 
 def test_the_stations_are_arc_lengths_of_the_axis(tmp_path: Path) -> None:
-    """A straight axis that leans by 3 in 40: √(40² + 3²) m long; its sections are turned with it."""
+    """A straight axis that leans by 3 in 40: √(40² + 3²) m long; its sections are rotated with it."""
     path = table(tmp_path, {"PreswpRef": [0.0, 1.5, 3.0]})
     blade = readers.read(path, MOUNT)
     assert blade.length == pytest.approx(np.hypot(40.0, 3.0), rel=1e-12)

@@ -89,10 +89,10 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
 def test_hawc2_structural_pitch_turns_bending_about_the_elastic_centre(tmp_path: Path) -> None:
     path = copied(tmp_path, ST, "1.000000e-01\t0.000000e+00\t3.0", "1.000000e-01\t9.000000e+01\t3.0", -1)
     found, before = readers.read(path, OFF), readers.read(ST, OFF)
-    turned, plain = sections(found), sections(before)
-    np.testing.assert_allclose(turned.tension_centre, plain.tension_centre, atol=1e-12)
-    np.testing.assert_allclose(turned.EI_flap, plain.EI_edge)
-    np.testing.assert_allclose(turned.EI_edge, plain.EI_flap)
+    rotated, plain = sections(found), sections(before)
+    np.testing.assert_allclose(rotated.tension_centre, plain.tension_centre, atol=1e-12)
+    np.testing.assert_allclose(rotated.EI_flap, plain.EI_edge)
+    np.testing.assert_allclose(rotated.EI_edge, plain.EI_flap)
 
 
 def test_iea_15_in_hawc2_and_in_beamdyn_is_one_blade() -> None:

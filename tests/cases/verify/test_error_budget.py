@@ -11,7 +11,7 @@ from scipy.integrate import trapezoid
 
 from southwell.cases.input import library
 from southwell.cases.judge import results
-from southwell.cases.judge.results import Run, Share
+from southwell.cases.judge.results import BudgetEntry, Run
 from southwell.cases.verify import error_budget, matrix
 from southwell.core.blade import uniform_blade
 from southwell.references import published
@@ -120,15 +120,15 @@ def run() -> Run:
 def test_rounding_is_that_of_the_printed_digits() -> None:
     """Half a unit of the last digit of 11.71, and what core's own extrapolation leaves open."""
     datum = published.load("park2010").series[0].data[0]
-    (bound,) = (s for s in run().shares if s.part == "printed digits" and s.mode == "edgewise 1")
+    (bound,) = (s for s in run().error_budget if s.part == "printed digits" and s.mode == "edgewise 1")
     assert bound.bound
     assert bound.cause == "rounding"
     assert bound.change == pytest.approx(datum.half_unit / datum.value, rel=1e-2)
 
 
 def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
-    rows = [s for s in run().shares if not s.bound]
-    assert "codes, refined" not in {s.part for s in run().shares}  # series bracket their own answers
+    rows = [s for s in run().error_budget if not s.bound]
+    assert "codes, refined" not in {s.part for s in run().error_budget}  # series bracket their own answers
     cells = [replace(c, order=4.0, uncertainty=1e-5 * (1 + k)) for k, c in enumerate(run().cells) if c.mode == 1]
     (bound,) = (s for s in error_budget.uncertain(CASE, rows, cells) if s.part == "codes, refined")
     assert (bound.change, bound.mode, bound.bound) == (
@@ -139,7 +139,7 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
     assert error_budget.uncertain(CASE, (), run().cells) == []
 
 
-def test_shares_survive_the_disk_and_are_shown(tmp_path: Path) -> None:
+def test_the_budget_survives_the_disk_and_is_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results.write(path, run())
     assert results.read(path) == run()
@@ -151,5 +151,5 @@ def test_shares_survive_the_disk_and_are_shown(tmp_path: Path) -> None:
     (inertia,) = (row for row in rows if row["what"] == "no rotary inertia")
     assert inertia["edgewise 3"].startswith("+0.054")
     assert reported.heading(run(), CASE, RAD_S) == "10 rad/s"
-    bare = Share(CASE, 10.0, "edgewise 9", "model form", "x", None)
-    assert reported.rows(replace(run(), shares=(bare,)), CASE)[0]["edgewise 9"] == "no such mode"
+    bare = BudgetEntry(CASE, 10.0, "edgewise 9", "model form", "x", None)
+    assert reported.rows(replace(run(), error_budget=(bare,)), CASE)[0]["edgewise 9"] == "no such mode"
