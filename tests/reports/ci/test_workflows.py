@@ -24,7 +24,7 @@ ACTION = ROOT / "action.yml"
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 GITLAB = ROOT / "docs" / "gitlab-ci.yml"
 BASH = shutil.which("bash")
-SCRIPTS = [ROOT / ".ci" / name for name in ("fuzz", "nightly", "run", "versions")]
+SCRIPTS = [ROOT / ".ci" / name for name in ("every-code", "fuzz", "nightly", "run", "versions")]
 
 
 def load(path: Path) -> dict[Any, Any]:
