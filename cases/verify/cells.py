@@ -28,6 +28,8 @@ FAILED: dict[str, Verdict] = {
 }
 """Verdict of a cell by the kind of failure: a code that takes part and gives no answer has failed."""
 
+DAMPED = 1e-6
+"""Largest damping ratio of a blade's mode that counts as rounding."""
 
 Rows = tuple[list[Cell], list[Level]]
 
@@ -75,6 +77,7 @@ def refined(
         return [failed(head, omega, refinements.failure)], []
     refined_modes = follow(refinements.answers, reference.core.wanted, order, bracket)
     late = f"finer: {refinements.failure.reason}" if refinements.failure else ""
+    doubt = _extra(reference, refinements.answers[-1], refined_modes) or _damped(refinements.answers[-1])
     cells = []
     for i, mine in enumerate(refined_modes):
         cell = _row(head, omega, i, reference, refinements.answers[-1], mine.partner)
@@ -82,11 +85,29 @@ def refined(
             cell = replace(cell, verdict="not applicable", reason=still)
         elif mine.estimate:
             cell = _judged(cell, reference, i, mine, late)
+        if doubt and cell.verdict in ("pass", "known difference"):
+            cell = replace(cell, verdict="inconclusive", reason=_join(doubt, cell.reason))
         cells.append(cell)
     levels = [
         Level(head.case, omega, i + 1, head.code, n, f) for i, mine in enumerate(refined_modes) for n, f in mine.history
     ]
     return cells, levels
+
+
+def _extra(reference: Reference, answer: Modes, refined_modes: Sequence[RefinedMode]) -> str:
+    """The modes of an answer below the highest compared one that are none of core's; empty if there are none."""
+    wanted = reference.core.wanted
+    every = range(len(wanted.reference.frequencies))
+    paired = {one.mode for one in pair(wanted.reference, answer, every, wanted.weight)}
+    top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
+    extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
+    return f"modes at {', '.join(extra)} rad/s are none of core's: spurious, or missing in core?" if extra else ""
+
+
+def _damped(answer: Modes) -> str:
+    """The largest damping ratio of an answer, which a blade, undamped and stable, does not have; empty if it is rounding."""
+    largest = max(answer.damping, key=abs, default=0.0)
+    return f"damping ratio {largest:.2g}: the blade has no damping" if abs(largest) > DAMPED else ""
 
 
 def rounding(mine: Answer, again: Sequence[Answer]) -> Array:

@@ -51,7 +51,18 @@ def _wide(modes: Modes) -> Modes:
     return replace(modes, frequencies=1.6 * modes.frequencies, uncertainty=np.full(len(modes.frequencies), 0.9))
 
 
+def _extra(modes: Modes) -> Modes:
+    """A spurious mode, unlike all others, between the second and the third."""
+    saw = np.zeros_like(modes.shapes[:1])
+    saw[0, 1:, 1:3] = (-1.0) ** np.arange(1, saw.shape[1])[:, None]
+    frequencies = np.insert(modes.frequencies, 2, modes.frequencies[1:3].mean())[: len(modes.frequencies)]
+    shapes = np.concatenate([modes.shapes[:2], saw, modes.shapes[2:]])[: len(modes.frequencies)]
+    return replace(modes, frequencies=frequencies, shapes=shapes)
+
+
 LOST = Fooling("lost", _without_flap)
+EXTRA = Fooling("extra", _extra)
+DAMPED = Fooling("damped", lambda m: replace(m, damping=np.where(np.arange(len(m.frequencies)) == 2, 0.03, 0.0)))
 WIDE = Fooling("wide", _wide)
 WIDE_ONCE = Fooling("wide-once", _wide, levels=(10,))
 BRACKET = Fooling("bracket", _wide, bracket=True)

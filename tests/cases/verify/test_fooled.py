@@ -71,8 +71,24 @@ def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
     found = {c.family: c for c in of("lost")}
     assert found["flapwise"].verdict == "fail"
     assert found["flapwise"].reason.startswith("no partner")
-    assert found["edgewise"].verdict == "pass"
+    assert found["edgewise"].verdict == "inconclusive"  # modes without a shape are none of core's
     assert summary.status(run("LOST")) == 1
+
+
+@pytest.mark.slow
+def test_a_spurious_mode_makes_an_answer_inconclusive() -> None:
+    """Before, core's modes had partners among the others, and all of them passed."""
+    cells = of("extra")
+    assert {c.verdict for c in cells} == {"inconclusive"}
+    assert all("none of core's" in c.reason for c in cells)
+    assert summary.status(run("EXTRA")) == 1
+
+
+@pytest.mark.slow
+def test_a_damped_mode_makes_an_answer_inconclusive() -> None:
+    cells = of("damped")
+    assert {c.verdict for c in cells} == {"inconclusive"}
+    assert all("damping ratio 0.03" in c.reason for c in cells)
 
 
 @pytest.mark.slow
