@@ -3,8 +3,8 @@
 The file has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
 the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
 without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
-settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, and one line about the
-run itself.
+settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, bisections, and one
+line about the run itself.
 """
 
 from collections import Counter
@@ -18,6 +18,7 @@ import msgspec
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..input import atomic
 from . import checks
+from .releases import Bisection
 
 Verdict = Literal[
     "pass", "fail", "inconclusive", "known difference", "estimate", "measured", "not applicable", "not run"
@@ -221,6 +222,7 @@ class Run:
         controls: results of the seeded faults.
         shares: error budget.
         origins: origin of the answers of each column.
+        bisections: first releases that moved a frequency.
         plan: every planned column.
         unfinished: one sentence on what is missing; empty if the run is complete.
     """
@@ -233,6 +235,7 @@ class Run:
     controls: tuple[Control, ...] = ()
     shares: tuple[Share, ...] = ()
     origins: tuple[Origin, ...] = ()
+    bisections: tuple[Bisection, ...] = ()
     plan: tuple[Planned, ...] = ()
     unfinished: str = ""
 
@@ -244,6 +247,7 @@ KINDS: dict[str, type] = {
     "control": Control,
     "share": Share,
     "origin": Origin,
+    "bisection": Bisection,
 }
 """Kind of line → its type, in the order of the file."""
 
@@ -333,6 +337,7 @@ def _unfinished(kinds: list[str], torn: bytes, end: Any) -> str:
         return "the file does not begin with the plan of the run"
     if torn or kinds[-1] != "end" or count["end"] > 1:
         return "the file does not end with the completion record of the run"
-    if end != {kind: count[kind] for kind in KINDS} or count["run"] != 1:
+    whole = isinstance(end, dict) and dict.fromkeys(KINDS, 0) | end  # earlier versions wrote fewer kinds
+    if whole != {kind: count[kind] for kind in KINDS} or count["run"] != 1:
         return "the number of lines differs from that in the completion record"
     return ""

@@ -28,6 +28,7 @@ class Request:
 
     code: str
     folder: str | None
+    overlay: str | None
     guess: dict[str, float]
     mechanisms: list[Mechanism]
 
