@@ -32,65 +32,94 @@ class Change:
     """One frequency with two releases.
 
     Attributes:
-        before, after: cells of the installed and of the other release.
-        relative: the frequency of ``after`` over that of ``before``, minus 1.
-        uncertainty: sum of the relative uncertainties of both; None if one is unknown.
+        before, after: cells of the two releases; None if that release gives no frequency. At least one is given.
+        relative: the frequency of ``after`` over that of ``before``, minus 1; None if one is missing.
+        uncertainty: sum of the relative uncertainties of both; None if one is missing or unknown.
     """
 
-    before: "Cell"
-    after: "Cell"
-    relative: float
+    before: "Cell | None"
+    after: "Cell | None"
+    relative: float | None
     uncertainty: float | None
 
     @property
+    def cell(self) -> "Cell":
+        """A cell with a frequency."""
+        found = self.before or self.after
+        assert found
+        return found
+
+    @property
     def moved(self) -> bool:
-        """Whether it changes by more than its uncertainty."""
-        return self.uncertainty is not None and abs(self.relative) > self.uncertainty
+        """Whether the frequency changes by more than its uncertainty."""
+        return self.relative is not None and self.uncertainty is not None and abs(self.relative) > self.uncertainty
+
+    @property
+    def differs(self) -> bool:
+        """Whether it is moved, or only one of the releases gives it."""
+        return self.moved or self.relative is None
+
+
+def change(before: "Cell | None", after: "Cell | None") -> Change:
+    """The change of a frequency, other than zero, between two answers to the same question; at least one is given."""
+    if not (before and after and before.frequency and after.frequency):
+        return Change(before, after, None, None)
+    sizes = (before.uncertainty, after.uncertainty)
+    known = None if None in sizes else sum(size or 0.0 for size in sizes)
+    return Change(before, after, after.frequency / before.frequency - 1.0, known)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """All answers of a code with two releases.
-
-    Attributes:
-        code, other: columns of the installed and of the other release.
-        changes: one for each frequency that both give.
-        lost: number of frequencies that only the installed release gives.
-        gained: number of frequencies that only the other release gives.
-    """
+    """All frequencies of a code with the installed release (``code``) and with another (``other``): their columns."""
 
     code: str
     other: str
     changes: tuple[Change, ...]
-    lost: int
-    gained: int
+
+    @property
+    def compared(self) -> tuple[Change, ...]:
+        """The frequencies that both releases give."""
+        return tuple(one for one in self.changes if one.relative is not None)
 
     @property
     def moved(self) -> tuple[Change, ...]:
         """The frequencies that moved."""
-        return tuple(change for change in self.changes if change.moved)
+        return tuple(one for one in self.changes if one.moved)
+
+    @property
+    def lost(self) -> tuple[Change, ...]:
+        """The frequencies that only the installed release gives."""
+        return tuple(one for one in self.changes if one.after is None)
+
+    @property
+    def gained(self) -> tuple[Change, ...]:
+        """The frequencies that only the other release gives."""
+        return tuple(one for one in self.changes if one.before is None)
 
     @property
     def largest(self) -> Change | None:
-        """The largest change, of those that moved if any did; None without a change to compare."""
-        return max(self.moved or self.changes, key=lambda change: abs(change.relative), default=None)
+        """The largest change, of those that moved if any did; None if nothing is compared."""
+        return max(self.moved or self.compared, key=lambda one: abs(one.relative or 0.0), default=None)
 
 
 @dataclass(frozen=True)
 class Bisection:
-    """The search for the first release that moves a frequency, on the question of one case, speed and mode.
+    """The first release whose answer to one question (case, speed and mode) is not that of the older release of the run.
 
     Attributes:
         code, other: as in ``Comparison``.
         distribution: the package whose releases were tried.
         case, omega, mode: as in ``results.Cell``.
-        first: the first release whose frequency is not that of ``older``.
-        before: the last one tried before it, whose frequency is.
-        older: the older of the two releases of the run; its frequency is the one that ``first`` is compared with.
-        change: the frequency at ``first`` over that at ``older``, minus 1.
+        first: the release found.
+        before: the last release tried before it; its answer is that of ``older``.
+        older: the older of the two releases of the run.
+        change: the frequency at ``first`` over that at ``older``, minus 1; None if only one of them gives a frequency.
         uncertainty: of this change.
-        tried: number of releases that answered, besides those of the run.
-        skipped: releases between ``before`` and ``first`` that gave no answer, with the reason.
+        answers: whether ``first`` gives a frequency.
+        reason: why ``first``, or ``before``, gives none.
+        tried: number of releases asked, besides those of the run.
+        skipped: releases between ``before`` and ``first`` that could not be asked, with the reason.
     """
 
     code: str
@@ -102,8 +131,10 @@ class Bisection:
     first: str
     before: str
     older: str
-    change: float
-    uncertainty: float
+    change: float | None
+    uncertainty: float | None
+    answers: bool
+    reason: str
     tried: int
     skipped: dict[str, str] = field(default_factory=dict)
 
@@ -112,31 +143,24 @@ def comparisons(run: "Run") -> list[Comparison]:
     """One comparison for each column of another release, in the order of the run."""
     columns: dict[str, dict[tuple[str, float, int], Cell]] = {}
     for cell in run.cells:
-        columns.setdefault(cell.code, {})[cell.case, cell.omega, cell.mode] = cell
+        mine = columns.setdefault(cell.code, {})
+        if cell.frequency:
+            mine[cell.case, cell.omega, cell.mode] = cell
     return [_compared(code, columns.get(installed(code), {}), cells) for code, cells in columns.items() if other(code)]
 
 
 def _compared(
     code: str, before: dict[tuple[str, float, int], "Cell"], after: dict[tuple[str, float, int], "Cell"]
 ) -> Comparison:
-    old, new = ({key for key, cell in cells.items() if cell.frequency} for cells in (before, after))
-    changes = tuple(change(before[key], after[key]) for key in after if key in old & new)
-    return Comparison(installed(code), code, changes, len(old - new), len(new - old))
+    changes = tuple(change(before.get(key), after.get(key)) for key in dict.fromkeys((*before, *after)))
+    return Comparison(installed(code), code, changes)
 
 
-def change(before: "Cell", after: "Cell") -> Change:
-    """The change of a frequency, other than zero, between two cells of the same question."""
-    assert before.frequency
-    assert after.frequency is not None
-    sizes = (before.uncertainty, after.uncertainty)
-    known = None if None in sizes else sum(size or 0.0 for size in sizes)
-    return Change(before, after, after.frequency / before.frequency - 1.0, known)
-
-
-def smallest(moved: Sequence[Change]) -> Change:
+def smallest(changes: Sequence[Change]) -> Change:
     """The change whose question (all modes of one blade at one speed) is answered fastest; of its modes, the largest."""
 
     def cost(one: Change) -> tuple[float, float]:
-        return (one.before.seconds or 0.0) + (one.after.seconds or 0.0), -abs(one.relative)
+        seconds = sum(cell.seconds or 0.0 for cell in (one.before, one.after) if cell)
+        return seconds, -abs(one.relative or 0.0)
 
-    return min(moved, key=cost)
+    return min(changes, key=cost)

@@ -1,8 +1,9 @@
-"""The first release of a code that moves a frequency, found by bisection on one question: one blade, at one speed.
+"""The first release of a code that moves a frequency or loses an answer, by bisection on one blade at one speed.
 
 The releases between the two of a run are halved until two neighbours remain; each step installs one release and asks it
-the one question. This assumes that the frequency does not move back and forth. A release that cannot be installed or
-does not answer is skipped and named.
+the one question. This assumes that the frequency does not move back and forth. A release that cannot be installed is
+skipped and named. If only one of the two releases answers, the first release that does, or does not, is sought;
+otherwise a release that does not answer is skipped, too.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +22,7 @@ from ...references.protocol.overlay import ReleaseError
 from ...references.protocol.process import Limits
 from ...references.protocol.registry import at_release
 from ..input.schema import Case
-from ..judge.releases import Bisection, Change, change, comparisons, smallest
+from ..judge.releases import Bisection, change, comparisons, smallest
 from ..judge.results import Cell, Run
 from . import mechanism_columns
 from .columns import Column, columns
@@ -60,7 +61,9 @@ def bisections(
     limits: Callable[[Case | MechanismCase], Limits],
     tell: Tell,
 ) -> tuple[Bisection, ...]:
-    """One bisection for each code that another release of the run moves, on its fastest question.
+    """One bisection for each column of another release that moves a frequency, or gives or lacks an answer.
+
+    Each uses one question: the fastest of those with a moved frequency, or else with one answer missing.
 
     Args:
         run: the results, with the columns of other releases.
@@ -72,52 +75,84 @@ def bisections(
     known = {code.name: code for code in codes}
     out = []
     for found in comparisons(run):
-        if moved := found.moved:
-            worst = smallest(moved)
-            case = _narrowed(cases, worst)
-            question = Question(case, known[found.code], limits(case), worst.before.mode)
-            out.append(_bisect(worst, question, executor, tell))
+        if differing := found.moved or found.lost + found.gained:
+            one = smallest(differing)
+            case = _narrowed(cases, one.cell)
+            question = Question(case, known[found.code], limits(case), one.cell.mode)
+            ends = [End(known[found.code].version, one.before, _why(run, found.code, one.cell))]
+            ends.append(End(known[found.other].version, one.after, _why(run, found.other, one.cell)))
+            out.append(_bisect(found.other, question, ends, executor, tell))
     return tuple(out)
 
 
-def _bisect(moved: Change, question: Question, executor: Executor, tell: Tell) -> Bisection:
-    old, new = sorted((moved.before, moved.after), key=lambda cell: Version(cell.version))
-    first, before, last = new.version, old.version, change(old, new)
-    todo, tried, skipped = _between(question.code.distribution, before, first, tell), 0, dict[str, str]()
-    ask = _Asker(question, executor)
+def _why(run: Run, code: str, cell: Cell) -> str:
+    """Why a column has no frequency at the speed of a cell."""
+    there = (c for c in run.cells if (c.case, c.omega, c.code) == (cell.case, cell.omega, code))
+    return next((c.reason for c in there if c.frequency is None), "no answer")
+
+
+@dataclass(frozen=True)
+class End:
+    """The answer of a release: its cell, or why there is none; ``skip``: it could not be asked."""
+
+    release: str | None
+    cell: Cell | None = None
+    why: str = ""
+    skip: bool = False
+
+
+def _bisect(other: str, question: Question, ends: Sequence[End], executor: Executor, tell: Tell) -> Bisection:
+    before, first = old, _ = sorted(ends, key=lambda end: Version(str(end.release)))
+    both = all(end.cell for end in ends)
+    code, ask, tried = question.code, _Asker(question, executor), 0
+    todo, skipped = _between(code.distribution, str(before.release), str(first.release), tell), dict[str, str]()
     while todo:
         middle = len(todo) // 2
-        release = todo[middle]
-        what = f"{question.code.name}, {question.code.distribution} {release}"
-        tell(f"bisection: {what}: {question.name}, {question.omega:g} rad/s; {len(todo)} releases left")
-        cell = ask(release)
-        if isinstance(cell, str):
-            tell(f"bisection: {what}: skipped: {cell}")
-            skipped[release] = cell
-            del todo[middle]
+        what = f"bisection: {code.name}, {code.distribution} {todo[middle]}"
+        tell(f"{what}: {question.name}, {question.omega:g} rad/s; releases left: {len(todo)}")
+        here = ask(todo[middle])
+        if here.skip or (both and not here.cell):
+            tell(f"{what}: skipped: {here.why}")
+            skipped[todo.pop(middle)] = here.why
             continue
         tried += 1
-        here = change(old, cell)
-        tell(f"bisection: {what}: {'moved' if here.moved else 'not moved'} ({here.relative:+.1e}, relative)")
-        if here.moved:
-            first, last, todo = release, here, todo[:middle]
+        tell(f"{what}: {_difference(old, here)}")
+        if _differs(old, here):
+            first, todo = here, todo[:middle]
         else:
-            before, todo = release, todo[middle + 1 :]
+            before, todo = here, todo[middle + 1 :]
+    last = change(old.cell, first.cell)
+    limits = [Version(str(end.release)) for end in (before, first)]
     return Bisection(
-        code=question.code.name,
-        other=moved.after.code,
-        distribution=question.code.distribution,
+        code=code.name,
+        other=other,
+        distribution=code.distribution,
         case=question.name,
         omega=question.omega,
         mode=question.mode,
-        first=first,
-        before=before,
-        older=old.version,
+        first=str(first.release),
+        before=str(before.release),
+        older=str(old.release),
         change=last.relative,
-        uncertainty=last.uncertainty or 0.0,
+        uncertainty=last.uncertainty,
+        answers=first.cell is not None,
+        reason="" if both else before.why if first.cell else first.why,
         tried=tried,
-        skipped={k: why for k, why in skipped.items() if Version(before) < Version(k) < Version(first)},
+        skipped={release: why for release, why in skipped.items() if limits[0] < Version(release) < limits[1]},
     )
+
+
+def _differs(old: End, new: End) -> bool:
+    return bool(old.cell or new.cell) and change(old.cell, new.cell).differs
+
+
+def _difference(old: End, new: End) -> str:
+    if not new.cell:
+        return f"no answer: {new.why}"
+    here = change(old.cell, new.cell)
+    if here.relative is None:
+        return "answers"
+    return f"{'moved' if here.moved else 'not moved'}, {here.relative:+.1e} from {old.release}"
 
 
 def _between(distribution: str, older: str, newer: str, tell: Tell) -> list[str]:
@@ -129,14 +164,13 @@ def _between(distribution: str, older: str, newer: str, tell: Tell) -> list[str]
         return []
 
 
-def _narrowed(cases: Sequence[Case | MechanismCase], worst: Change) -> Case | MechanismCase:
-    """The case with the blade and the speed of one change only."""
-    name, speed = worst.before.case, np.array([worst.before.omega])
+def _narrowed(cases: Sequence[Case | MechanismCase], cell: Cell) -> Case | MechanismCase:
+    """The case with the blade and the speed of one cell only."""
     for case in cases:
         for variant in case.variants:
-            if variant.name == name:
-                return replace(case, variants=(replace(variant, speeds=speed),))  # type: ignore[arg-type]
-    raise ValueError(f"{name}: not a case of the run")
+            if variant.name == cell.case:
+                return replace(case, variants=(replace(variant, speeds=np.array([cell.omega])),))  # type: ignore[arg-type]
+    raise ValueError(f"{cell.case}: not a case of the run")
 
 
 class _Asker:
@@ -146,26 +180,24 @@ class _Asker:
         self.question, self.executor = question, executor
         self.core: dict[Effects, Any] = {}
 
-    def __call__(self, release: str) -> Cell | str:
-        """The cell of the mode with a release, or why there is none."""
+    def __call__(self, release: str) -> End:
         q = self.question
         try:
             overlay.install(q.code.distribution, release)
         except ReleaseError as error:
-            return str(error)
+            return End(release, why=str(error), skip=True)
         asked = at_release(q.code.asked, q.code.distribution, release)
-        blades = [v.blade for v in q.case.variants] if isinstance(q.case, Case) else []
-        (code,) = describe([asked], blades)
+        (code,) = describe([asked], [v.blade for v in q.case.variants] if isinstance(q.case, Case) else [])
         if code.failure:
-            return code.failure.reason
+            return End(release, why=code.failure.reason)
         if not overlay.same(code.version, release):
-            return f"reports version {code.version}"
+            return End(release, why=f"reports version {code.version}", skip=True)
         column = _column(q, code)
         if column.model not in self.core:
             self.core |= self.executor.submit(_reference(q.case, column)).result()
         cells = self.executor.submit(_cells, column, [q.omega], self.core[column.model]).result()
-        mine = next((cell for cell in cells if cell.mode == q.mode and cell.frequency is not None), None)
-        return mine or next((cell.reason for cell in cells if cell.reason), "no answer")
+        mine = next((cell for cell in cells if cell.mode == q.mode and cell.frequency), None)
+        return End(release, mine, "" if mine else next((c.reason for c in cells if c.frequency is None), "no answer"))
 
 
 def _column(question: Question, code: Description) -> Column:

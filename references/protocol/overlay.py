@@ -45,6 +45,9 @@ def install(name: str, release: str) -> Path:
         return to
     try:
         _install(f"{name}=={release}", to)
+    except ReleaseError:
+        shutil.rmtree(to, ignore_errors=True)
+        raise
     except OSError as error:
         why = f"cannot be written ({error.strerror}): set SOUTHWELL_CACHE to another folder"
         raise ReleaseError(f"{name}=={release}: {to}: {why}") from error

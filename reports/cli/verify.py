@@ -108,8 +108,8 @@ def command(
     against_version
         `NAME==VERSION`: another release of a package, such as `exudyn==1.11.0` or `exudyn==newest`, is run next to the
         installed one, as one more column for each code that uses it; may be repeated. The release is installed in the cache.
-        The report compares both; if a frequency moves beyond its uncertainty, bisection finds the first release that moves it.
-        A moved frequency does not change the status; a failing cell of either release does.
+        The report compares both. If a frequency moves beyond its uncertainty, or only one release answers, bisection finds
+        the first release that differs. This does not change the status; a failing cell of either release does.
     time_limit
         Seconds for one solution by another code. Default: as the case says, otherwise 300.
     memory_limit

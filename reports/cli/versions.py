@@ -90,10 +90,8 @@ def described(
         try:
             overlay.install(distribution, release)
         except ReleaseError as error:
-            advice = f"`pip index versions {distribution}` lists the releases"
-            raise UsageError(
-                f"--against-version {distribution}=={release}: cannot be installed: {error}: {advice}"
-            ) from error
+            advice = f"is there a wheel for this Python? `pip index versions {distribution}` lists the releases"
+            raise UsageError(f"--against-version {error}: {advice}") from error
         names += [at_release(c.asked, distribution, release) for c in codes if c.distribution == distribution]
     found = describe(names, blades)
     for one in found:

@@ -2,71 +2,71 @@
 
 from ...cases.judge.releases import Bisection, Change, Comparison, comparisons
 from ...cases.judge.results import Run
-from ..shared.units import BY_KEY, RAD_S
 from .evidence import where
 
 
 def headline(run: Run) -> list[str]:
     """One sentence for each code with another release, and one for each first release that moves a frequency."""
-    return [*map(_sentence, comparisons(run)), *found(run)]
+    return [*(_sentence(run, one) for one in comparisons(run)), *found(run)]
 
 
-def _sentence(one: Comparison) -> str:
-    subject = f"{one.other} against {_version(one, other=False)}:"
-    missing = f"; only one of the releases answers {_missing(one)}" if one.lost or one.gained else ""
-    if not one.changes:
-        return f"{subject} nothing compared{missing}."
-    count = f"{len(one.changes)} {'frequency' if len(one.changes) == 1 else 'frequencies'} compared"
+def _sentence(run: Run, one: Comparison) -> str:
+    subject = f"{one.other} against {run.versions.get(one.code, 'the installed release')}:"
+    missing = f"; answered by one release only: {_missing(one)}" if one.lost or one.gained else ""
+    if not one.compared:
+        return f"{subject} no frequency is given by both releases{missing}."
+    count = f"{len(one.compared)} {'frequency' if len(one.compared) == 1 else 'frequencies'} compared"
     moved = f"{len(one.moved)} moved beyond uncertainty" if one.moved else "none moved beyond its uncertainty"
     return f"{subject} {count}, {moved}; largest change {_size(one.largest)}{missing}."
 
 
 def rows(run: Run) -> list[dict[str, str]]:
     """One row for each code with another release."""
+    first = {one.other: one.first for one in run.bisections}
     return [
         {
             "code": one.code,
-            "installed": _version(one, other=False),
-            "other": _version(one, other=True),
-            "frequencies compared": str(len(one.changes)),
+            "installed": run.versions.get(one.code, ""),
+            "other release": run.versions.get(one.other, ""),
+            "frequencies compared": str(len(one.compared)),
             "largest change": _size(one.largest),
-            "where": where(run, one.largest.before) if one.largest else "",
+            "where": where(run, one.largest.cell) if one.largest else "",
             "beyond uncertainty": str(len(one.moved)),
             "answered by one only": _missing(one),
-            "first release that moves it": next((b.first for b in run.bisections if b.other == one.other), ""),
+            "first release that differs": first.get(one.other, ""),
         }
         for one in comparisons(run)
     ]
 
 
 def found(run: Run) -> list[str]:
-    """One sentence for each bisection: the first release that moves a frequency, and those that could not be tried."""
+    """One sentence for each bisection: the first release that differs, and those that could not be tried."""
     return [_first(run, one) for one in run.bisections]
 
 
 def _first(run: Run, one: Bisection) -> str:
-    units = next((BY_KEY[s.unit] for s in run.settings if s.case == one.case), RAD_S)
-    cells = [c for c in run.cells if (c.case, c.omega, c.mode, c.code) == (one.case, one.omega, one.mode, one.code)]
-    place = where(run, cells[0]) if cells else f"{one.case}, {one.code}, mode {one.mode}, {units.at(one.omega)}"
+    columns = (one.code, one.other)
+    mine = (c for c in run.cells if (c.case, c.omega, c.mode) == (one.case, one.omega, one.mode) and c.code in columns)
+    place = next((where(run, cell) for cell in mine), one.case)
+    if one.change is not None:
+        sure = one.uncertainty or 0.0
+        what = f"moves {one.code}: {one.first}, by {one.change:+.1e} ± {sure:.0e} from {one.older}"
+        rest = f"{one.before} does not"
+    elif one.answers:
+        what, rest = f"answers with {one.code}: {one.first}", f"{one.before} does not: {one.reason}"
+    else:
+        what, rest = f"does not answer with {one.code}: {one.first}: {one.reason}", f"{one.before} does"
     skipped = "; ".join(f"{release} ({why})" for release, why in one.skipped.items())
-    return (
-        f"First release of {one.distribution} that moves {one.code}: {one.first}, by {one.change:+.1e} ± "
-        f"{one.uncertainty:.0e} from {one.older} ({place}); {one.before} does not"
-        + (f"; skipped between them: {skipped}." if skipped else ".")
-    )
+    between = f"; skipped between them: {skipped}" if skipped else ""
+    return f"First release of {one.distribution} that {what} ({place}); {rest}{between}."
 
 
 def _size(change: Change | None) -> str:
-    if change is None:
+    if change is None or change.relative is None:
         return ""
     return f"{change.relative:+.1e} ± " + ("unknown" if change.uncertainty is None else f"{change.uncertainty:.0e}")
 
 
 def _missing(one: Comparison) -> str:
     parts = ((one.lost, "installed"), (one.gained, "other"))
-    return ", ".join(f"{count} ({which})" for count, which in parts if count)
-
-
-def _version(one: Comparison, other: bool) -> str:
-    cells = [change.after if other else change.before for change in one.changes]
-    return cells[0].version if cells else (one.other.rpartition("@")[2] if other else "the installed release")
+    return ", ".join(f"{len(changes)} ({which})" for changes, which in parts if changes)
