@@ -65,9 +65,11 @@ def _install(wanted: str, to: Path) -> None:
     shared = _shared()
     limits = to / "constraints.txt"
     limits.write_text("".join(f"{one}=={known}\n" for one, known in shared.items()), encoding="utf-8")
-    options = ["--quiet", "--only-binary=:all:"]
-    resolve = ["--dry-run", "--ignore-installed", "--report", "-", "--constraint", str(limits)]
-    resolved = json.loads(_pip(wanted, "install", *options, *resolve, wanted))
+    options = ["--progress-bar", "off", "--only-binary=:all:"]
+    report = to / "resolved.json"
+    resolve = ["--dry-run", "--ignore-installed", "--report", str(report), "--constraint", str(limits)]
+    _pip(wanted, "install", *options, *resolve, wanted)
+    resolved = json.loads(report.read_text(encoding="utf-8"))
     found = {canonicalize_name(one["metadata"]["name"]): one["metadata"]["version"] for one in resolved["install"]}
     pins = [f"{one}=={known}" for one, known in found.items() if one not in shared]
     _pip(wanted, "install", *options, "--no-deps", "--target", str(to), *pins)
@@ -107,10 +109,18 @@ def _pip(about: str, *words: str) -> str:
     command = [sys.executable, "-P", "-m", "pip", "--disable-pip-version-check", "--no-input", *words]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        lines = done.stderr.strip().splitlines() or ["no message"]
-        said = [line.removeprefix("ERROR:").strip() for line in lines if line.startswith("ERROR")] or lines[-1:]
-        raise ReleaseError(f"{about}: pip {words[0]}: {one_line(said[-1])}")
+        raise ReleaseError(f"{about}: pip {words[0]}: {one_line(_reason(done.stdout, done.stderr))}")
     return done.stdout
+
+
+def _reason(out: str, err: str) -> str:
+    """What pip says about a failure: the dependencies in conflict, or its error."""
+    _, conflict, causes = out.partition("The conflict is caused by:")
+    if conflict:
+        return "conflicting dependencies: " + "; ".join(causes.strip().partition("\n\n")[0].splitlines())
+    lines = err.strip().splitlines() or ["no message"]
+    errors = [line.removeprefix("ERROR:").strip() for line in lines if line.startswith("ERROR")]
+    return errors[-1] if errors else lines[-1]
 
 
 def _shared() -> dict[str, str]:

@@ -3,6 +3,7 @@
 import re
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 from packaging.utils import canonicalize_name
 from packaging.version import VERSION_PATTERN, InvalidVersion, Version
@@ -13,7 +14,7 @@ from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import overlay
 from ...references.protocol.description import Description, describe
 from ...references.protocol.overlay import ReleaseError
-from ...references.protocol.registry import at_release
+from ...references.protocol.registry import RELEASE, at_release
 from .errors import UsageError
 
 NEWEST = "newest"
@@ -30,7 +31,7 @@ def pinned(texts: Sequence[str], codes: Sequence[Description]) -> list[tuple[str
         UsageError: if one has another form, no code of the run uses the distribution, it is the installed release, or
             the newest is not known.
     """
-    return [pin for pin in (_pinned(text, codes) for text in dict.fromkeys(texts)) if pin]
+    return [pin for pin in dict.fromkeys(_pinned(text, codes) for text in texts) if pin]
 
 
 def _pinned(text: str, codes: Sequence[Description]) -> tuple[str, str] | None:
@@ -65,7 +66,7 @@ def _pinned(text: str, codes: Sequence[Description]) -> tuple[str, str] | None:
 def _using(name: str, text: str, codes: Sequence[Description]) -> list[Description]:
     """The codes of the run that use a distribution."""
     there = {canonicalize_name(code.distribution) for code in codes if code.distribution}
-    if mine := [c for c in codes if c.distribution and canonicalize_name(c.distribution) == canonicalize_name(name)]:
+    if mine := [code for code in codes if _uses(code, name)]:
         return mine
     for code, environment in ENVIRONMENTS.items():
         if canonicalize_name(name) in (code, environment.bare[0].partition("==")[0]):
@@ -77,6 +78,10 @@ def _using(name: str, text: str, codes: Sequence[Description]) -> list[Descripti
     raise UsageError(f"--against-version {text}: no code of this run uses the package {name!r}: {advice}")
 
 
+def _uses(code: Description, name: str) -> bool:
+    return bool(code.distribution) and canonicalize_name(code.distribution) == canonicalize_name(name)
+
+
 def described(
     pins: Sequence[tuple[str, str]], codes: Sequence[Description], blades: Sequence[Blade]
 ) -> tuple[Description, ...]:
@@ -85,20 +90,21 @@ def described(
     Raises:
         UsageError: if a release cannot be installed, or a code reports another version than that release.
     """
-    names = []
+    using: dict[str, Description] = {}
     for distribution, release in pins:
         try:
             overlay.install(distribution, release)
         except ReleaseError as error:
             advice = f"is there a wheel for this Python? `pip index versions {distribution}` lists the releases"
             raise UsageError(f"--against-version {error}: {advice}") from error
-        names += [at_release(c.asked, distribution, release) for c in codes if c.distribution == distribution]
-    found = describe(names, blades)
-    for one in found:
+        using |= {at_release(c.asked, distribution, release): c for c in codes if _uses(c, distribution)}
+    found = []
+    for one in describe(list(using), blades):
         release = one.asked.partition("==")[2]
+        found.append(replace(one, name=f"{using[one.asked].name}{RELEASE}{release}"))  # even if it cannot be imported
         if not (one.failure or overlay.same(one.version, release)):
             raise UsageError(
-                f"--against-version {one.asked.partition('@')[2]}: {one.name} reports version {one.version}: its adapter does "
-                "not use the release; its version() must be that of its `distribution`"
+                f"--against-version {one.asked.partition(RELEASE)[2]}: {found[-1].name} reports version {one.version}: "
+                "version() of the adapter must be that of its `distribution`"
             )
-    return found
+    return tuple(found)
