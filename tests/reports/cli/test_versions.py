@@ -54,9 +54,7 @@ def test_what_cannot_be_compared_is_refused_in_one_line(
 
 
 @pytest.mark.slow
-def test_a_run_names_the_first_release_that_moves_a_frequency(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_names_the_first_release_that_moves_a_frequency(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With the newest release; a move is no failure. The command that is recorded has the release itself."""
     status, out, err = verify("--codes exact-beam,tiny:CODE --against-version tinybeam==newest --out out", capsys)
     assert (status, "Traceback" in err) == (0, False)
