@@ -222,9 +222,9 @@ class Run:
         controls: results of the seeded faults.
         shares: error budget.
         origins: origin of the answers of each column.
-        bisections: first releases that moved a frequency.
         plan: every planned column.
         unfinished: one sentence on what is missing; empty if the run is complete.
+        bisections: first releases that differ from another release of the run.
     """
 
     cells: tuple[Cell, ...]
@@ -235,9 +235,9 @@ class Run:
     controls: tuple[Control, ...] = ()
     shares: tuple[Share, ...] = ()
     origins: tuple[Origin, ...] = ()
-    bisections: tuple[Bisection, ...] = ()
     plan: tuple[Planned, ...] = ()
     unfinished: str = ""
+    bisections: tuple[Bisection, ...] = ()
 
 
 KINDS: dict[str, type] = {

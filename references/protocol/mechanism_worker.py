@@ -28,9 +28,9 @@ class Request:
 
     code: str
     folder: str | None
-    overlay: str | None
     guess: dict[str, float]
     mechanisms: list[Mechanism]
+    overlay: str | None = None
 
 
 def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:

@@ -49,16 +49,16 @@ def _first(run: Run, one: Bisection) -> str:
     mine = (c for c in run.cells if (c.case, c.omega, c.mode) == (one.case, one.omega, one.mode) and c.code in columns)
     place = next((where(run, cell) for cell in mine), one.case)
     if one.change is not None:
-        sure = one.uncertainty or 0.0
-        what = f"moves {one.code}: {one.first}, by {one.change:+.1e} ± {sure:.0e} from {one.older}"
-        rest = f"{one.before} does not"
+        size = f"{one.change:+.1e} ± {one.uncertainty or 0.0:.0e}"
+        does, more, rest = "moves it", f", by {size} from {one.older}", f"{one.before} does not"
     elif one.answers:
-        what, rest = f"answers with {one.code}: {one.first}", f"{one.before} does not: {one.reason}"
+        does, more, rest = "answers", "", f"{one.before} does not: {one.reason.rstrip('.')}"
     else:
-        what, rest = f"does not answer with {one.code}: {one.first}: {one.reason}", f"{one.before} does"
+        does, more, rest = "does not answer", f": {one.reason.rstrip('.')}", f"{one.before} does"
     skipped = "; ".join(f"{release} ({why})" for release, why in one.skipped.items())
     between = f"; skipped between them: {skipped}" if skipped else ""
-    return f"First release of {one.distribution} that {what} ({place}); {rest}{between}."
+    first = f"{one.code}: the first release of {one.distribution} that {does} is {one.first}{more} ({place})"
+    return f"{first}; {rest}{between}."
 
 
 def _size(change: Change | None) -> str:

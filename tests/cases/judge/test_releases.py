@@ -85,8 +85,8 @@ def test_the_report_names_both_releases_and_the_first_that_differs() -> None:
     run = Run((OLD, moved(3e-4)), versions={"alpha": "2.1", "alpha@2.2": "2.2"}, bisections=(FOUND,))
     sentences = (
         "alpha@2.2 against 2.1: 1 frequency compared, 1 moved beyond uncertainty; largest change +3.0e-04 ± 4e-06.",
-        "First release of alphabet that moves alpha: 2.1.7, by +3.0e-04 ± 4e-06 from 2.1 (beam, alpha, edgewise 1, "
-        "10 rad/s); 2.1.4 does not; skipped between them: 2.1.5 (no wheel).",
+        "alpha: the first release of alphabet that moves it is 2.1.7, by +3.0e-04 ± 4e-06 from 2.1 (beam, alpha, "
+        "edgewise 1, 10 rad/s); 2.1.4 does not; skipped between them: 2.1.5 (no wheel).",
     )
     assert shown.headline(run) == list(sentences)
     assert headline(run)[-2:] == list(sentences)
@@ -96,7 +96,7 @@ def test_the_report_names_both_releases_and_the_first_that_differs() -> None:
     assert "skipped between them" in text
     silent = replace(FOUND, change=None, uncertainty=None, answers=False, reason="ImportError: gone", skipped={})
     assert shown.found(replace(run, bisections=(silent,))) == [
-        "First release of alphabet that does not answer with alpha: 2.1.7: ImportError: gone (beam, alpha, edgewise 1, "
+        "alpha: the first release of alphabet that does not answer is 2.1.7: ImportError: gone (beam, alpha, edgewise 1, "
         "10 rad/s); 2.1.4 does."
     ]
 

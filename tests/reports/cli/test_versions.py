@@ -59,10 +59,10 @@ def test_a_run_names_the_first_release_that_moves_a_frequency(folder: Path, caps
     status, out, err = verify("--codes exact-beam,tiny:CODE --against-version tinybeam==newest --out out", capsys)
     assert (status, "Traceback" in err) == (0, False)
     assert "tiny@1.3 against 1.0: 4 frequencies compared, 4 moved beyond uncertainty" in out
-    assert "First release of tinybeam that moves tiny: 1.2, by +4.0e-04" in out
+    assert "tiny: the first release of tinybeam that moves it is 1.2, by +4.0e-04" in out
     assert "southwell: bisection: tiny, tinybeam 1.2: moved" in err
     report = (folder / "out" / "report.md").read_text(encoding="utf-8")
-    assert "First release of tinybeam that moves tiny: 1.2" in report.partition("## Versions")[2]
+    assert "the first release of tinybeam that moves it is 1.2, by" in report.partition("## Versions")[2]
     assert "--against-version tinybeam==1.3" in report
     run = results.read(folder / "out" / "results.jsonl")
     assert (run.unfinished, run.versions["tiny"], run.versions["tiny@1.3"]) == ("", "1.0", "1.3")
