@@ -20,7 +20,7 @@ from ...references.protocol import overlay
 from ...references.protocol.description import Description, describe
 from ...references.protocol.overlay import ReleaseError
 from ...references.protocol.process import Limits
-from ...references.protocol.registry import at_release
+from ...references.protocol.registry import at_release, release_of
 from ..input.schema import Case
 from ..judge.releases import Bisection, change, comparisons, smallest
 from ..judge.results import Cell, Run
@@ -75,12 +75,14 @@ def bisections(
     known = {code.name: code for code in codes}
     out = []
     for found in comparisons(run):
-        if differing := found.moved or found.lost + found.gained:
+        code, differing = known[found.code], found.moved or found.lost + found.gained
+        if code.version and differing:  # without an installed release there is nothing to bisect
             one = smallest(differing)
             case = _narrowed(cases, one.cell)
-            question = Question(case, known[found.code], limits(case), one.cell.mode)
-            ends = [End(known[found.code].version, one.before, _why(run, found.code, one.cell))]
-            ends.append(End(known[found.other].version, one.after, _why(run, found.other, one.cell)))
+            question = Question(case, code, limits(case), one.cell.mode)
+            release = release_of(known[found.other].asked)  # its code may not say, if it cannot be imported
+            ends = [End(code.version, one.before, _why(run, found.code, one.cell))]
+            ends.append(End(release, one.after, _why(run, found.other, one.cell)))
             out.append(_bisect(found.other, question, ends, executor, tell))
     return tuple(out)
 
@@ -95,17 +97,17 @@ def _why(run: Run, code: str, cell: Cell) -> str:
 class End:
     """The answer of a release: its cell, or why there is none; ``skip``: it could not be asked."""
 
-    release: str | None
+    release: str
     cell: Cell | None = None
     why: str = ""
     skip: bool = False
 
 
 def _bisect(other: str, question: Question, ends: Sequence[End], executor: Executor, tell: Tell) -> Bisection:
-    before, first = old, _ = sorted(ends, key=lambda end: Version(str(end.release)))
+    before, first = old, _ = sorted(ends, key=lambda end: Version(end.release))
     both = all(end.cell for end in ends)
     code, ask, tried = question.code, _Asker(question, executor), 0
-    todo, skipped = _between(code.distribution, str(before.release), str(first.release), tell), dict[str, str]()
+    todo, skipped = _between(code.distribution, before.release, first.release, tell), dict[str, str]()
     while todo:
         middle = len(todo) // 2
         what = f"bisection: {code.name}, {code.distribution} {todo[middle]}"
@@ -122,7 +124,7 @@ def _bisect(other: str, question: Question, ends: Sequence[End], executor: Execu
         else:
             before, todo = here, todo[middle + 1 :]
     last = change(old.cell, first.cell)
-    limits = [Version(str(end.release)) for end in (before, first)]
+    limits = [Version(end.release) for end in (before, first)]
     return Bisection(
         code=code.name,
         other=other,
@@ -130,9 +132,9 @@ def _bisect(other: str, question: Question, ends: Sequence[End], executor: Execu
         case=question.name,
         omega=question.omega,
         mode=question.mode,
-        first=str(first.release),
-        before=str(before.release),
-        older=str(old.release),
+        first=first.release,
+        before=before.release,
+        older=old.release,
         change=last.relative,
         uncertainty=last.uncertainty,
         answers=first.cell is not None,

@@ -34,7 +34,7 @@ from .interface import (
 )
 from .mechanism_interface import takes_mechanisms
 from .process import Failure, Limits, converse, one_line, raised
-from .registry import RELEASE, UnknownCodeError
+from .registry import RELEASE, UnknownCodeError, release_of
 from .wire import decode_blade, encode
 
 TOGETHER = 2
@@ -102,7 +102,8 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
         again = threads.map(lambda name: _asked({name: where[name]}, shown, limits)[0], alone)
         found |= zip(alone, again, strict=True)
     for one in found.values():
-        if one.failure and one.failure.kind == "unknown" and ":" in one.asked:
+        mistyped = ":" in one.asked and RELEASE not in one.asked  # at another release its imports may be missing
+        if one.failure and one.failure.kind == "unknown" and mistyped:
             raise UnknownCodeError(one.failure.reason)
     return tuple(found[name] for name in names)
 
@@ -133,8 +134,7 @@ def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
 
 def _released(asked: str, name: str) -> str:
     """The name of a code, with the release if another one than the installed was asked for."""
-    _, at, pin = asked.partition(RELEASE)
-    return f"{name}{at}{pin.partition('==')[2]}"
+    return f"{name}{RELEASE}{release_of(asked)}" if RELEASE in asked else name
 
 
 def _described(asked: str, data: dict[str, Any], blades: int) -> Description:

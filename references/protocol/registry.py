@@ -79,6 +79,11 @@ def at_release(name: str, distribution: str, release: str) -> str:
     return f"{name}{RELEASE}{distribution}=={release}"
 
 
+def release_of(name: str) -> str:
+    """The release in such a name; empty for the installed one."""
+    return name.partition(RELEASE)[2].partition("==")[2]
+
+
 def locate(name: str) -> str:
     """Import path ``module:attribute`` of a code.
 

@@ -14,7 +14,7 @@ from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import overlay
 from ...references.protocol.description import Description, describe
 from ...references.protocol.overlay import ReleaseError
-from ...references.protocol.registry import RELEASE, at_release
+from ...references.protocol.registry import RELEASE, at_release, release_of
 from .errors import UsageError
 
 NEWEST = "newest"
@@ -100,7 +100,7 @@ def described(
         using |= {at_release(c.asked, distribution, release): c for c in codes if _uses(c, distribution)}
     found = []
     for one in describe(list(using), blades):
-        release = one.asked.partition("==")[2]
+        release = release_of(one.asked)
         found.append(replace(one, name=f"{using[one.asked].name}{RELEASE}{release}"))  # even if it cannot be imported
         if not (one.failure or overlay.same(one.version, release)):
             raise UsageError(

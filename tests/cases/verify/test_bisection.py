@@ -13,11 +13,11 @@ from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.verify import bisection, columns, matrix, store
 from southwell.references.protocol import overlay
 from southwell.references.protocol.description import Description, describe
-from southwell.references.protocol.process import Limits
+from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.registry import at_release
 from southwell.reports.shared import summary
 
-from ...support import killing, wheelhouse
+from ...support import killing, samples, wheelhouse
 from ...support.wheelhouse import NAME
 
 SAME, MOVED, BROKEN = "FACTOR = 1.0", "FACTOR = 1.0004", "raise ImportError('gone')"
@@ -73,6 +73,29 @@ def test_a_release_that_moves_nothing_is_reported_so(
     assert (len(one.compared), one.moved, found, said) == (4, (), (), [])
     assert one.largest
     assert one.largest.relative == 0.0
+
+
+def test_without_an_installed_release_or_an_importable_other_one_there_is_still_a_result(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The code at the other release fails before it can say its version."""
+    wheelhouse.use(tmp_path, monkeypatch, {"1.0": SAME}, installed="1.0")
+    found = Description("a", "a", distribution=NAME, version="1.0", refused=(None,))
+    lost = replace(found, asked=f"a@{NAME}==1.1", name="a@1.1", version=None, failure=Failure("nonsense", "import"))
+    name = case.variants[0].name
+    mine = samples.cell(case=name, code="a", version="1.0")
+    silent = samples.empty("fail", "import", case=name, code="a@1.1", version="")
+    run, answering = Run((mine, silent)), replace(mine, code="a@1.1", version="1.1")
+    said: list[str] = []
+    with ThreadPoolExecutor(1) as executor:
+
+        def ask(run: Run, *codes: Description) -> tuple[Bisection, ...]:
+            return bisection.bisections(run, [case], codes, executor, lambda _: Limits(), said.append)
+
+        (one,) = ask(run, found, lost)
+        assert (one.before, one.first, one.answers, one.reason) == ("1.0", "1.1", False, "import")
+        absent = replace(mine, frequency=None, mode=0, verdict="not run")
+        assert ask(Run((absent, answering)), replace(found, version=None), replace(lost, version="1.1")) == ()
 
 
 @pytest.mark.slow

@@ -81,6 +81,17 @@ def test_a_release_that_is_not_there_is_not_the_installed_one() -> None:
             describe([name])
 
 
+def test_a_code_that_another_release_breaks_is_described_with_its_failure(wheels: Path) -> None:
+    """Its adapter imports what that release does not have; at the installed release it would be a wrong path."""
+    (wheels.parent / "installed" / "needy.py").write_text("from tinybeam import FACTOR\nfrom tiny import CODE\n")
+    wheelhouse.wheel(wheels, "1.11", "OTHER = 1.0")
+    overlay.install(NAME, "1.11")
+    mine, other = describe(["needy:CODE", at_release("needy:CODE", NAME, "1.11")])
+    assert mine.failure is None
+    assert other.failure
+    assert "cannot import name 'FACTOR'" in other.failure.reason
+
+
 def test_path_files_of_a_release_are_used_before_those_of_the_environment(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
