@@ -124,8 +124,8 @@ def _reason(out: str, err: str) -> str:
 
 
 def _shared() -> dict[str, str]:
-    """Name and version of every installed distribution that Southwell requires, directly or not."""
-    found: dict[str, str] = {}
+    """Name and version of Southwell and of every installed distribution that it requires, directly or not."""
+    found = {"southwell": version("southwell")}
     todo = ["southwell"]
     while todo:
         for text in requires(todo.pop()) or ():

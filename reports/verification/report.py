@@ -95,7 +95,9 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[plain(line) for line in (witnesses.headline(run), controls.headline(run)) if line],
+        remarks=[
+            plain(line) for line in (witnesses.headline(run), controls.headline(run), *releases.found(run)) if line
+        ],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
