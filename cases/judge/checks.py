@@ -14,7 +14,10 @@ UNANSWERED = ("not run", "not applicable", "inconclusive", "fail")
 
 CAUSES = ("discretisation", "model form", "rounding")
 
-LINES = frozenset({"case", "code", "family", "version", "role", "shares", "control", "area", "mode", "cause", "part"})
+LINES = frozenset(
+    {"case", "code", "family", "version", "role", "shares", "control", "area", "mode", "cause", "part"}
+    | {"other", "distribution", "first", "before", "older"}
+)
 """Fields limited to one line."""
 
 

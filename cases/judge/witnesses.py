@@ -7,7 +7,8 @@ wide, does not count; neither does a measurement.
 Witnesses with the same engine, theory or rotation terms may share an error, so they form one *group*, even if only a
 third witness links them. A code with core's discretisation or frames confirms that core solves its model, not that the
 model is right, and belongs to no group. The same applies to a code that declares no origin
-(``references.protocol.interface.Independence``), and to a table that supports only a wider target than the case's.
+(``references.protocol.interface.Independence``), to another release of a code, and to a table that supports only a
+wider target than the case's.
 
 Independent witnesses have two targets: that of the case (0.1 %, the paper's), and ``FINE`` for the extrapolated values
 of their refinements.
@@ -18,13 +19,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...references.protocol.interface import CORE
+from . import releases
 from .results import Cell, Origin, Run
 from .verdict import judge
 
 FINE = 1e-4
 """Relative difference within which independent models should agree after extrapolation."""
 
-Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
+Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared", "other release"]
 Standing = Literal["agrees", "explained", "open", "disagrees"]
 
 MATTERS = ("engine", "theory", "rotation")
@@ -38,7 +40,8 @@ class Witness:
     Attributes:
         name: name of the code or the printed series.
         kind: a foreign code, a closed form of this package, a printed series (``coarse`` if its target is wider than
-            the case's), a code that shares something with core, or one that does not declare what it shares.
+            the case's), a code that shares something with core, one that does not declare what it shares, or another
+            release of a code.
         standing: at the case's target.
         fine: at ``FINE``; None if not applicable (core's model, too few printed digits).
         answers: number of frequencies it gave.
@@ -86,6 +89,8 @@ def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float 
 
 
 def _kind(cell: Cell, origin: Origin | None) -> Kind:
+    if releases.other(cell.code):
+        return "other release"
     if cell.shares != "nothing" or (origin and CORE in (*_key(origin), origin.sections)):
         return "core's model"
     if not origin:

@@ -98,9 +98,7 @@ def run(
     unique(cases, known, user_results)
     check(user_results, blades, [c.name for c in known])
     shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
-    plans = [
-        task for case in cases for task in _tasks(case, known, shown, _limits(case, seconds, memory), user_results)
-    ]
+    plans = [task for case in cases for task in _tasks(case, known, shown, limits(case, seconds, memory), user_results)]
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -175,7 +173,8 @@ def _answer(future: Future[Any]) -> Any:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")
 
 
-def _limits(case: Case | MechanismCase, seconds: float | None, memory: int) -> Limits:
+def limits(case: Case | MechanismCase, seconds: float | None, memory: int) -> Limits:
+    """Limits of one solution by a foreign code: those given, or the time limit of the case."""
     compare = case.described.text.compare if isinstance(case, MechanismCase) else case.text.compare
     return Limits(seconds or (compare.time_limit if compare else Limits.seconds), memory)
 
@@ -190,11 +189,11 @@ def _tasks(
     """Tasks for each blade of a case, or for its mechanism."""
     if isinstance(case, MechanismCase):
         (turning,) = case.variants
-        made = _dated(mechanism_columns.columns(case, codes, limits), codes)
+        made = dated(mechanism_columns.columns(case, codes, limits), codes)
         return [_Task(turning, made, partial(mechanism_columns.references, turning), turning.count)]
     out = []
     for v in case.variants:
-        made = _dated(columns(case, v, shown[v.name], limits), codes)
+        made = dated(columns(case, v, shown[v.name], limits), codes)
         made += tuple(added_columns(v, user_results, case.text.compare))
         kept = [column.effects for column in made]
         question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, kept)
@@ -202,7 +201,7 @@ def _tasks(
     return out
 
 
-def _dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
+def dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
     """The columns with the digests of the sources of their codes."""
     sources = {one.name: "" if one.failure else adapter(one.asked) for one in codes}
     return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)

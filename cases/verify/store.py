@@ -21,7 +21,7 @@ from typing import Any
 import msgspec
 
 from ...core import compiled_files
-from ...references.isolated import cache
+from ...references.protocol.cache import cache
 from ...references.protocol.process import Failure
 from ..judge.results import Cell
 from . import stored

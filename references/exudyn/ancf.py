@@ -47,6 +47,7 @@ class ExudynAncf:
     levels = (10, 20, 40)
     order = 4
     hint = ex.HINT
+    distribution = ex.DISTRIBUTION
 
     def version(self) -> str | None:
         """Version of Exudyn."""

@@ -74,6 +74,7 @@ class ExudynMechanism:
     shares: Shares = "mechanical model"
     effects = ALL_EFFECTS
     hint = ex.HINT
+    distribution = ex.DISTRIBUTION
     independence = Independence(
         engine="Exudyn",
         theory="tree of rigid bodies, loops by generic joints",

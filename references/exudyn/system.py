@@ -17,11 +17,13 @@ Array = NDArray[np.float64]
 
 HINT = install.extra("codes")
 
+DISTRIBUTION = "exudyn"
+
 
 def version() -> str | None:
     """Version of Exudyn, without importing it; None if it is not installed."""
     try:
-        return metadata.version("exudyn")
+        return metadata.version(DISTRIBUTION)
     except metadata.PackageNotFoundError:
         return None
 

@@ -44,6 +44,7 @@ class ExudynTree:
     levels = (24, 48, 96)
     order = 2
     hint = ex.HINT
+    distribution = ex.DISTRIBUTION
 
     def version(self) -> str | None:
         """Version of Exudyn."""

@@ -15,6 +15,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from ..protocol.cache import cache
 from ..protocol.interface import CodeError
 from .hashes import PLATFORMS, requirements
 
@@ -66,13 +67,6 @@ FRAME3DD = Environment("frame3dd", ("numpy==1.26.4",), ("wisdem==4.2.9",), "fram
 
 ENVIRONMENTS = {e.name: e for e in (SHARPY, FRAME3DD)}
 """Environments by the code's name."""
-
-
-def cache() -> Path:
-    """Folder of all environments: ``SOUTHWELL_CACHE``, or ``southwell`` in the user's cache folder."""
-    if own := os.environ.get("SOUTHWELL_CACHE"):
-        return Path(own)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "southwell"
 
 
 def install(environment: Environment) -> Path:

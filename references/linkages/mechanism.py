@@ -68,6 +68,7 @@ class PinocchioMechanism:
     shares: Shares = "nothing"
     effects = ALL_EFFECTS
     hint = install.extra("codes")
+    distribution = "pin"
     independence = Independence(
         engine="Pinocchio",
         theory="tree of rigid bodies, loops by products of directions",
@@ -78,7 +79,7 @@ class PinocchioMechanism:
     def version(self) -> str | None:
         """Version of Pinocchio."""
         try:
-            return version("pin")
+            return version(self.distribution)
         except PackageNotFoundError:
             return None
 

@@ -82,6 +82,7 @@ class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     digits: Annotated[int, Meta(ge=1, le=17)]
     bracket: bool
     independence: Origin | None
+    distribution: Line
     version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
     page: str
 

@@ -77,6 +77,7 @@ class Code(Protocol):
     * ``motions: tuple[Motion, ...]``, the motions in its shapes, if not all four. Modes dominated by another motion are
       not compared; any other mode must have a partner;
     * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket, which refinement does not narrow;
+    * ``distribution: str``, the installed package whose release is ``version()``; it allows ``verify --against-version``;
     * ``digits: int``, for a code that prints, or converges to, fewer than nine significant digits of its frequencies.
       Results that should be equal, such as those of a blade in other units, are then compared to this precision.
     """
@@ -119,6 +120,11 @@ def motions(code: Code) -> tuple[Motion, ...]:
 def brackets(code: Code) -> bool:
     """Whether it declares that its uncertainty is a rigorous bracket."""
     return bool(getattr(code, "bracket", False))
+
+
+def distribution(code: object) -> str:
+    """The installed package that gives its version; empty if it declares none."""
+    return getattr(code, "distribution", "")
 
 
 def independence(code: object) -> Independence | None:

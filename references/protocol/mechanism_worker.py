@@ -30,6 +30,7 @@ class Request:
     folder: str | None
     guess: dict[str, float]
     mechanisms: list[Mechanism]
+    overlay: str | None = None
 
 
 def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:

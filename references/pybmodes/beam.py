@@ -96,11 +96,12 @@ class PyBModes:
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
     hint = install.extra("codes")
+    distribution = "pybmodes"
 
     def version(self) -> str | None:
         """Version of pyBModes, without importing it."""
         try:
-            return metadata.version("pybmodes")
+            return metadata.version(self.distribution)
         except metadata.PackageNotFoundError:
             return None
 

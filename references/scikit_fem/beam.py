@@ -47,11 +47,12 @@ class ScikitFemBeam:
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
     hint = install.extra("codes")
+    distribution = "scikit-fem"
 
     def version(self) -> str | None:
         """Version of scikit-fem, without importing it."""
         try:
-            return metadata.version("scikit-fem")
+            return metadata.version(self.distribution)
         except metadata.PackageNotFoundError:
             return None
 

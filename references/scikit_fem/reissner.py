@@ -53,11 +53,12 @@ class ScikitFemReissner:
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4
     hint = install.extra("codes")
+    distribution = "scikit-fem"
 
     def version(self) -> str | None:
         """Version of scikit-fem, without importing it."""
         try:
-            return metadata.version("scikit-fem")
+            return metadata.version(self.distribution)
         except metadata.PackageNotFoundError:
             return None
 

@@ -23,7 +23,7 @@ from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Level, Planned, Run, Setting
-from ...cases.verify import journal, lumping, matrix, mechanism_case, store, user_results
+from ...cases.verify import bisection, journal, lumping, matrix, mechanism_case, store, user_results
 from ...cases.verify import names as names_of
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
@@ -38,7 +38,7 @@ from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
 from ..shared.units import RPM, Units
-from . import campbell_options, measured
+from . import campbell_options, measured, versions
 from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, writing
 from .errors import UsageError
 from .mounting import Mounting
@@ -63,6 +63,7 @@ def command(
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
+    against_version: tuple[str, ...] = (),
     time_limit: Positive | None = None,
     memory_limit: Positive = Limits.memory / 2**30,
     rpm: str | None = None,
@@ -104,6 +105,11 @@ def command(
         Seeded faults to run: `fast` (seven), `all`, `none`, or names separated by commas.
     witnesses
         Number of independent groups that must confirm each blade. Default: as the case says; none with `--codes`.
+    against_version
+        `NAME==VERSION`: another release of a package, such as `exudyn==1.11.0` or `exudyn==newest`, is run next to the
+        installed one, as one more column for each code that uses it; may be repeated. The release is installed in the cache.
+        The report compares both. If a frequency moves beyond its uncertainty, or only one release answers, bisection finds
+        the first release that differs. This does not change the status; a failing cell of either release does.
     time_limit
         Seconds for one solution by another code. Default: as the case says, otherwise 300.
     memory_limit
@@ -128,6 +134,8 @@ def command(
     names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
     blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
     known = describe(names, [v.blade for v in blades])
+    pins = versions.pinned(against_version, known)
+    known += versions.described(pins, known, [v.blade for v in blades])
     defaults = measured.defaults(data_uncertainty, input_uncertainty)
     files = [measured.user_results(text, defaults) for text in add]
     measured.check(files, data_uncertainty, input_uncertainty)
@@ -136,6 +144,7 @@ def command(
     options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
     options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
     options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
+    options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
     plain = not (rpm or omega or changes or decks.mount != Mount())
     line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
     about = Run(
@@ -219,10 +228,13 @@ def _solve(
         scratch.mkdir()
         with watch:
             done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
+            moved = bisection.bisections(
+                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.tell
+            )
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
         controls = tuple(found[name] for name in seeded)
-        run = replace(done, levels=levels, controls=controls)
+        run = replace(done, levels=levels, controls=controls, bisections=moved)
         run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)

@@ -48,6 +48,10 @@ class Watch:
     ) -> None:
         self.bar.stop()
 
+    def tell(self, line: str) -> None:
+        """Print a line above the bar."""
+        self.console.print(f"southwell: {line}", markup=False, soft_wrap=True)
+
     def show(self, step: Step) -> None:
         """Update the progress."""
         running = ", ".join(step.running)

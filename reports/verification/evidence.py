@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
+from ...cases.judge import releases
 from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
@@ -10,6 +11,7 @@ from ..shared.units import BY_KEY, RAD_S, Units
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
     "measured data (neither confirm nor contradict)": lambda c: c.role == "measured",
+    "other releases of the codes below": lambda c: releases.other(c.code),
     "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
     "printed tables": lambda c: c.role == "table",
     "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
@@ -19,7 +21,7 @@ KINDS: dict[str, Callable[[Cell], bool]] = {
 }
 """Kinds of evidence; a cell counts as the first that matches.
 
-The second and third kinds check the answer, the fourth only the implementation.
+The third and fourth kinds check the answer, the fifth only the implementation.
 """
 
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}

@@ -18,7 +18,7 @@ from ..shared.paths import file_name
 from ..shared.style import save
 from ..shared.summary import SYMBOL, amount, broad, column, columns
 from ..shared.units import BY_KEY, Units
-from . import bench, closed_forms_figure, controls, error_budget, evidence, lumped, witnesses
+from . import bench, closed_forms_figure, controls, error_budget, evidence, lumped, releases, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 
@@ -95,7 +95,9 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[plain(line) for line in (witnesses.headline(run), controls.headline(run)) if line],
+        remarks=[
+            plain(line) for line in (witnesses.headline(run), controls.headline(run), *releases.found(run)) if line
+        ],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -105,6 +107,8 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         short=[plain(line) for line in witnesses.missing(run)],
         controls=_plainly(controls.overview(run)),
         lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
+        releases=_plainly(releases.rows(run)),
+        moved=[plain(line) for line in releases.found(run)],
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",
@@ -125,7 +129,7 @@ def headline(run: Run) -> list[str]:
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
-    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run), *releases.headline(run)]
     return [line for line in lines if line]
 
 
