@@ -11,7 +11,7 @@ of a solid that continues on both sides and is loaded at its ends. The six mean 
 section; a full clamp would prevent both, which is an effect of the solid's end and not of its sections.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -175,8 +175,3 @@ def inside(solid: CurvedSolid, at: float, across: tuple[int, int], stub: float =
         force = hexahedra.tangent(part) @ own
         energy += own.T @ force
     return Slice(2 * h, energy, -force.reshape(3, -1, 6)[:, : len(layer(bricks, 0))])
-
-
-def mirrored(solid: CurvedSolid, *fields: str) -> CurvedSolid:
-    """The solid with the sign of some of its fields changed."""
-    return replace(solid, **{name: -getattr(solid, name) for name in fields})
