@@ -33,7 +33,7 @@ with the square of chord over wavelength, and is within the target for the modes
 Venant's tractions, which leave its section free to warp and contract; the numbers are written by
 southwell.cases.condense.curved_solid.
 """
-source = "Southwell, computed: cases/condense/curved_solid.py (method: V. Giavotto et al., Computers and Structures 16 (1983) 403)"
+source = "computed by cases/condense/curved_solid.py; method: V. Giavotto et al., Computers and Structures 16 (1983) 403"
 
 [speeds]
 rad_s = [{speeds}]

@@ -7,8 +7,9 @@ static moments differ from zero. Fibres lie in the plane of the chord at an angl
 torsion.
 
 The root is held by tractions of St Venant, the nodal forces between two sections inside a blade, which are those at the root
-of a solid that continues on both sides and is loaded at its ends. The six mean motions on which they do work are zero. The root may warp and contract, as the theory of beams assumes of every
-section; a full clamp would prevent both, which is an effect of the solid's end and not of its sections.
+of a solid that continues on both sides and is loaded at its ends. The six mean motions on which they do work are zero. The
+root may warp and contract, as the theory of beams assumes of every section; a full clamp would prevent both, which is an
+effect of the solid's end and not of its sections.
 """
 
 from dataclasses import dataclass
@@ -28,8 +29,8 @@ from .mesh import Bricks
 Array = NDArray[np.float64]
 
 STUB = 4.0
-"""Length of solid on either side of a slice, in chords. The effect of how its ends are loaded falls by a factor of 14 per chord;
-after four it is 5e-5 of the stiffness."""
+"""Length of solid on either side of a slice, in chords. The effect of how its ends are loaded falls by a factor of 14 per
+chord; after four it is 5e-5 of the stiffness."""
 
 PER_CHORD = 6
 """Elements along a length of one chord."""
@@ -77,12 +78,18 @@ class CurvedSolid:
         along = 0.5 * (sine(a - b) + sine(a + b))
         return np.stack([along, 0.5 * (versine(a - b) + versine(a + b)), versine(b)], axis=-1)
 
+    def place(self, s: Array) -> Array:
+        """(k, 3) the same points from the rotor's axis, m."""
+        out = self.curve(s)
+        out[:, 0] += self.hub_radius
+        return out
+
     def twisted(self, s: Array) -> Array:
         """(k,) twist, rad, at arc lengths ``s`` (k,), m."""
         return _linear(self.twist, s / self.length)
 
     def axes(self, s: Array) -> Array:
-        """(k, 3, 3) section axes in columns: the blade's, rotated by the smallest rotation of x onto the tangent, then twisted."""
+        """(k, 3, 3) section axes in columns: the blade's, turned by the smallest rotation of x onto the tangent, then twisted."""
         a, b = self.sweep * s / self.length, self.prebend * s / self.length
         t = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
         across = np.cross([1.0, 0.0, 0.0], t)
@@ -99,13 +106,14 @@ class CurvedSolid:
 
     def bricks(self, s: Array, across: tuple[int, int]) -> Bricks:
         """Hexahedra with layers of corners at arc lengths ``s`` (nx+1,), m, and ``across`` elements in a section."""
-        eta, zeta = (np.linspace(0.0, 1.0, n + 1) for n in across)
-        y, z = np.broadcast_arrays(*self.section(s[:, None, None], eta[:, None], zeta))
+        eta, zeta = (np.linspace(0.0, 1.0, 2 * n + 1) for n in across)
+        at = np.empty(2 * len(s) - 1)
+        at[::2], at[1::2] = s, 0.5 * (s[1:] + s[:-1])
+        y, z = np.broadcast_arrays(*self.section(at[:, None, None], eta[:, None], zeta))
         local = np.stack([np.zeros_like(y), y, z], axis=-1)
-        middles = np.empty(2 * len(s) - 1)
-        middles[::2], middles[1::2] = s, 0.5 * (s[1:] + s[:-1])
-        place = self.curve(s) + [self.hub_radius, 0.0, 0.0]
-        return Bricks(place[:, None, None] + np.einsum("sij,sabj->sabi", self.axes(s), local), self.axes(middles))
+        axes, place = self.axes(at), self.place(at)
+        nodes = place[:, None, None] + np.einsum("sij,sabj->sabi", axes, local)
+        return Bricks(nodes[::2, ::2, ::2], axes, nodes)
 
 
 def _linear(ends: tuple[float, float], share: Array) -> Array:
@@ -158,7 +166,9 @@ class Slice:
 
 
 @cache
-def inside(solid: CurvedSolid, at: float, across: tuple[int, int], stub: float = STUB, per_chord: int = PER_CHORD) -> Slice:
+def inside(
+    solid: CurvedSolid, at: float, across: tuple[int, int], stub: float = STUB, per_chord: int = PER_CHORD
+) -> Slice:
     """The slice around the arc length ``at`` (m) of a solid that goes on for ``stub`` chords on both sides.
 
     ``across`` are the elements in a section, ``per_chord`` those along a length of one chord.

@@ -90,7 +90,7 @@ def _other_mount(blade: Blade) -> str:
 
 
 def _off(given: Array, expected: Array, allowed: float) -> str:
-    """Description of the largest difference of section matrices (k, 6, 6), relative to their diagonals, if above ``allowed``."""
+    """The largest difference of section matrices (k, 6, 6), relative to their diagonals, in words, if above ``allowed``."""
     size = np.sqrt(np.diagonal(expected, axis1=1, axis2=2))
     off = np.abs(given - expected) / (size[:, :, None] * size[:, None])
     if np.nan_to_num(off, nan=np.inf).max() <= allowed:

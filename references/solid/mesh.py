@@ -1,6 +1,7 @@
 """A solid blade as a block of hexahedra, for any finite element code: mesh, clamp, and mean motion of sections.
 
-Elements have straight edges (trilinear geometry), so the geometry is the same for 8, 20 or 27 nodes per element.
+Elements of a straight blade have straight edges (trilinear geometry), so the geometry is the same for 8, 20 or 27 nodes per
+element.
 """
 
 from collections.abc import Callable, Sequence
@@ -36,10 +37,12 @@ class Bricks:
             of a layer along the span have the same x, unless the blade is curved.
         axes: (2nx+1, 3, 3) section axes in columns, which an orthotropic material follows, at the layers of nodes; empty:
             the blade's axes.
+        nodes: (2nx+1, 2ny+1, 2nz+1, 3) m, of curved elements; empty: edges are straight.
     """
 
     corners: Array
     axes: Array = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    nodes: Array = field(default_factory=lambda: np.zeros((0, 1, 1, 3)))
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -49,6 +52,8 @@ class Bricks:
 
     def lattice(self) -> Array:
         """(2nx+1, 2ny+1, 2nz+1, 3) nodes: the corners and the midpoints of edges, faces and elements."""
+        if len(self.nodes):
+            return self.nodes
         out = self.corners
         for axis in range(3):
             a = np.moveaxis(out, axis, 0)
@@ -59,7 +64,8 @@ class Bricks:
 
     def part(self, start: int, stop: int) -> "Bricks":
         """The layers of elements from ``start`` to before ``stop`` along the span."""
-        return Bricks(self.corners[start : stop + 1], self.axes[2 * start : 2 * stop + 1])
+        within = slice(2 * start, 2 * stop + 1)
+        return Bricks(self.corners[start : stop + 1], self.axes[within], self.nodes[within])
 
 
 def blade(

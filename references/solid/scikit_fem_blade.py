@@ -23,7 +23,6 @@ from .known import ACROSS, recognised
 from .materials import Orthotropic
 from .mesh import Bricks, clamped
 
-
 Array = NDArray[np.float64]
 
 COARSE = 20
@@ -95,7 +94,7 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
         u, _ = hexahedra.steady(coarse, omega, hexahedra.motions(coarse, hold))
         along = CubicSpline(np.linspace(0.0, 1.0, 2 * COARSE + 1), u.reshape(3, 2 * COARSE + 1, -1), axis=1)
         start = along(np.linspace(0.0, 1.0, 2 * layers + 1)).ravel()
-    places = solid.curve(STATIONS * solid.length) + [solid.hub_radius, 0.0, 0.0]
+    places = solid.place(STATIONS * solid.length)
     step = 2 * layers // (len(STATIONS) - 1)
     sections = [(layer(bricks, k * step), place) for k, place in enumerate(places)]
     return hexahedra.modes(bricks, solid.material, omega, count, held, sections=sections, start=start)
