@@ -89,7 +89,7 @@ class CurvedSolid:
         return _linear(self.twist, s / self.length)
 
     def axes(self, s: Array) -> Array:
-        """(k, 3, 3) section axes in columns: the blade's, turned by the smallest rotation of x onto the tangent, then twisted."""
+        """(k, 3, 3) section axes in columns: the blade's, turned as little as brings x onto the tangent, then twisted."""
         a, b = self.sweep * s / self.length, self.prebend * s / self.length
         t = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=-1)
         across = np.cross([1.0, 0.0, 0.0], t)
