@@ -62,12 +62,16 @@ def beam(solid: CurvedSolid, stations: int = STATIONS) -> Blade:
     )
 
 
+def head(solid: CurvedSolid) -> str:
+    """All of a solid's case but the table ``blade``."""
+    return TEXT.format(name=solid.name, speeds=", ".join(map(str, SPEEDS)), modes=MODES)
+
+
 def write(solid: CurvedSolid, path: Path) -> None:
     """Write the case of a solid as TOML."""
-    text = TEXT.format(name=solid.name, speeds=", ".join(map(str, SPEEDS)), modes=MODES)
     southwell_toml.write(beam(solid), path)
-    _, _, blade = path.read_text().partition("\n\n")
-    atomic.write(path, f"{text}\n{blade}")
+    _, _, blade = path.read_text(encoding="utf-8").partition("\n\n")
+    atomic.write(path, f"{head(solid)}\n{blade}")
 
 
 if __name__ == "__main__":

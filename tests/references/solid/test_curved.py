@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from southwell.cases import data
 from southwell.cases.condense import curved_solid
 from southwell.cases.input import library
 from southwell.core import solve
@@ -130,6 +132,8 @@ def test_the_file_has_the_sections_of_the_solid() -> None:
     np.testing.assert_allclose(blade.stiffness[some] / scale, found / scale, atol=1e-7)
     np.testing.assert_allclose(blade.mass, identified.mass(CURVED, blade.stations), atol=1e-12)
     assert len(blade.stations) == curved_solid.STATIONS
+    text = (Path(next(iter(data.__path__))) / "curved-solid.toml").read_text(encoding="utf-8")
+    assert text.startswith(curved_solid.head(CURVED))
     assert (np.abs(found / scale) > 1e-3).all()
     assert (np.abs((found / scale)[:, TORSION, BEND_Y]) > 0.3).all()
 
