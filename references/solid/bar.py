@@ -97,7 +97,7 @@ def bar(of: Blade, elements: int) -> tuple[Bricks, Orthotropic]:
     shear_y, shear_z = (float(min(GA[0] / (COWPER * area), RIGID * young)) for GA in (at.GA_y, at.GA_z))
     x = of.hub_radius + np.linspace(0.0, of.length, elements + 1)
     shear = (shear_y, shear_z, max(shear_y, shear_z))
-    material = Orthotropic((young,) * 3, (0.0,) * 3, shear, float(at.mass[0]) / area)
+    material = Orthotropic((young, young, young), (0.0, 0.0, 0.0), shear, float(at.mass[0]) / area)
     return blade(x, chord, thickness, across=ACROSS), material
 
 

@@ -16,9 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import scipy.sparse as ss
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
 from ...core.condense import ties
@@ -138,15 +136,15 @@ def loaded(solid: CurvedSolid, bricks: Bricks) -> Array:
     freedoms = np.concatenate([last + d * n for d in range(3)])
     frame = np.eye(4)
     frame[:3, 3] = [solid.hub_radius, 0.0, 0.0]
-    R = ties.motion(*(part[freedoms] for part in hexahedra.freedoms(body)), frame)
+    points, directions = hexahedra.freedoms(body)
+    R = ties.motion(points[freedoms], directions[freedoms], frame)
     area = np.tile(hexahedra.mass(body).sum(axis=1)[last], 3)
     force = np.zeros((3 * n, 6))
     force[freedoms] = np.linalg.solve((R.T * area) @ R, R.T * area).T
     free = np.ones(3 * n, bool)
     free[np.concatenate([layer(bricks, 0) + d * n for d in range(3)])] = False
     u = np.zeros((3 * n, 6))
-    factor = splu(ss.csc_matrix(K[free][:, free]), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    u[free] = factor.solve(force[free])
+    u[free] = hexahedra.factored(K[free][:, free]).solve(force[free])
     return u
 
 
@@ -175,7 +173,7 @@ def inside(
     """
     h = float(_linear(solid.chord, np.array(at / solid.length))) / per_chord
     n = int(np.ceil(stub * per_chord)) + 1
-    bricks = solid.bricks(at + h * np.arange(-n, n + 1), across)
+    bricks = solid.bricks(at + h * np.arange(-n, n + 1.0), across)
     u = loaded(solid, bricks).reshape(3, -1, 6)
     energy, force = np.zeros((6, 6)), np.zeros(0)
     for start in (n - 1, n):

@@ -82,13 +82,14 @@ def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     element = fem.ElementHex2()
     i, j, k = np.rint(fem.Basis(straight, element, intorder=2).doflocs).astype(int)
     lattice = bricks.lattice()
-    place = np.ravel_multi_index((i, j, k), lattice.shape[:3])
+    place: Any = np.ravel_multi_index((i, j, k), lattice.shape[:3])
     order = np.empty(i.size, dtype=np.intp)
     order[place] = np.arange(i.size)
     mesh = fem.MeshHex2(np.ascontiguousarray(lattice[i, j, k].T), straight.t)
     along = int(np.abs(straight.mapping().DF(np.full((3, 1), 0.5))[0, :, 0, 0]).argmax())
     basis = fem.Basis(mesh, element, quadrature=_points(along))
-    slopes = np.stack([shape[0].grad for shape in basis.basis]).transpose(2, 3, 0, 1)
+    gradients: list[Any] = [shape[0].grad for shape in basis.basis]
+    slopes = np.stack(gradients).transpose(2, 3, 0, 1)
     moduli = material.moduli
     if len(bricks.axes) and isinstance(material, Orthotropic):
         own = np.repeat(bricks.axes.reshape(-1, 9), i.size // len(bricks.axes), axis=0)[place]
@@ -140,7 +141,8 @@ def internal_force(s: Solid, u: Array) -> Array:
     F, S = _deformed(s, u)
     P = F @ S * s.volume[:, :, None, None]
     force = np.einsum("eqaI,eqiI->iea", s.slopes, P, optimize=True)
-    return np.concatenate([np.bincount(s.own.ravel(), part.ravel(), len(s.nodes)) for part in force])
+    parts: list[Array] = [np.bincount(s.own.ravel(), part.ravel(), len(s.nodes)).astype(float) for part in force]
+    return np.concatenate(parts)
 
 
 def mass(s: Solid) -> ss.csr_array:
@@ -194,15 +196,17 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
         clamp: which displacements are fixed, see ``mesh``; or ``tractions`` (3n, 6): nodal forces that do no work, so that
             six mean motions are fixed.
     """
-    one = ss.eye_array(3 * len(s.nodes), format="csc")
+    one = ss.csc_array(ss.eye_array(3 * len(s.nodes)))
     if callable(clamp):
         return ss.csr_array(one[:, ~fixed_by(clamp, s.nodes).T.ravel()])
     near = np.flatnonzero(np.abs(clamp).max(axis=1))
-    _, _, pivot = scipy.linalg.qr(clamp[near].T, mode="economic", pivoting=True)
+    factors: Any = scipy.linalg.qr(clamp[near].T, mode="economic", pivoting=True)
+    pivot = factors[2]
     follow, lead = near[pivot[:6]], near[pivot[6:]]
     ratio = ss.coo_array(-np.linalg.solve(clamp[follow].T, clamp[lead].T))
     others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=one.shape)
-    return ss.csr_array((one + others)[:, np.setdiff1d(np.arange(one.shape[1]), follow)])
+    kept = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
+    return ss.csr_array(ss.csc_array(one + others)[:, kept])
 
 
 def steady(s: Solid, omega: float, free: Any, start: Array | None = None) -> tuple[Array, Any]:
@@ -226,14 +230,20 @@ def steady(s: Solid, omega: float, free: Any, start: Array | None = None) -> tup
     raise CodeError(f"omega: {omega:g} rad/s: no steady state of the solid found; lower the speed, or check the units")
 
 
+def factored(matrix: Any) -> Any:
+    """SuperLU's factors of a symmetric sparse matrix, without exchange of rows, which would fill them."""
+    return splu(
+        ss.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+
+
 def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
     """As ``steady``, from displacements ``u``; no stiffness if Newton's method does not converge."""
     place = s.nodes.T.ravel()
     for _ in range(NEWTON):
         K = ss.csc_array(tangent(s, u) - across)
         out_of_balance = free.T @ (across @ (place + u) - internal_force(s, u))
-        reduced = ss.csc_array(free.T @ K @ free)
-        factor: Any = splu(reduced, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        factor = factored(free.T @ K @ free)
         step = free @ factor.solve(out_of_balance)
         if np.abs(step).max() <= 1e-10 * np.abs(place).max():
             return u, K

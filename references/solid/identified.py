@@ -25,7 +25,8 @@ def stiffness(
     The other arguments are those of ``curved.inside``.
     """
     compliance = np.stack([_compliance(solid, float(at), across, stub, per_chord) for at in s])
-    return np.linalg.inv(0.5 * (compliance + compliance.transpose(0, 2, 1)))
+    out: Array = np.linalg.inv(0.5 * (compliance + compliance.transpose(0, 2, 1)))
+    return out
 
 
 def _compliance(solid: CurvedSolid, at: float, across: tuple[int, int], stub: float, per_chord: int) -> Array:

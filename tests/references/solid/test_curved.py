@@ -24,7 +24,9 @@ from southwell.references.solid.scikit_fem_blade import CODE, modes
 
 pytestmark = pytest.mark.skipif(hexahedra.version() is None, reason=f"not installed: {hexahedra.HINT}")
 
-STEEL = Orthotropic((2.1e11,) * 3, (0.3,) * 3, (2.1e11 / 2.6,) * 3, 7850.0)
+SHEAR = 2.1e11 / 2.6
+
+STEEL = Orthotropic((2.1e11, 2.1e11, 2.1e11), (0.3, 0.3, 0.3), (SHEAR, SHEAR, SHEAR), 7850.0)
 
 SIDE = 0.05
 
@@ -92,7 +94,7 @@ def square() -> np.ndarray:
 
 def test_sections_of_a_square_bar() -> None:
     """E A, E I about the offset line, G J = 0.140577 G a⁴ (St Venant) about the centroid; offset couplings E A y."""
-    E, G, area, y = 2.1e11, 2.1e11 / 2.6, SIDE**2, -0.2 * SIDE
+    E, G, area, y = 2.1e11, SHEAR, SIDE**2, -0.2 * SIDE
     S = np.linalg.inv(square())
     assert 1 / S[TORSION, TORSION] == pytest.approx(0.140577 * G * SIDE**4, rel=2e-3)
     assert 1 / S[BEND_Z, BEND_Z] == pytest.approx(E * SIDE**4 / 12, rel=1e-3)
