@@ -10,7 +10,8 @@ from ...core.condense import condensation, ties
 from ...core.condense.segments import Segment
 from ...core.space import spatial as sp
 from ...references.solid import hexahedra
-from ...references.solid.mesh import Bricks, Material, blade
+from ...references.solid.materials import Material
+from ...references.solid.mesh import Bricks, blade
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -109,6 +109,8 @@ def _adapter(name: str, what: str, size: str, make: Any, trial: Trial = PARK) ->
 
 REST = Trial("park-cantilever", (0.0,), ("exact-beam",))
 
+SOLID = Trial("curved-solid", (0.0,), ("scikit-fem-solid",))
+
 FAULTS = (
     _adapter("frequencies in Hz", "frequencies in Hz are read as rad/s", "factor 2π", answered(_times(1 / (2 * np.pi)))),
     _adapter("frequencies squared", "eigenvalues are read as frequencies", "factors",
@@ -154,6 +156,11 @@ FAULTS = (
     Fault("one Gauss point per element", "adapter", "a finite element's matrices are integrated with one point", "factors",
           ((registry, "locate", _found_at("southwell.cases.faults.one_point:CODE", "scikit-fem")),),
           Trial("park-cantilever", (10.0,), ("scikit-fem",))),
+    Fault("sweep turned round", "adapter", "the solid of a curved blade is swept to the other side", "several percent",
+          ((registry, "locate", _found_at("southwell.cases.faults.mirrored_solid:SWEEP", "scikit-fem-solid")),), SOLID),
+    Fault("fibres turned round", "adapter", "the fibres of a solid blade lie at the opposite angle: bend–twist coupling",
+          "several percent",
+          ((registry, "locate", _found_at("southwell.cases.faults.mirrored_solid:FIBRES", "scikit-fem-solid")),), SOLID),
     Fault("unsupported() raises", "adapter", "the adapter raises instead of refusing", "no answer",
           ((registry, "locate", _found_at("southwell.cases.faults.raising:UNSUPPORTED")),), PARK),
     Fault("version() raises", "adapter", "the adapter raises instead of returning its version", "no answer",

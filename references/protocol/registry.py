@@ -31,6 +31,7 @@ OURS = {
     "drake": "southwell.references.joint_chains.drake:CODE",
     "mujoco": "southwell.references.joint_chains.mujoco:CODE",
     "pybmodes": "southwell.references.pybmodes.beam:CODE",
+    "scikit-fem-solid": "southwell.references.solid.scikit_fem_blade:CODE",
     "calculix": "southwell.references.solid.calculix_blade:CODE",
     "sharpy": "southwell.references.isolated.sharpy:CODE",
     "frame3dd": "southwell.references.isolated.frame3dd:CODE",
@@ -173,10 +174,11 @@ CAPS = {
     "sharpy": 96,
     "frame3dd": 100,
     "scikit-fem-reissner": 96,
+    "scikit-fem-solid": 80,
 }
 """Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes and
 scikit-fem-reissner dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
-coordinates)."""
+coordinates); solids have hundreds of freedoms per layer of nodes."""
 
 
 class Refinable(Protocol):

@@ -14,7 +14,6 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +25,8 @@ from ...core.condense.ties import FiniteElements
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError
-from .mesh import TWENTY, Bricks, Clamp, Material, fixed_by, mean_motions
+from .materials import Material, Orthotropic
+from .mesh import TWENTY, Bricks, Clamp, fixed_by, mean_motions
 
 FACE = TWENTY[[0, 3, 7, 4, 11, 19, 15, 16]][:, 1:]
 """The 8 nodes of an element's face towards the root, by lattice position across: corners, then mid-edges."""
@@ -40,22 +40,6 @@ EFFECTS = Effects(coriolis=False)
 """The effects it includes."""
 
 TIMEOUT = 600.0
-
-
-@dataclass(frozen=True)
-class Orthotropic:
-    """Equal Young's modulus along x, y and z, zero Poisson's ratio, and separate shear moduli along y and z.
-
-    Attributes:
-        young: Pa.
-        shear_y, shear_z: Pa, of the planes x–y and x–z; the plane of the section has the larger of the two.
-        density: kg/m³.
-    """
-
-    young: float
-    shear_y: float
-    shear_z: float
-    density: float
 
 
 def version() -> str | None:
@@ -172,9 +156,8 @@ def deck(places: Index, nodes: Array, material: Material | Orthotropic) -> list[
 def _elastic(material: Material | Orthotropic) -> list[str]:
     if isinstance(material, Material):
         return ["*ELASTIC", f"{material.young:.12g},{material.poisson:.12g}"]
-    shear = (material.shear_y, material.shear_z)
-    first = [*[material.young] * 3, 0.0, 0.0, 0.0, *shear]
-    return ["*ELASTIC,TYPE=ENGINEERING CONSTANTS", ",".join(f"{v:.12g}" for v in first), f"{max(shear):.12g}"]
+    first = (*material.young, *material.poisson, *material.shear[:2])
+    return ["*ELASTIC,TYPE=ENGINEERING CONSTANTS", ",".join(f"{v:.12g}" for v in first), f"{material.shear[2]:.12g}"]
 
 
 @contextmanager

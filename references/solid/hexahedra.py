@@ -1,19 +1,23 @@
 """Solid blades of 27-node hexahedra by scikit-fem: matrices for condensation, and modes of the whole rotating solid.
 
 St Venant–Kirchhoff material in the total Lagrangian form: with F the deformation gradient and E = ½(FᵀF − 1),
-``S = λ tr(E) 1 + 2μ E`` and ``P = F S`` (J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element
+``S = C E`` and ``P = F S`` (J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element
 Analysis*, 2008, §6.4). In axes that rotate with the hub, the equations about the steady state are
 ``M q̈ + 2Ω M B q̇ + (K_T + Ω² M B²) q = 0`` with ``B = e_z ×`` at every node: centrifugal prestress and its geometric
-stiffness are in K_T, spin softening and Coriolis forces follow from M alone.
+stiffness are in K_T, spin softening and Coriolis forces follow from M alone. The stiffness has two Gauss points along the
+span and three in each other direction: with three, elements longer than thick are too stiff in bending (O. C. Zienkiewicz,
+R. L. Taylor and J. M. Too, Int. J. Numer. Meth. Engng 3 (1971) 275). No motion is without energy.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 import scipy.sparse as ss
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
@@ -23,13 +27,18 @@ from ...core.modes import Modes
 from ..protocol import install
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
-from .mesh import Bools, Bricks, Clamp, Material, fixed_by, mean_motions
+from .materials import Material, Orthotropic, rotated
+from .mesh import Bricks, Clamp, fixed_by, mean_motions, means
 
 Array = NDArray[np.float64]
 
 HINT = install.extra("codes")
 
 NEWTON = 12
+"""Iterations of Newton's method."""
+
+STEPS = ((1.0,), (0.1, 0.4, 1.0))
+"""Shares of the centrifugal load, one after the other; the second way for blades that straighten much."""
 
 
 def version() -> str | None:
@@ -48,16 +57,24 @@ class Solid:
         basis: scikit-fem's, of 27-node hexahedra.
         order: (n,) index in the basis of each node of the block's lattice.
         nodes: (n, 3) the lattice, m.
-        material: its material.
+        density: kg/m³.
+        moduli: C (e, q, 3, 3, 3, 3), Pa, in blade axes, at each point of each element.
+        own: (e, 27) the nodes of each element.
+        slopes: (e, q, 27, 3) gradients of their shape functions, 1/m, at the points of the stiffness.
+        volume: (e, q) volume that each point represents, m³.
     """
 
     basis: Any
     order: NDArray[np.intp]
     nodes: Array
-    material: Material
+    density: float
+    moduli: Array
+    own: NDArray[np.intp]
+    slopes: Array
+    volume: Array
 
 
-def solid(bricks: Bricks, material: Material) -> Solid:
+def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     """Build the fields of a block."""
     import skfem as fem
 
@@ -65,67 +82,84 @@ def solid(bricks: Bricks, material: Material) -> Solid:
     element = fem.ElementHex2()
     i, j, k = np.rint(fem.Basis(straight, element, intorder=2).doflocs).astype(int)
     lattice = bricks.lattice()
+    place: Any = np.ravel_multi_index((i, j, k), lattice.shape[:3])
     order = np.empty(i.size, dtype=np.intp)
-    order[np.ravel_multi_index((i, j, k), lattice.shape[:3])] = np.arange(i.size)
-    corner = np.rint(straight.p / 2.0).astype(int)
-    mesh = fem.MeshHex(np.ascontiguousarray(bricks.corners[tuple(corner)].T), straight.t)
-    return Solid(fem.Basis(mesh, element, intorder=4), order, lattice.reshape(-1, 3), material)
+    order[place] = np.arange(i.size)
+    mesh = fem.MeshHex2(np.ascontiguousarray(lattice[i, j, k].T), straight.t)
+    along = int(np.abs(straight.mapping().DF(np.full((3, 1), 0.5))[0, :, 0, 0]).argmax())
+    basis = fem.Basis(mesh, element, quadrature=_points(along))
+    gradients: list[Any] = [shape[0].grad for shape in basis.basis]
+    slopes = np.stack(gradients).transpose(2, 3, 0, 1)
+    moduli = material.moduli
+    if len(bricks.axes) and isinstance(material, Orthotropic):
+        own = np.repeat(bricks.axes.reshape(-1, 9), i.size // len(bricks.axes), axis=0)[place]
+        axes = np.stack([basis.interpolate(entry) for entry in own.T], axis=-1)
+        moduli = rotated(moduli, axes.reshape(*axes.shape[:-1], 3, 3))
+    moduli = np.broadcast_to(moduli, (*slopes.shape[:2], 3, 3, 3, 3))
+    full, nodes = fem.Basis(mesh, element, intorder=4), lattice.reshape(-1, 3)
+    return Solid(full, order, nodes, material.density, moduli, place[basis.element_dofs.T], slopes, basis.dx)
+
+
+def _points(along: int) -> tuple[Array, Array]:
+    """Gauss points (3, 18) of the unit cube and their weights (18,): two in the direction ``along``, three in the others."""
+    rules = [np.polynomial.legendre.leggauss(2 if axis == along else 3) for axis in range(3)]
+    places, weights = (np.meshgrid(*parts, indexing="ij") for parts in zip(*rules, strict=True))
+    return np.stack([0.5 * (1.0 + p.ravel()) for p in places]), np.prod(weights, axis=0).ravel() / 8.0
+
+
+CHUNK = 64
+"""Elements whose matrices are integrated together."""
 
 
 def tangent(s: Solid, u: Array | None = None) -> ss.csr_array:
     """Tangent stiffness (3n, 3n) at displacements ``u`` (3n,) m, or undeformed.
 
-    The tangent moduli are ``A_iIjJ = δ_ij S_IJ + λ F_iI F_jJ + μ (b_ij δ_IJ + F_iJ F_jI)``, b = F Fᵀ.
+    The tangent moduli are ``A_iIjJ = δ_ij S_IJ + F_iK C_KIMJ F_jM``.
     """
-    import skfem as fem
-
     F, S = _deformed(s, u)
-    lam, mu = s.material.lame
-    one = np.eye(3)[..., None, None]
-    form = fem.BilinearForm(lambda p, q, w: np.einsum("IJeq,Ieq,Jeq->eq", w.moduli, q.grad, p.grad))
-    blocks: list[list[Any]] = [[None] * 3 for _ in range(3)]
-    for i in range(3):
-        for j in range(i, 3):
-            A = lam * F[i][:, None] * F[j] + mu * (F[i] * F[j][:, None] + (F[i] * F[j]).sum(0) * one)
-            blocks[i][j] = _ordered(s, form.assemble(s.basis, moduli=A + S if i == j else A))
-            blocks[j][i] = blocks[i][j].T
-    return ss.csr_array(ss.block_array(blocks))
+    count, points, size, _ = s.slopes.shape
+    out = np.empty((count, 3 * size, 3 * size))
+    for start in range(0, count, CHUNK):
+        e = slice(start, start + CHUNK)
+        A = np.einsum("eqiK,eqKIMJ,eqjM->eqIijJ", F[e], s.moduli[e], F[e], optimize=True)
+        A[:, :, :, range(3), range(3)] += S[e][:, :, :, None]
+        A *= s.volume[e, :, None, None, None, None]
+        n = len(A)
+        right = A.reshape(n, points, 27, 3) @ s.slopes[e].swapaxes(2, 3)
+        left = s.slopes[e].transpose(0, 2, 1, 3).reshape(n, size, 3 * points)
+        whole = (left @ right.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
+        out[e] = whole.transpose(0, 2, 1, 3, 4).reshape(n, 3 * size, 3 * size)
+    total = len(s.nodes)
+    own = np.concatenate([s.own + d * total for d in range(3)], axis=1)
+    rows, columns = (np.broadcast_to(part, out.shape).ravel() for part in (own[:, :, None], own[:, None]))
+    K = ss.csr_array(ss.coo_array((out.ravel(), (rows, columns)), shape=(3 * total, 3 * total)))
+    return ss.csr_array(0.5 * (K + K.T))
 
 
 def internal_force(s: Solid, u: Array) -> Array:
     """Internal forces (3n,), N, at displacements ``u`` (3n,), m."""
-    import skfem as fem
-
     F, S = _deformed(s, u)
-    form = fem.LinearForm(lambda q, w: np.einsum("Ieq,Ieq->eq", w.stress, q.grad))
-    P = np.einsum("iKeq,KIeq->iIeq", F, S)
-    return np.concatenate([form.assemble(s.basis, stress=P[i])[s.order] for i in range(3)])
+    P = F @ S * s.volume[:, :, None, None]
+    force = np.einsum("eqaI,eqiI->iea", s.slopes, P, optimize=True)
+    parts: list[Array] = [np.bincount(s.own.ravel(), part.ravel(), len(s.nodes)).astype(float) for part in force]
+    return np.concatenate(parts)
 
 
 def mass(s: Solid) -> ss.csr_array:
     """Mass matrix (n, n), kg, the same for each displacement component."""
     import skfem as fem
 
-    rho = s.material.density
-    return _ordered(s, fem.BilinearForm(lambda p, q, w: rho * p * q).assemble(s.basis))
-
-
-def _ordered(s: Solid, matrix: Any) -> ss.csr_array:
-    return ss.csr_array(matrix)[s.order][:, s.order]
+    rho = s.density
+    return ss.csr_array(fem.BilinearForm(lambda p, q, w: rho * p * q).assemble(s.basis))[s.order][:, s.order]
 
 
 def _deformed(s: Solid, u: Array | None) -> tuple[Array, Array]:
-    """F and S (3, 3, elements, points)."""
-    shape = s.basis.dx.shape
-    F = np.broadcast_to(np.eye(3)[..., None, None], (3, 3, *shape)).copy()
+    """F and S (elements, points, 3, 3)."""
+    F = np.broadcast_to(np.eye(3), (*s.slopes.shape[:2], 3, 3))
     if u is not None:
-        for i, part in enumerate(u.reshape(3, -1)):
-            own = np.empty_like(part)
-            own[s.order] = part
-            F[i] += s.basis.interpolate(own).grad
-    E = 0.5 * (np.einsum("iIeq,iJeq->IJeq", F, F) - np.eye(3)[..., None, None])
-    lam, mu = s.material.lame
-    return F, lam * np.trace(E) * np.eye(3)[..., None, None] + 2.0 * mu * E
+        F = F + np.einsum("iea,eqaI->eqiI", u.reshape(3, -1)[:, s.own], s.slopes, optimize=True)
+    E = 0.5 * (F.swapaxes(2, 3) @ F - np.eye(3))
+    return F, np.einsum("eqIJKL,eqKL->eqIJ", s.moduli, E)
 
 
 def freedoms(s: Solid) -> tuple[Array, NDArray[np.intp]]:
@@ -154,31 +188,81 @@ def lumped_by_part(bricks: Bricks, material: Material, cuts: NDArray[np.intp]) -
     return out.reshape(len(cuts) - 1, -1)
 
 
-def steady(s: Solid, omega: float, fixed: Bools) -> tuple[Array, Any]:
+def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
+    """Motions (3n, m) that a clamp leaves free, in columns.
+
+    Args:
+        s: the solid.
+        clamp: which displacements are fixed, see ``mesh``; or ``tractions`` (3n, 6): nodal forces that do no work, so that
+            six mean motions are fixed.
+    """
+    one = ss.csc_array(ss.eye_array(3 * len(s.nodes)))
+    if callable(clamp):
+        return ss.csr_array(one[:, ~fixed_by(clamp, s.nodes).T.ravel()])
+    near = np.flatnonzero(np.abs(clamp).max(axis=1))
+    factors: Any = scipy.linalg.qr(clamp[near].T, mode="economic", pivoting=True)
+    pivot = factors[2]
+    follow, lead = near[pivot[:6]], near[pivot[6:]]
+    ratio = ss.coo_array(-np.linalg.solve(clamp[follow].T, clamp[lead].T))
+    others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=one.shape)
+    kept = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
+    return ss.csr_array(ss.csc_array(one + others)[:, kept])
+
+
+def steady(s: Solid, omega: float, free: Any, start: Array | None = None) -> tuple[Array, Any]:
     """Displacements (3n,) of the steady state, and the stiffness there including spin softening, by Newton's method.
+
+    ``free`` are the free ``motions``, ``start`` displacements near the steady state, if known.
 
     Raises:
         CodeError: if no steady state is found.
     """
     across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
-    place, free = s.nodes.T.ravel(), ~fixed.T.ravel()
-    u = np.zeros_like(place)
+    place = s.nodes.T.ravel()
+    for shares in STEPS:
+        u, K = np.zeros_like(place) if start is None else start, None
+        for share in shares:
+            u, K = _balanced(s, share * across, free, u)
+            if K is None:
+                break
+        if K is not None:
+            return u, K
+    raise CodeError(f"omega: {omega:g} rad/s: no steady state of the solid found; lower the speed, or check the units")
+
+
+def factored(matrix: Any) -> Any:
+    """SuperLU's factors of a symmetric sparse matrix, without exchange of rows, which would fill them."""
+    return splu(
+        ss.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+
+
+def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
+    """As ``steady``, from displacements ``u``; no stiffness if Newton's method does not converge."""
+    place = s.nodes.T.ravel()
     for _ in range(NEWTON):
         K = ss.csc_array(tangent(s, u) - across)
-        out_of_balance = (across @ (place + u) - internal_force(s, u))[free]
-        step = np.zeros_like(u)
-        factor: Any = splu(K[free][:, free], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-        step[free] = factor.solve(out_of_balance)
+        out_of_balance = free.T @ (across @ (place + u) - internal_force(s, u))
+        factor = factored(free.T @ K @ free)
+        step = free @ factor.solve(out_of_balance)
         if np.abs(step).max() <= 1e-10 * np.abs(place).max():
             return u, K
         u = u + step
         if not np.abs(u).max() < np.abs(place).max():
             break
-    raise CodeError(f"omega: {omega:g} rad/s: no steady state of the solid found; lower the speed, or check the units")
+    return u, None
 
 
 def modes(
-    bricks: Bricks, material: Material, omega: float, count: int, clamp: Clamp, *, coriolis: bool = True
+    bricks: Bricks,
+    material: Material | Orthotropic,
+    omega: float,
+    count: int,
+    clamp: Clamp | Array,
+    *,
+    coriolis: bool = True,
+    sections: Sequence[tuple[NDArray[np.intp], Array]] = (),
+    start: Array | None = None,
 ) -> Modes:
     """The lowest modes of a solid blade in steady rotation at ``omega`` (rad/s); shapes are the sections' mean motions.
 
@@ -187,24 +271,25 @@ def modes(
         material: its material.
         omega: rotor speed, rad/s.
         count: number of modes.
-        clamp: which displacements are fixed, see ``mesh``.
+        clamp: which displacements are fixed, see ``motions``.
         coriolis: whether to include Coriolis forces.
+        sections: of a curved blade, at ``STATIONS``; see ``mesh.means``.
+        start: displacements (3n,) near the steady state, if known.
 
     Raises:
         CodeError: no stable steady state at this speed.
     """
     begun = time.perf_counter()
     s = solid(bricks, material)
-    fixed = fixed_by(clamp, s.nodes)
-    free = ~fixed.T.ravel()
-    _, K = steady(s, omega, fixed)
+    free = motions(s, clamp)
+    _, K = steady(s, omega, free, start)
     m = mass(s)
     B = ss.csr_array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     M = ss.kron(ss.eye_array(3), m, format="csc")
     C = ss.kron(B, 2.0 * omega * m if coriolis else 0.0 * m, format="csc")
-    M, C, K = (matrix[free][:, free] for matrix in (M, C, K))
+    M, C, K = (free.T @ matrix @ free for matrix in (M, C, K))
     frequencies, vectors = gyroscopic_modes(M, C, K, count)
-    q = np.zeros((len(free), vectors.shape[1]), complex)
-    q[free] = vectors
-    shapes = mean_motions(s.nodes, m.sum(axis=1), q.reshape(3, len(s.nodes), -1))
+    q = (free @ vectors).reshape(3, len(s.nodes), -1)
+    weights = m.sum(axis=1)
+    shapes = means(s.nodes, weights, q, sections) if sections else mean_motions(s.nodes, weights, q)
     return Modes(omega, frequencies, shapes, bricks.counts[0], seconds=time.perf_counter() - begun)

@@ -1,10 +1,11 @@
-"""A solid blade as a block of hexahedra, for any finite element code: mesh, material, clamp, and mean motion of sections.
+"""A solid blade as a block of hexahedra, for any finite element code: mesh, clamp, and mean motion of sections.
 
-Elements have straight edges (trilinear geometry), so the geometry is the same for 8, 20 or 27 nodes per element.
+Elements of a straight blade have straight edges (trilinear geometry), so the geometry is the same for 8, 20 or 27 nodes per
+element.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -28,30 +29,20 @@ TWENTY = np.array(
 
 
 @dataclass(frozen=True)
-class Material:
-    """Isotropic: Young's modulus Pa, Poisson's ratio, density kg/m³."""
-
-    young: float
-    poisson: float
-    density: float
-
-    @property
-    def lame(self) -> tuple[float, float]:
-        """λ and μ, Pa."""
-        mu = self.young / (2.0 * (1.0 + self.poisson))
-        return 2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson), mu
-
-
-@dataclass(frozen=True)
 class Bricks:
     """A block of nx × ny × nz hexahedra, x along the span.
 
     Attributes:
         corners: (nx+1, ny+1, nz+1, 3) m, in blade axes from the rotor's axis (see ``core.blade``); all corners
-            of a layer along the span have the same x.
+            of a layer along the span have the same x, unless the blade is curved.
+        axes: (2nx+1, 3, 3) section axes in columns, which an orthotropic material follows, at the layers of nodes; empty:
+            the blade's axes.
+        nodes: (2nx+1, 2ny+1, 2nz+1, 3) m, of curved elements; empty: edges are straight.
     """
 
     corners: Array
+    axes: Array = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    nodes: Array = field(default_factory=lambda: np.zeros((0, 1, 1, 3)))
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -61,6 +52,8 @@ class Bricks:
 
     def lattice(self) -> Array:
         """(2nx+1, 2ny+1, 2nz+1, 3) nodes: the corners and the midpoints of edges, faces and elements."""
+        if len(self.nodes):
+            return self.nodes
         out = self.corners
         for axis in range(3):
             a = np.moveaxis(out, axis, 0)
@@ -71,7 +64,8 @@ class Bricks:
 
     def part(self, start: int, stop: int) -> "Bricks":
         """The layers of elements from ``start`` to before ``stop`` along the span."""
-        return Bricks(self.corners[start : stop + 1])
+        within = slice(2 * start, 2 * stop + 1)
+        return Bricks(self.corners[start : stop + 1], self.axes[within], self.nodes[within])
 
 
 def blade(
@@ -155,14 +149,29 @@ def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.co
         CodeError: if a station has no nodes.
     """
     root, tip = nodes[:, 0].min(), nodes[:, 0].max()
-    out = np.zeros((u.shape[2], len(STATIONS), 4), complex)
-    directions = np.arange(3)
-    for k, at in enumerate(root + STATIONS * (tip - root)):
+    sections = []
+    for at in root + STATIONS * (tip - root):
         here = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
         if not len(here):
             raise CodeError(f"mesh: no layer of nodes at the station x = {at:g} m: use a multiple of ten layers")
+        sections.append((here, np.array([at, 0.0, 0.0])))
+    return means(nodes, weights, u, sections)
+
+
+def means(
+    nodes: Array, weights: Array, u: NDArray[Any], sections: Sequence[tuple[NDArray[np.intp], Array]]
+) -> NDArray[np.complex128]:
+    """(m, k, 4) mean displacement, and mean rotation about x, of k sections, in blade axes.
+
+    Args:
+        nodes, weights, u: as for ``mean_motions``.
+        sections: indices of the nodes of each, and its point (3,), m, whose displacement is asked.
+    """
+    out = np.zeros((u.shape[2], len(sections), 4), complex)
+    directions = np.arange(3)
+    for k, (here, at) in enumerate(sections):
         frame = np.eye(4)
-        frame[0, 3] = at
+        frame[:3, 3] = at
         R = ties.motion(np.tile(nodes[here], (3, 1)), np.repeat(directions, len(here)), frame)
         weighed = R.T * np.tile(weights[here], 3)
         out[:, k] = np.linalg.solve(weighed @ R, weighed @ u[:, here].reshape(3 * len(here), -1))[:4].T

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..theories import timoshenko
-from .mesh import Material
+from .materials import Material
 
 Array = NDArray[np.float64]
 

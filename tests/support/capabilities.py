@@ -27,6 +27,7 @@ class Can:
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
         stations: properties that change their slope at a dozen stations or more.
+        solid: solves the solid of a blade that is known as one, whatever else it can.
     """
 
     taper: bool = True
@@ -43,6 +44,7 @@ class Can:
     sheared: bool = False
     curved: bool = False
     stations: bool = True
+    solid: bool = False
 
 
 CODES = {
@@ -54,6 +56,7 @@ CODES = {
     "drake": Can(twin=True, coupled=True, sheared=True, curved=True),
     "mujoco": Can(twin=True, coupled=True, sheared=True, curved=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
+    "scikit-fem-solid": Can(taper=False, twist=False, tip=False, thin=False, solid=True),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
     "sharpy": Can(coupled=True, sheared=True, curved=True),
     "frame3dd": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), stations=False),
@@ -76,6 +79,7 @@ class Asks:
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
         stations: a dozen or more, where properties change their slope.
+        solid: a solid is known whose beam it is.
         axial: axial modes are compared.
         gentle: rad/s; up to this speed no effect that a code may leave out shifts any mode by more than 0.1 %; negative: at
             none, moments of inertia matter at rest.
@@ -91,6 +95,7 @@ class Asks:
     sheared: bool = False
     curved: bool = False
     stations: bool = False
+    solid: bool = False
     axial: bool = False
     gentle: float = math.inf
 
@@ -118,6 +123,9 @@ BLADES = {
     "tip-mass": Asks(tip=True),
     "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
     "hodges-rutkowski": Asks(taper=True, stations=True),
+    "curved-solid": Asks(
+        taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True, stations=True, solid=True
+    ),
     "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
 }
 
@@ -143,7 +151,7 @@ NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin", "sheare
 
 def solves(can: Can, asks: Asks) -> bool:
     """Whether a code can be expected to solve a blade."""
-    return all(getattr(can, need) or not getattr(asks, need) for need in NEEDS)
+    return (can.solid and asks.solid) or all(getattr(can, need) or not getattr(asks, need) for need in NEEDS)
 
 
 def allowed(can: Can, asks: Asks, omega: float) -> set[str]:

@@ -25,7 +25,8 @@ from southwell.core.condense import segments, ties
 from southwell.core.modes import Modes
 from southwell.references.solid import hexahedra
 from southwell.references.solid import timoshenko as beam
-from southwell.references.solid.mesh import Material, clamped
+from southwell.references.solid.materials import Material
+from southwell.references.solid.mesh import clamped
 
 __all__ = [
     "HUB",

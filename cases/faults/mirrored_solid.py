@@ -1,0 +1,25 @@
+"""The adapter for solids with another solid than that of the case; imported only by a worker process."""
+
+from dataclasses import replace
+
+from ...core.blade import Blade
+from ...core.modes import Modes
+from ...references.solid.curved import CurvedSolid
+from ...references.solid.known import CURVED, GLASS
+from ...references.solid.scikit_fem_blade import ScikitFemSolid, modes
+
+
+class Mirrored(ScikitFemSolid):
+    """The adapter with one solid for any blade."""
+
+    def __init__(self, solid: CurvedSolid):
+        self._solid = solid
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """See ``interface.Code``; the blade is not used."""
+        return modes(self._solid, omega, elements, count)
+
+
+SWEEP = Mirrored(replace(CURVED, sweep=-CURVED.sweep))
+
+FIBRES = Mirrored(replace(CURVED, material=replace(GLASS, turned=-GLASS.turned)))

@@ -1,0 +1,111 @@
+"""The adapter for solids of scikit-fem: a curved solid whose beam sections are known, or a uniform blade as a solid bar.
+
+A blade is solved as a three-dimensional solid in two cases. If it is the beam of one of the solids in ``known``, the whole
+solid is solved, with its own geometry and material: neither sections nor the theory of beams enter the result, so that the
+difference from a beam is that of the model. The sections are compared with those of the solid, and another blade is declined.
+If it is uniform, it is solved as the bar of ``bar``, as by CalculiX, but with Coriolis forces.
+
+Elements have 27 nodes and full integration (see ``hexahedra``). Refinement is along the blade; the number of elements in a
+section is that from which the sections were identified.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...core.blade import Blade
+from ...core.effects import ALL_EFFECTS
+from ...core.modes import STATIONS, Modes
+from ..protocol.interface import CodeError, Independence, Motion, Shares
+from . import bar, hexahedra
+from .curved import CurvedSolid, inside, layer
+from .known import ACROSS, recognised
+from .materials import Orthotropic
+from .mesh import Bricks, clamped
+
+Array = NDArray[np.float64]
+
+COARSE = 20
+"""Layers of the mesh on which the steady state is first computed: a slender solid takes many iterations to straighten."""
+
+
+class ScikitFemSolid:
+    """See the module."""
+
+    name = "scikit-fem-solid"
+    title = "scikit-fem, solid elements"
+    shares: Shares = "nothing"
+    independence = Independence(
+        "scikit-fem", "three-dimensional solid", "references.solid.hexahedra", sections="the solid's geometry"
+    )
+    motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
+    effects = ALL_EFFECTS
+    levels = (10, 20, 40)
+    order = 4
+    digits = 5  # the equations of slender solids are ill-conditioned
+    hint = hexahedra.HINT
+
+    def version(self) -> str | None:
+        """Version of scikit-fem, without importing it."""
+        return hexahedra.version()
+
+    def unsupported(self, blade: Blade) -> str | None:
+        """A reason unless the blade is the beam of a known solid, or uniform and equivalent to a bar."""
+        solid, reason = recognised(blade)
+        if solid is None and (other := bar.unsupported(blade)):
+            return f"{other}; {reason}"
+        return None
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.Code``. ``elements`` are rounded up to a multiple of ten.
+
+        Raises:
+            CodeError: an unsupported blade, too large a strain of a bar, or no stable steady state.
+        """
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        solid, _ = recognised(blade)
+        if solid:
+            return modes(solid, omega, bar.LAYERS * -(-elements // bar.LAYERS), count)
+
+        def solved(bricks: Bricks, material: Orthotropic, wanted: int) -> Modes:
+            return hexahedra.modes(bricks, material, omega, wanted, clamped(blade.hub_radius))
+
+        return bar.modes(blade, omega, elements, count, solved)
+
+
+def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
+    """The lowest modes of a curved solid at ``omega`` (rad/s), its root held by St Venant's tractions.
+
+    Args:
+        solid: the solid.
+        omega: rotor speed, rad/s.
+        layers: elements along the span, a multiple of ten.
+        count: number of modes.
+
+    Raises:
+        CodeError: no stable steady state.
+    """
+    bricks, held = _clamped(solid, layers)
+    start = None
+    if omega and layers > COARSE:
+        first, hold = _clamped(solid, COARSE)
+        coarse = hexahedra.solid(first, solid.material)
+        u, _ = hexahedra.steady(coarse, omega, hexahedra.motions(coarse, hold))
+        along = CubicSpline(np.linspace(0.0, 1.0, 2 * COARSE + 1), u.reshape(3, 2 * COARSE + 1, -1), axis=1)
+        start = along(np.linspace(0.0, 1.0, 2 * layers + 1)).ravel()
+    places = solid.place(STATIONS * solid.length)
+    step = 2 * layers // (len(STATIONS) - 1)
+    sections = [(layer(bricks, k * step), place) for k, place in enumerate(places)]
+    return hexahedra.modes(bricks, solid.material, omega, count, held, sections=sections, start=start)
+
+
+def _clamped(solid: CurvedSolid, layers: int) -> tuple[Bricks, Array]:
+    """The mesh, and the forces (3n, 6) that hold its root."""
+    bricks = solid.bricks(np.linspace(0.0, solid.length, layers + 1), ACROSS)
+    held = np.zeros((3, bricks.lattice().size // 3, 6))
+    held[:, layer(bricks, 0)] = inside(solid, 0.0, ACROSS).force
+    return bricks, held.reshape(-1, 6)
+
+
+CODE = ScikitFemSolid()
