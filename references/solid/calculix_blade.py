@@ -1,15 +1,23 @@
-"""The CalculiX adapter: a uniform blade as a solid bar (``bar``). Coriolis forces are missing (see ``calculix``)."""
+"""The CalculiX adapter: a curved solid whose beam sections are known, or a uniform blade as a solid bar.
+
+As in ``scikit_fem_blade``, a blade is solved as a three-dimensional solid if it is the beam of one of the solids in ``known``,
+or equivalent to the bar of ``bar``. The curved solid's root is held by the same tractions, which scikit-fem computes; mesh,
+material, rotation and modes are CalculiX's. Elements have 20 nodes and reduced integration, and an orthotropic material has one
+orientation for each layer of elements: second order. Coriolis forces are missing (see ``calculix``).
+"""
 
 from ...core.blade import Blade
-from ...core.modes import Modes
+from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
-from . import bar, calculix
+from . import bar, calculix, hexahedra
+from .curved import held
+from .known import ACROSS, recognised
 from .materials import Orthotropic
 from .mesh import Bricks, clamped
 
 
 class Calculix:
-    """See the module; uniform, straight, clamped blades with the rotary inertia of a solid."""
+    """See the module."""
 
     name = "calculix"
     title = "CalculiX, solid elements"
@@ -27,17 +35,27 @@ class Calculix:
         return calculix.version()
 
     def unsupported(self, blade: Blade) -> str | None:
-        """A reason unless the blade is uniform and equivalent to a solid of rectangular section."""
-        return bar.unsupported(blade)
+        """A reason unless the blade is the beam of a known solid, or uniform and equivalent to a bar."""
+        solid, reason = recognised(blade)
+        if solid:
+            return (
+                None if hexahedra.version() else f"the tractions that hold the root need scikit-fem: {hexahedra.HINT}"
+            )
+        return f"{other}; {reason}" if (other := bar.unsupported(blade)) else None
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes of bending and stretch; see ``interface.Code``. ``elements`` are rounded up to a multiple of ten.
+        """The lowest modes; see ``interface.Code``. ``elements`` are rounded up to a multiple of ten.
 
         Raises:
             CodeError: an unsupported blade, too large a strain, ``ccx`` missing or failing, or no stable steady state.
         """
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
+        solid, _ = recognised(blade)
+        if solid:
+            bricks, root = held(solid, bar.LAYERS * -(-elements // bar.LAYERS), ACROSS)
+            points = solid.place(STATIONS * solid.length)
+            return calculix.modes(bricks, solid.material, omega, count, root, points)
 
         def solved(bricks: Bricks, material: Orthotropic, wanted: int) -> Modes:
             return calculix.modes(bricks, material, omega, wanted, clamped(blade.hub_radius))

@@ -124,6 +124,14 @@ def layer(bricks: Bricks, at: int) -> NDArray[np.intp]:
     return np.arange(at * size, (at + 1) * size)
 
 
+def held(solid: CurvedSolid, layers: int, across: tuple[int, int]) -> tuple[Bricks, Array]:
+    """The mesh of a solid with ``layers`` along the span, and the nodal forces (3n, 6) that hold its root."""
+    bricks = solid.bricks(np.linspace(0.0, solid.length, layers + 1), across)
+    force = np.zeros((3, bricks.lattice().size // 3, 6))
+    force[:, layer(bricks, 0)] = inside(solid, 0.0, across).force
+    return bricks, force.reshape(-1, 6)
+
+
 def loaded(solid: CurvedSolid, bricks: Bricks) -> Array:
     """(3n, 6) displacements of a block of the solid, fixed at its inner end, by six wrenches at its outer end.
 

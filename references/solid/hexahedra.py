@@ -17,7 +17,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as ss
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
@@ -28,7 +27,7 @@ from ..protocol import install
 from ..protocol.interface import CodeError
 from ..protocol.quadratic import gyroscopic_modes
 from .materials import Material, Orthotropic, rotated
-from .mesh import Bricks, Clamp, fixed_by, mean_motions, means
+from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless
 
 Array = NDArray[np.float64]
 
@@ -199,11 +198,8 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
     one = ss.csc_array(ss.eye_array(3 * len(s.nodes)))
     if callable(clamp):
         return ss.csr_array(one[:, ~fixed_by(clamp, s.nodes).T.ravel()])
-    near = np.flatnonzero(np.abs(clamp).max(axis=1))
-    factors: Any = scipy.linalg.qr(clamp[near].T, mode="economic", pivoting=True)
-    pivot = factors[2]
-    follow, lead = near[pivot[:6]], near[pivot[6:]]
-    ratio = ss.coo_array(-np.linalg.solve(clamp[follow].T, clamp[lead].T))
+    follow, lead, matrix = workless(clamp)
+    ratio = ss.coo_array(matrix)
     others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=one.shape)
     kept = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
     return ss.csr_array(ss.csc_array(one + others)[:, kept])

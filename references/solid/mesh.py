@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.condense import ties
@@ -131,6 +132,19 @@ def fixed_by(clamp: Clamp, nodes: Array) -> Bools:
     if not fixed.any(axis=0).all():
         raise CodeError(f"clamp: fixes {fixed.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
     return fixed
+
+
+def workless(forces: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
+    """The motions on which forces (3n, 6) do no work: ``u[follow] = ratio @ u[lead]``, all other displacements are free.
+
+    Returns:
+        ``follow`` (6,), ``lead`` (k,), ``ratio`` (6, k).
+    """
+    near = np.flatnonzero(np.abs(forces).max(axis=1))
+    factors: Any = scipy.linalg.qr(forces[near].T, mode="economic", pivoting=True)
+    pivot = factors[2]
+    follow, lead = near[pivot[:6]], near[pivot[6:]]
+    return follow, lead, -np.asarray(np.linalg.solve(forces[follow].T, forces[lead].T), float)
 
 
 def _near(values: Array, target: float) -> Bools:

@@ -18,7 +18,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from . import bar, hexahedra
-from .curved import CurvedSolid, inside, layer
+from .curved import CurvedSolid, held, layer
 from .known import ACROSS, recognised
 from .materials import Orthotropic
 from .mesh import Bricks, clamped
@@ -86,10 +86,10 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
     Raises:
         CodeError: no stable steady state.
     """
-    bricks, held = _clamped(solid, layers)
+    bricks, root = held(solid, layers, ACROSS)
     start = None
     if omega and layers > COARSE:
-        first, hold = _clamped(solid, COARSE)
+        first, hold = held(solid, COARSE, ACROSS)
         coarse = hexahedra.solid(first, solid.material)
         u, _ = hexahedra.steady(coarse, omega, hexahedra.motions(coarse, hold))
         along = CubicSpline(np.linspace(0.0, 1.0, 2 * COARSE + 1), u.reshape(3, 2 * COARSE + 1, -1), axis=1)
@@ -97,15 +97,7 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
     places = solid.place(STATIONS * solid.length)
     step = 2 * layers // (len(STATIONS) - 1)
     sections = [(layer(bricks, k * step), place) for k, place in enumerate(places)]
-    return hexahedra.modes(bricks, solid.material, omega, count, held, sections=sections, start=start)
-
-
-def _clamped(solid: CurvedSolid, layers: int) -> tuple[Bricks, Array]:
-    """The mesh, and the forces (3n, 6) that hold its root."""
-    bricks = solid.bricks(np.linspace(0.0, solid.length, layers + 1), ACROSS)
-    held = np.zeros((3, bricks.lattice().size // 3, 6))
-    held[:, layer(bricks, 0)] = inside(solid, 0.0, ACROSS).force
-    return bricks, held.reshape(-1, 6)
+    return hexahedra.modes(bricks, solid.material, omega, count, root, sections=sections, start=start)
 
 
 CODE = ScikitFemSolid()

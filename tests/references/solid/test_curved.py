@@ -10,14 +10,15 @@ import pytest
 from southwell.cases import data
 from southwell.cases.condense import curved_solid
 from southwell.cases.input import library
+from southwell.cases.judge.pairing import mac, weights
 from southwell.core import solve
 from southwell.core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade
 from southwell.core.element.sections import frames
 from southwell.core.modes import STATIONS
 from southwell.core.space import spatial as sp
 from southwell.references.protocol.interface import CodeError
-from southwell.references.solid import hexahedra, identified
-from southwell.references.solid.curved import STUB, CurvedSolid, inside, layer
+from southwell.references.solid import calculix, calculix_blade, hexahedra, identified
+from southwell.references.solid.curved import STUB, CurvedSolid, held, inside, layer
 from southwell.references.solid.known import ACROSS, CURVED, GLASS, recognised
 from southwell.references.solid.materials import Material, Orthotropic
 from southwell.references.solid.scikit_fem_blade import CODE, modes
@@ -202,6 +203,19 @@ def whole(omega: float) -> np.ndarray:
 def test_the_beam_is_the_solid(omega: float) -> None:
     """Six modes within 0.1 %: the difference that remains is that of beam theory."""
     np.testing.assert_allclose(solve.modes(case(), omega, 80, 6).frequencies, whole(omega), rtol=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(calculix.version() is None, reason=f"not installed: {calculix.HINT}")
+@pytest.mark.parametrize("omega", [0.0, 10.0])
+def test_calculix_finds_the_same_modes_of_the_whole_solid(omega: float) -> None:
+    """One solid, two programs; CalculiX's material turns from layer to layer, and it has no Coriolis forces."""
+    bricks, root = held(CURVED, 20, ACROSS)
+    sections = [(layer(bricks, 2 * k), place) for k, place in enumerate(CURVED.place(STATIONS * CURVED.length))]
+    ours = hexahedra.modes(bricks, CURVED.material, omega, 6, root, coriolis=False, sections=sections)
+    theirs = calculix_blade.CODE.solve(case(), omega, 20, 6)
+    np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=3e-4)
+    assert (np.diag(mac(ours.shapes, theirs.shapes, weights(case()))) > 0.999).all()
 
 
 @pytest.mark.slow
