@@ -66,7 +66,7 @@ def urgent(run: Run) -> list[str]:
     """Lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
     found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
     sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
-    mute = {(c.code, c.case): c.reason for c in run.cells if _mute(c)}
+    mute = {(c.code, c.case): c.reason.rstrip(".") for c in run.cells if _mute(c)}
     return [*sentences, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
 
 
