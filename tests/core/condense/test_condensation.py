@@ -107,7 +107,8 @@ def test_condensed_cantilever_against_timoshenko() -> None:
 def test_rigid_ties_miss_the_target_on_the_cantilever() -> None:
     """They prevent Poisson's contraction at each of the 21 sections: 0.6 % too high, six times the target.
 
-    Finer meshes give 0.62 to 0.63 %. With three Gauss points along the span, which lock, this mesh gave 1.1 %, the finest 0.66 %.
+    Finer meshes give 0.62 to 0.63 %. With three Gauss points along the span, which lock, this mesh gave 1.1 % and the
+    finest 0.66 %.
     """
     found = chain_modes(chain_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
     assert (found / np.repeat(timoshenko(3), 2) - 1 > 0.005).all()
