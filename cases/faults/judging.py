@@ -143,7 +143,7 @@ FAULTS = (
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
           ((pairing, "_norm", lambda right: lambda a, weight: 4.0 * right(a, weight)),), PARK),
     _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
-             ((refinement, "pair", anything_goes),), "twist reversed in the adapter"),
+             ((refinement, "pair", anything_goes), (cells, "pair", anything_goes)), "twist reversed in the adapter"),
     _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
              ((cells, "_still", inferred),), "lost column"),
     Fault("never sure", "uncertainty", "the uncertainty is always unknown", "all cells",
