@@ -22,4 +22,4 @@ class Mirrored(ScikitFemSolid):
 
 SWEEP = Mirrored(replace(CURVED, sweep=-CURVED.sweep))
 
-FIBRES = Mirrored(replace(CURVED, material=replace(GLASS, turned=-GLASS.turned)))
+FIBRES = Mirrored(replace(CURVED, material=replace(GLASS, angle=-GLASS.angle)))

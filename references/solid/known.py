@@ -17,7 +17,7 @@ GLASS = Orthotropic(
     poisson=(0.28, 0.28, 0.4),
     shear=(4.5e9, 4.5e9, 12e9 / 2.8),
     density=1900.0,
-    turned=float(np.radians(20.0)),
+    angle=float(np.radians(20.0)),
 )
 """Glass fibres in epoxy, at 20° to the reference curve; isotropic across the fibres."""
 
@@ -42,7 +42,7 @@ SOLIDS = (CURVED,)
 ACROSS = (4, 2)
 """Elements in a section, along the chord and through the thickness, of the solids and of their slices."""
 
-NEAR, ALIKE = 1e-6, 1e-3
+TOLERANCE, STIFFNESS_TOLERANCE = 1e-6, 1e-3
 """Largest difference of curve, twist and mass, and of stiffness, of a blade that is recognised; relative."""
 
 POINTS = 5
@@ -57,9 +57,11 @@ def recognised(blade: Blade) -> tuple[CurvedSolid | None, str]:
             continue
         if reason := _other_mount(blade):
             return None, reason
-        if off := _off(blade.mass, identified.mass(solid, blade.stations), NEAR):
+        if off := _off(blade.mass, identified.mass(solid, blade.stations), TOLERANCE):
             return None, f"mass: {off} from that of the solid {solid.name!r}"
-        if hexahedra.version() and (off := _off(blade.stiffness, _stiffness(solid, tuple(blade.stations)), ALIKE)):
+        if hexahedra.version() and (
+            off := _off(blade.stiffness, _stiffness(solid, tuple(blade.stations)), STIFFNESS_TOLERANCE)
+        ):
             return None, f"stiffness: {off} from that identified from the solid {solid.name!r}"
         return solid, ""
     return None, why
@@ -67,14 +69,14 @@ def recognised(blade: Blade) -> tuple[CurvedSolid | None, str]:
 
 def _same_axis(solid: CurvedSolid, blade: Blade) -> bool:
     s = blade.stations
-    if abs(blade.length / solid.length - 1.0) > NEAR:
+    if abs(blade.length / solid.length - 1.0) > TOLERANCE:
         return False
     pairs = (
         (blade.curve / solid.length, solid.curve(s) / solid.length),
         (blade.twist, solid.twisted(s)),
         (blade.hub_radius / solid.length, solid.hub_radius / solid.length),
     )
-    return all(np.abs(a - b).max() <= NEAR for a, b in pairs)
+    return all(np.abs(a - b).max() <= TOLERANCE for a, b in pairs)
 
 
 def _other_mount(blade: Blade) -> str:

@@ -40,26 +40,26 @@ class Material:
 
 @dataclass(frozen=True)
 class Orthotropic:
-    """Three planes of symmetry; axis 1 lies in the section's x–y plane, turned from x towards y, axis 3 along z.
+    """Three planes of symmetry; axis 1 lies in the section's x–y plane, rotated from x towards y, axis 3 along z.
 
     Attributes:
         young: Pa, along 1, 2 and 3.
         poisson: ν12, ν13, ν23.
         shear: Pa, of the planes 12, 13 and 23.
         density: kg/m³.
-        turned: angle from the section's x axis to axis 1, about z, rad.
+        angle: from the section's x axis to axis 1, about z, rad.
     """
 
     young: tuple[float, float, float]
     poisson: tuple[float, float, float]
     shear: tuple[float, float, float]
     density: float
-    turned: float = 0.0
+    angle: float = 0.0
 
     @property
     def axes(self) -> Array:
         """(3, 3) the material's axes in those of the section, in columns."""
-        return Rotation.from_rotvec([0.0, 0.0, self.turned]).as_matrix()
+        return Rotation.from_rotvec([0.0, 0.0, self.angle]).as_matrix()
 
     @property
     def moduli(self) -> Array:

@@ -43,7 +43,7 @@ def case() -> Blade:
 
 def test_an_orthotropic_material_with_isotropic_constants_is_isotropic() -> None:
     expected = Material(2.1e11, 0.3, 7850.0).moduli
-    np.testing.assert_allclose(replace(STEEL, turned=0.7).moduli, expected, atol=1e-12 * expected.max())
+    np.testing.assert_allclose(replace(STEEL, angle=0.7).moduli, expected, atol=1e-12 * expected.max())
 
 
 def test_compliance_of_turned_fibres() -> None:
@@ -51,7 +51,7 @@ def test_compliance_of_turned_fibres() -> None:
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     C = np.array([[GLASS.moduli[i, j, k, m] for k, m in pairs] for i, j in pairs])
     S = np.linalg.inv(C)
-    (E1, E2, _), nu, G, angle = GLASS.young, GLASS.poisson[0], GLASS.shear[0], GLASS.turned
+    (E1, E2, _), nu, G, angle = GLASS.young, GLASS.poisson[0], GLASS.shear[0], GLASS.angle
     c, s = np.cos(angle), np.sin(angle)
     assert S[0, 0] == pytest.approx(c**4 / E1 + s**4 / E2 + c**2 * s**2 * (1 / G - 2 * nu / E1), rel=1e-12)
     first = 2 / E1 + 2 * nu / E1 - 1 / G
