@@ -79,28 +79,21 @@ def modes(
         )
     begun = time.perf_counter()
     places, nodes = numbered(bricks)
-    if points is None:
-        share = (nodes[:, 0] - nodes[:, 0].min()) / np.ptp(nodes[:, 0])
-        at_stations = np.flatnonzero(np.abs(share[:, None] - STATIONS).min(axis=1) < 1e-9)
-    else:
-        layers = places[:: (len(places) - 1) // (len(STATIONS) - 1)]
-        sections = [here[here >= 0] for here in layers]
-        at_stations = np.sort(np.concatenate(sections))
     fixed = _fixed(clamp, nodes) if callable(clamp) else _held(clamp, places)
     steps = [*fixed, "*STEP"]
     if omega:
         load = f"ALL,CENTRIF,{omega**2:.12g},0.,0.,0.,0.,0.,1."
         steps = [*fixed, "*STEP,NLGEOM", "*STATIC", *CONVERGED, "*DLOAD", load, "*END STEP", "*STEP,PERTURBATION"]
-    steps += ["*FREQUENCY", str(count), "*NODE PRINT,NSET=STATIONS", "U", "*END STEP"]
-    sets = ["*NSET,NSET=STATIONS", *(str(k + 1) for k in at_stations)]
-    with run([*deck(places, nodes, material, bricks.axes), *sets, *steps]) as folder:
+    steps += ["*FREQUENCY", str(count), "*NODE PRINT,NSET=ALL", "U", "*END STEP"]
+    with run([*deck(places, nodes, material, bricks.axes), *steps]) as folder:
         frequencies, u = _printed((folder / "blade.dat").read_text(), omega)
-    here, even = nodes[at_stations], np.ones(len(at_stations))
+    even = np.ones(len(nodes))
     if points is None:
-        shapes = mean_motions(here, even, u)
+        shapes = mean_motions(nodes, even, u)
     else:
-        own = [np.searchsorted(at_stations, section) for section in sections]
-        shapes = means(here, even, u, list(zip(own, points, strict=True)))
+        layers = places[:: (len(places) - 1) // (len(STATIONS) - 1)]
+        sections = [(layer[layer >= 0], point) for layer, point in zip(layers, points, strict=True)]
+        shapes = means(nodes, even, u, sections)
     return Modes(omega, frequencies, shapes, bricks.counts[0], seconds=time.perf_counter() - begun)
 
 

@@ -76,19 +76,13 @@ def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
 
 
 @pytest.mark.slow
-def test_a_spurious_mode_makes_an_answer_inconclusive() -> None:
+@pytest.mark.parametrize(("code", "reason"), [("extra", "none of core's"), ("damped", "damping ratio 0.03")])
+def test_a_spurious_or_damped_mode_makes_an_answer_inconclusive(code: str, reason: str) -> None:
     """Before, core's modes had partners among the others, and all of them passed."""
-    cells = of("extra")
+    cells = of(code)
     assert {c.verdict for c in cells} == {"inconclusive"}
-    assert all("none of core's" in c.reason for c in cells)
-    assert summary.status(run("EXTRA")) == 1
-
-
-@pytest.mark.slow
-def test_a_damped_mode_makes_an_answer_inconclusive() -> None:
-    cells = of("damped")
-    assert {c.verdict for c in cells} == {"inconclusive"}
-    assert all("damping ratio 0.03" in c.reason for c in cells)
+    assert all(reason in c.reason for c in cells)
+    assert summary.status(run(code.upper())) == 1
 
 
 @pytest.mark.slow
