@@ -57,7 +57,7 @@ CODES = {
     "mujoco": Can(twin=True, coupled=True, sheared=True, curved=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "scikit-fem-solid": Can(taper=False, twist=False, tip=False, thin=False, solid=True),
-    "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",)),
+    "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",), solid=True),
     "sharpy": Can(coupled=True, sheared=True, curved=True),
     "frame3dd": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), stations=False),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
