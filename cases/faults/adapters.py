@@ -9,7 +9,7 @@ import numpy as np
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ...references.protocol import registry
-from ...references.protocol.process import Failure, Limits
+from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..verify import columns
 from .seeding import Fault, Trial
@@ -22,8 +22,8 @@ def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """The code solves a different blade."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
-            return right(name, alter(blade), runs, limits)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            return right(name, alter(blade), runs, *how)
 
         return wrong
 
@@ -34,8 +34,8 @@ def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
     """The answer is altered."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
-            found = right(name, blade, runs, limits)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            found = right(name, blade, runs, *how)
             return [answer if isinstance(answer, Failure) else alter(answer) for answer in found]
 
         return wrong
@@ -47,8 +47,8 @@ def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
     """A different question is asked; the answer claims to be for the original one."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], limits: Limits) -> list[Answer]:
-            found = right(name, blade, [alter(run) for run in runs], limits)
+        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            found = right(name, blade, [alter(run) for run in runs], *how)
             return [
                 answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])
                 for run, answer in zip(runs, found, strict=True)

@@ -11,7 +11,7 @@ from ...core.multibody.linear import Linearization
 from ...core.multibody.mechanism import Mechanism, inertia
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer
-from ...references.protocol.process import Failure, Limits
+from ...references.protocol.process import Failure
 from ..verify import mechanism_columns
 from .seeding import Fault, Seam, Trial
 
@@ -59,8 +59,8 @@ def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
     """The code solves a different mechanism."""
 
     def make(right: Any) -> Any:
-        def wrong(name: str, some: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:
-            return right(name, [alter(m) for m in some], guess, limits)
+        def wrong(name: str, some: Sequence[Mechanism], guess: Mapping[str, float], *how: Any) -> list[Answer]:
+            return right(name, [alter(m) for m in some], guess, *how)
 
         return wrong
 

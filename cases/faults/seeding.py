@@ -59,6 +59,8 @@ class Trial:
         modes: number of modes compared; by default that of the case.
         motions: motions compared; by default those of the case.
         altered: function that makes the trial's mechanism from the package's.
+        reuse: whether codes' earlier answers may be taken from the store. Faults act on what a code is sent and on what it
+            returned, so they have the same effect on such answers.
     """
 
     case: str
@@ -68,6 +70,7 @@ class Trial:
     modes: int | None = None
     motions: tuple[str, ...] = ()
     altered: Callable[[Mechanism], Mechanism] = _same_mechanism
+    reuse: bool = False
 
 
 @dataclass(frozen=True)
@@ -142,12 +145,12 @@ class Serial(Executor):
 def cells(trial: Trial) -> tuple[Cell, ...]:
     """Cells of a trial run by the real matrix."""
     if trial.case in library.mechanisms():
-        return matrix.run([_turning(trial)], known(trial), Serial(), parts=False).cells
+        return matrix.run([_turning(trial)], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
     case, changed = _variant(trial)
     given = case.text.compare
     compare = msgspec.structs.replace(given, modes=trial.modes or given.modes, motions=trial.motions or given.motions)
     one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
-    return matrix.run([one], known(trial), Serial(), parts=False).cells
+    return matrix.run([one], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
 
 
 def _turning(trial: Trial) -> MechanismCase:

@@ -1,6 +1,7 @@
 """All seeded faults by name, those that every run executes, and the task that executes some of them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ..input.errors import CaseError, nearest
 from ..judge.results import Control
@@ -40,6 +41,14 @@ def chosen(text: str) -> tuple[str, ...]:
     return names
 
 
-def run(names: Sequence[str]) -> list[Control]:
-    """Execute faults, one after the other; a task for any process."""
-    return [execute(BY_NAME[name], BY_NAME.__getitem__, canaries) for name in names]
+def run(names: Sequence[str], reuse: bool = False) -> list[Control]:
+    """Execute faults, one after the other; a task for any process.
+
+    With ``reuse``, codes' earlier answers may be taken from the store.
+    """
+
+    def fault(name: str) -> Fault:
+        one = BY_NAME[name]
+        return replace(one, trial=replace(one.trial, reuse=reuse)) if one.trial else one
+
+    return [execute(fault(name), fault, canaries) for name in names]

@@ -53,7 +53,8 @@ class Column:
         work: function that returns its rows from core's references.
         origin: declared origin of its answers; None if undeclared.
         due: where cells are required: at every speed for every mode, at the highest speed, or where it has numbers.
-        adapter: digest of the source of the code; empty for a code of this package.
+        adapter: digest of the source of the code; empty for a column of this package.
+        bundled: whether the adapter of the code is part of this package.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Column:
     origin: Independence | None = None
     due: Literal["everywhere", "highest speed", "somewhere"] = "everywhere"
     adapter: str = ""
+    bundled: bool = True
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds that have a reference."""
@@ -159,7 +161,7 @@ def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows
 
 def _refined(head: Head, name: str, blade: Blade, refining: Refining, limits: Limits, core: References) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
-        return answers(name, blade, runs, limits)
+        return answers(name, blade, runs, limits, head.version)
 
     count = max(r.core.count for _, r in core)
     refinements = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
@@ -185,7 +187,7 @@ def _same(
     head: Head, name: str, blade: Blade, elements: int, effects: Effects, limits: Limits, core: References
 ) -> Rows:
     runs = [(omega, elements, r.core.count) for omega, r in core]
-    theirs = answers(name, blade, runs, limits)
+    theirs = answers(name, blade, runs, limits, head.version)
     scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
     mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", effects) for b in (blade, *scaled))
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]

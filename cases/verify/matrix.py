@@ -13,6 +13,7 @@ from platform import python_version
 from typing import Any
 
 from ...core.blade import Blade
+from ...references.protocol import sources
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
 from ..input.errors import CaseError
@@ -20,7 +21,6 @@ from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
 from . import error_budget, mechanism_columns
 from .columns import Column, Rows, columns, failing
-from .identity import adapter
 from .journal import JournalError
 from .mechanism_case import MechanismCase, Turning
 from .names import unique
@@ -72,6 +72,7 @@ def run(
     on_progress: Callable[[Progress], None] = lambda _: None,
     seconds: float | None = None,
     memory: int = Limits.memory,
+    reuse: bool = False,
     user_results: Sequence[UserResults] = (),
     parts: bool = True,
     on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
@@ -85,7 +86,8 @@ def run(
         on_progress: called when the run starts and whenever a task ends; an exception from it stops the run.
         seconds: time limit for one solution by a foreign code, s; by default the limit of each case.
         memory: memory limit for one solution, bytes.
-        added: results without a code; each adds a column.
+        reuse: whether codes' earlier answers may be taken from the store.
+        user_results: results without a code; each adds a column.
         parts: whether to compute the error budget of core.
         on_plan: called with every column before the first task starts.
 
@@ -98,7 +100,11 @@ def run(
     unique(cases, known, user_results)
     check(user_results, blades, [c.name for c in known])
     shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
-    plans = [task for case in cases for task in _tasks(case, known, shown, limits(case, seconds, memory), user_results)]
+    plans = [
+        task
+        for case in cases
+        for task in _tasks(case, known, shown, limits(case, seconds, memory, reuse), user_results)
+    ]
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -173,10 +179,10 @@ def _answer(future: Future[Any]) -> Any:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")
 
 
-def limits(case: Case | MechanismCase, seconds: float | None, memory: int) -> Limits:
+def limits(case: Case | MechanismCase, seconds: float | None, memory: int, reuse: bool = False) -> Limits:
     """Limits of one solution by a foreign code: those given, or the time limit of the case."""
     compare = case.described.text.compare if isinstance(case, MechanismCase) else case.text.compare
-    return Limits(seconds or (compare.time_limit if compare else Limits.seconds), memory)
+    return Limits(seconds or (compare.time_limit if compare else Limits.seconds), memory, reuse)
 
 
 def _tasks(
@@ -203,8 +209,9 @@ def _tasks(
 
 def dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
     """The columns with the digests of the sources of their codes."""
-    sources = {one.name: "" if one.failure else adapter(one.asked) for one in codes}
-    return tuple(replace(column, adapter=sources.get(column.head.code, "")) for column in made)
+    found = {c.name: (sources.adapter(c.asked), sources.bundled(c.asked)) for c in codes if not c.failure}
+    known = [(column, *found.get(column.head.code, ("", True))) for column in made]
+    return tuple(replace(column, adapter=digest, bundled=bundled) for column, digest, bundled in known)
 
 
 def _parts(task: _Task, parts: list[BudgetEntry], rows: dict[tuple[str, str], Rows]) -> list[BudgetEntry]:

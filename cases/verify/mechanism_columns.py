@@ -106,7 +106,9 @@ def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Wo
         return failing_work(head, code.failure)
     if not code.mechanisms:
         return partial(_absent, head, "not applicable", "the code takes blades, not mechanisms")
-    return partial(_compared, head, variant, partial(_ask, code.asked, variant.described.guess, limits))
+    return partial(
+        _compared, head, variant, partial(_ask, code.asked, code.version or "", variant.described.guess, limits)
+    )
 
 
 def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[float, Reference]]) -> Rows:
@@ -114,9 +116,14 @@ def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[floa
 
 
 def _ask(
-    name: str, guess: Mapping[str, float], limits: Limits, mechanisms: Sequence[mb.Mechanism], _: Sequence[float]
+    name: str,
+    version: str,
+    guess: Mapping[str, float],
+    limits: Limits,
+    mechanisms: Sequence[mb.Mechanism],
+    _: Sequence[float],
 ) -> list[Answer]:
-    return answers(name, mechanisms, guess, limits)
+    return answers(name, mechanisms, guess, limits, version)
 
 
 def _formula(form: ClosedForm, _: Sequence[mb.Mechanism], speeds: Sequence[float]) -> list[Answer]:

@@ -33,14 +33,23 @@ class Request:
     overlay: str | None = None
 
 
-def answers(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits) -> list[Answer]:
+def answers(
+    name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits, version: str = ""
+) -> list[Answer]:
     """A code's modes of each mechanism, or a failure, in their order; other arguments as for ``worker.answers``.
 
     Raises:
         UnknownCodeError: if the name is unknown.
     """
-    request = encode(Request(**registry.address(name), guess=dict(guess), mechanisms=list(mechanisms)))
-    return exchange(__name__, request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data))
+    where = registry.address(name)
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return encode(Request(**where, guess=dict(guess), mechanisms=[mechanisms[k] for k in numbers]))
+
+    def modes(_: int, data: Any) -> MechanismModes:
+        return boundary.mechanism_modes(data)
+
+    return exchange(__name__, request, len(mechanisms), limits, modes, name, version)
 
 
 def encode(value: Request) -> bytes:

@@ -50,10 +50,12 @@ class Limits:
         seconds: wall time, s; the first solution includes the import of the code.
         memory: resident memory of the process and all processes it has started, bytes (Linux). On every platform, the
             address space of each is limited to eight times this value.
+        reuse: whether an earlier answer to the same question may be taken from the store.
     """
 
     seconds: float = 300.0
     memory: int = 4 * 2**30
+    reuse: bool = False
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from . import boundary, registry
+from . import boundary, registry, stored_answers
 from .boundary import NonsenseError
 from .child import Reply, blunder, failed, serve
 from .interface import Code, CodeError
@@ -29,7 +29,7 @@ Run = tuple[float, int, int]
 Answer = Modes | Failure
 
 
-def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> list[Answer]:
+def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, version: str = "") -> list[Answer]:
     """A code's modes for each run, or a failure, in the order of ``runs``.
 
     Args:
@@ -37,36 +37,71 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits) -> lis
         blade: the blade to solve.
         runs: solved in this order; put the most important first.
         limits: for each run.
+        version: of the code, as described; without it no answer is taken from the store.
 
     Raises:
         UnknownCodeError: if the name is unknown.
     """
-    request = {**registry.address(name), "blade": encode(blade), "runs": [list(run) for run in runs]}
+    fixed = {**registry.address(name), "blade": encode(blade)}
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return json.dumps({**fixed, "runs": [list(runs[k]) for k in numbers]}).encode()
 
     def modes(number: int, data: Any) -> Modes:
         omega, _, count = runs[number]
         return boundary.modes(data, omega, count)
 
-    return exchange(__name__, json.dumps(request).encode(), len(runs), limits, modes)
+    return exchange(__name__, request, len(runs), limits, modes, name, version)
 
 
 def exchange(
-    module: str, request: bytes, count: int, limits: Limits, made: Callable[[int, Any], T]
+    module: str,
+    request: Callable[[Sequence[int]], bytes],
+    count: int,
+    limits: Limits,
+    made: Callable[[int, Any], T],
+    code: str,
+    version: str,
 ) -> list[T | Failure]:
-    """Send a request; return ``count`` answers, each validated by ``made(number, data)``, or failures in their place."""
-    lines, ended = converse(module, request, count, limits)
-    out: list[T | Failure] = []
-    for number, line in enumerate(lines):
+    """The answers to ``count`` questions, each validated by ``made(number, data)``, or failures in their place.
+
+    Answers that are in the store are taken from it; the process of the code is asked for the others.
+
+    Args:
+        module: reads the request in the process of the code.
+        request: the request with the questions of these numbers.
+        count: number of questions.
+        limits: for each of them.
+        made: validates an answer.
+        code: name or import path of the code.
+        version: its version; empty if unknown.
+    """
+    kept = stored_answers.reusable(code, version, limits)
+    keys = [stored_answers.key(module, request([k]), code, version) for k in range(count)] if kept else []
+    found = {k: _validated(made, k, stored_answers.get(kept, key)) for k, key in enumerate(keys) if kept}
+    out: dict[int, T | Failure] = {k: answer for k, answer in found.items() if not isinstance(answer, Failure)}
+    asked = [k for k in range(count) if k not in out]
+    lines, ended = converse(module, request(asked), len(asked), limits) if asked else ([], NOTHING)
+    for place, (k, line) in enumerate(zip(asked, lines, strict=False)):
         try:
-            data = boundary.reply(line, number)
+            data = boundary.reply(line, place)
         except NonsenseError as error:
             ended = Failure("nonsense", str(error))
             break
-        try:
-            out.append(boundary.failure(data) or made(number, data.get("modes")))
-        except (ValueError, TypeError) as error:  # from the schema, or from the class it creates
-            out.append(Failure("nonsense", one_line(error)))
-    return out + [ended] * (count - len(out))
+        out[k] = boundary.failure(data) or _validated(made, k, data.get("modes"))
+        if kept and not isinstance(out[k], Failure):
+            stored_answers.put(kept, keys[k], code, data["modes"])
+    return [out.get(k, ended) for k in range(count)]
+
+
+NOTHING = Failure("internal", "no question was asked")
+
+
+def _validated(made: Callable[[int, Any], T], number: int, data: Any) -> T | Failure:
+    try:
+        return made(number, data)
+    except (ValueError, TypeError) as error:  # from the schema, or from the class it creates
+        return Failure("nonsense", one_line(error))
 
 
 def declined(code: Any, asked: str, question: object) -> Reply | None:

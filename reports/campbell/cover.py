@@ -10,9 +10,9 @@ from pathlib import Path
 
 from ...cases.input.properties import sections
 from ...cases.regression.history import this_machine
-from ...cases.verify.identity import LIBRARIES
 from ...core.blade import Blade
 from ...core.regular_files import read_bytes
+from ...references.protocol.sources import LIBRARIES
 from ..shared import markdown
 from .properties import COLUMNS, PROPERTIES, cell, facts, picked, rows
 

@@ -7,7 +7,7 @@ from cyclopts import App
 from rich import box
 from rich.table import Table
 
-from ...cases.verify import store
+from ...references.protocol import store
 from ..shared import console
 from ..shared.statuses import FAILED, PASSED
 from .arguments import Positive

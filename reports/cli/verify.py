@@ -23,17 +23,18 @@ from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Level, Planned, Run, Setting
-from ...cases.verify import bisection, journal, lumping, matrix, mechanism_case, store, user_results
+from ...cases.verify import bisection, journal, lumping, matrix, mechanism_case, user_results
 from ...cases.verify import names as names_of
+from ...cases.verify.cached import Cached
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
-from ...cases.verify.store import Cached, Store
 from ...cases.verify.user_results import UserResults
-from ...references.protocol import registry as registry
+from ...references.protocol import registry, store
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Limits
+from ...references.protocol.store import Store
 from ..ci import junit as xml
 from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
@@ -157,10 +158,11 @@ def command(
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30)}
+    kept_before = _store(fresh)
+    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30), "reuse": kept_before is not None}
     with writing(out), _journal(out) as kept:
         run, stopped = _solve(
-            chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits, _store(fresh)
+            chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits, kept_before
         )
         try:
             if run.cells:
@@ -206,8 +208,8 @@ def _solve(
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
-    Answers go to the journal at once. Seeded faults are never taken from the store, because they show that this run
-    would detect a fault.
+    Answers go to the journal at once. Seeded faults are executed in every run, because they show that this run would
+    detect a fault; only what codes answered to the same questions is reused.
     """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
@@ -222,7 +224,7 @@ def _solve(
         kept.begin(replace(about, plan=plan))
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
-        tried.extend(fresh.submit(table.run, part) for part in _shared_out(seeded, workers))
+        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in _shared_out(seeded, workers))
 
     try:
         scratch.mkdir()

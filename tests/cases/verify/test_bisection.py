@@ -10,7 +10,7 @@ from southwell.cases.input.schema import Case, read
 from southwell.cases.judge.releases import Bisection, comparisons
 from southwell.cases.judge.results import Run, gaps
 from southwell.cases.judge.witnesses import groups, witnesses
-from southwell.cases.verify import bisection, columns, matrix, store
+from southwell.cases.verify import bisection, cached, columns, matrix
 from southwell.references.protocol import overlay
 from southwell.references.protocol.description import Description, describe
 from southwell.references.protocol.process import Failure, Limits
@@ -120,5 +120,5 @@ def test_answers_of_a_release_are_stored_under_a_key_of_its_own(case: Case) -> N
     keys = set()
     for code in (mine, other, replace(other, asked="exact-beam@tinybeam==2.1")):
         made = columns.columns(case, case.variants[0], [code], Limits())
-        keys.add(store.question(next(c for c in made if c.head.code == "exact-beam"), [0.0]))
+        keys.add(cached.question(next(c for c in made if c.head.code == "exact-beam"), [0.0]))
     assert len(keys) == 3

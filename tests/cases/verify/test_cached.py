@@ -1,11 +1,11 @@
-"""The store of answers: each part of the key counts, failures are not kept, what is damaged is computed again."""
+"""Tasks taken from the store: each part of the key counts, failures are not stored, damaged answers are computed again."""
 
 import os
 import platform
 import sqlite3
 import subprocess
 import sys
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,13 +15,15 @@ import numpy as np
 import pytest
 
 from southwell.cases.judge.results import Cell
-from southwell.cases.verify import identity, store
+from southwell.cases.verify import cached
+from southwell.cases.verify.cached import Cached
 from southwell.cases.verify.cells import Head, failed
 from southwell.cases.verify.columns import Column
-from southwell.cases.verify.store import Cached, Store
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import ALL_EFFECTS
+from southwell.references.protocol import sources, store
 from southwell.references.protocol.process import Failure
+from southwell.references.protocol.store import Store
 
 from ...support import killing
 
@@ -73,41 +75,31 @@ def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Question, speed, version, effects, sources of this package, machine, and the kernel that is asked for."""
     head = column().head
     keys = {
-        store.question(column(), [0.0]),
-        store.question(column(), [1.0]),
-        store.question(column(head=replace(head, version="1.1")), [0.0]),
-        store.question(column(head=replace(head, code="other")), [0.0]),
-        store.question(column(effects=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
-        store.question(double, 1.0),
-        store.question(double, 2.0),
+        cached.question(column(), [0.0]),
+        cached.question(column(), [1.0]),
+        cached.question(column(head=replace(head, version="1.1")), [0.0]),
+        cached.question(column(head=replace(head, code="other")), [0.0]),
+        cached.question(column(adapter="another source"), [0.0]),
+        cached.question(column(effects=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
+        cached.question(double, 1.0),
+        cached.question(double, 2.0),
     }
-    assert len(keys) == 7
+    assert len(keys) == 8
     for change in (
         lambda m: m.setattr(platform, "machine", lambda: "another"),
         lambda m: m.setenv("OPENBLAS_CORETYPE", "another"),
-        lambda m: m.setattr(identity, "package", lambda: "other sources"),
+        lambda m: m.setattr(sources, "digest", lambda modules: "other sources"),
     ):
         with monkeypatch.context() as m:
             change(m)
-            assert store.question(double, 1.0) not in keys
-    assert store.question(double, 1.0) in keys
-
-
-def test_the_sources_that_count_are_those_that_make_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "core").mkdir()
-    (tmp_path / "cases" / "verify").mkdir(parents=True)
-    (tmp_path / "references").mkdir()
-    monkeypatch.setattr(identity, "__file__", str(tmp_path / "cases" / "verify" / "identity.py"))
-    (tmp_path / "core" / "a.py").write_text("a = 1\n")
-    before = identity.package.__wrapped__()
-    (tmp_path / "core" / "a.py").write_text("a = 2\n")
-    assert identity.package.__wrapped__() != before
+            assert cached.question(double, 1.0) not in keys
+    assert cached.question(double, 1.0) in keys
 
 
 def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
-    assert store.storable(column())
-    assert not store.storable(column(adapter="0123"))
-    assert not store.storable(column(head=replace(column().head, version="")))
+    assert cached.storable(column())
+    assert not cached.storable(column(bundled=False))
+    assert not cached.storable(column(head=replace(column().head, version="")))
 
 
 def test_failures_are_not_kept(kept: Store) -> None:
@@ -124,41 +116,6 @@ def test_a_damaged_answer_is_computed_again(kept: Store, tmp_path: Path) -> None
     assert Cached(Inline(), kept).submit(double, 1.0).result() == 2.0
     assert CALLS == [1.0, 1.0]
     assert kept.damaged() == []
-
-
-def test_several_writers_lose_nothing(tmp_path: Path) -> None:
-    def write(k: int) -> None:
-        mine = Store(tmp_path / "cache" / store.NAME)
-        for i in range(50):
-            mine.put(f"{k}/{i}", "x", float(i))
-
-    with ThreadPoolExecutor(4) as pool:
-        list(pool.map(write, range(4)))
-    (one,) = Store(tmp_path / "cache" / store.NAME).kept()
-    assert one.count == 200
-
-
-def test_prune_removes_what_is_old(kept: Store) -> None:
-    kept.put("a", "x", 1.0)
-    (one,) = kept.kept()
-    assert kept.prune(one.last - 1.0) == 0
-    assert kept.prune(one.last + 1.0) == 1
-    assert kept.kept() == []
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX modes")
-def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path) -> None:
-    (tmp_path / "open").mkdir()
-    (tmp_path / "open").chmod(0o777)
-    with pytest.raises(OSError, match="only this user"):
-        Store(tmp_path / "open" / store.NAME)
-
-
-def test_a_file_that_is_no_store(tmp_path: Path) -> None:
-    (tmp_path / "cache").mkdir(mode=0o700)
-    (tmp_path / "cache" / store.NAME).write_text("not a database, " * 100)
-    with pytest.raises(OSError, match="not a database"):
-        Store(tmp_path / "cache" / store.NAME)
 
 
 @pytest.mark.slow
@@ -186,4 +143,4 @@ def test_the_question_of_another_blade_is_another() -> None:
     blades = [
         uniform_blade("a", 6.0, 0.3, EA=1e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=m) for m in (1.2, np.nextafter(1.2, 2.0))
     ]
-    assert store.question(partial(double, blades[0])) != store.question(partial(double, blades[1]))
+    assert cached.question(partial(double, blades[0])) != cached.question(partial(double, blades[1]))

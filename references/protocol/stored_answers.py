@@ -1,0 +1,44 @@
+"""Answers of codes that are taken from the store instead of being computed again.
+
+The process of a code is a pure function of the request it reads. The key of an answer is the digest of a request with this
+question alone (the blade, speed, refinement and number of modes, or the mechanism, and where the code is found), of the code's
+version, of the source of its adapter and all that this imports from this package, and of the platform. Answers of codes that
+are not part of this package, or of unknown version, are not stored, and failures are not.
+"""
+
+import json
+from hashlib import sha256
+
+from . import sources, store
+from .process import Limits
+
+
+def key(module: str, request: bytes, code: str, version: str) -> str:
+    """Key of the answer to a request with one question.
+
+    Args:
+        module: the module that reads the request in a separate process.
+        request: as sent.
+        code: name or import path of the code.
+        version: its version.
+    """
+    parts = (module, request.decode(), code, version, sources.adapter(code), *store.machine())
+    return sha256(json.dumps(parts).encode()).hexdigest()
+
+
+def reusable(code: str, version: str, limits: Limits) -> store.Store | None:
+    """The store, if answers of this code may be taken from it."""
+    return store.opened() if limits.reuse and version and sources.bundled(code) else None
+
+
+def get(opened: store.Store, key: str) -> object:
+    """A stored answer as plain data; None if there is none."""
+    try:
+        return json.loads(opened.get(key)[0])
+    except (KeyError, ValueError):
+        return None
+
+
+def put(opened: store.Store, key: str, code: str, answer: object) -> None:
+    """Store an answer, which is plain data."""
+    opened.put(key, f"{code}, answers", json.dumps(answer).encode())  # unlike msgspec, json keeps nan

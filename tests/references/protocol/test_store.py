@@ -1,0 +1,64 @@
+"""The store of answers: several writers, damage, age, and the folders and files that are refused."""
+
+import os
+import sqlite3
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from southwell.references.protocol import store
+from southwell.references.protocol.store import Store
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "cache" / store.NAME
+
+
+def test_several_writers_lose_nothing(file: Path) -> None:
+    def write(k: int) -> None:
+        mine = Store(file)
+        for i in range(50):
+            mine.put(f"{k}/{i}", "x", b"%d" % i)
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write, range(4)))
+    (one,) = Store(file).kept()
+    assert one.count == 200
+
+
+def test_a_damaged_answer_is_found_and_removed(file: Path) -> None:
+    kept = Store(file)
+    kept.put("a", "x", b"1.0")
+    kept.put("b", "x", b"2.0")
+    sqlite3.connect(file, isolation_level=None).execute("update answers set value = '3.0' where key = 'a'")
+    assert kept.damaged() == ["a"]
+    with pytest.raises(KeyError):
+        kept.get("a")
+    assert kept.damaged() == []
+    assert kept.get("b")[0] == b"2.0"
+
+
+def test_prune_removes_what_is_old(file: Path) -> None:
+    kept = Store(file)
+    kept.put("a", "x", b"1.0")
+    (one,) = kept.kept()
+    assert kept.prune(one.last - 1.0) == 0
+    assert kept.prune(one.last + 1.0) == 1
+    assert kept.kept() == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX modes")
+def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path) -> None:
+    (tmp_path / "open").mkdir()
+    (tmp_path / "open").chmod(0o777)
+    with pytest.raises(OSError, match="only this user"):
+        Store(tmp_path / "open" / store.NAME)
+
+
+def test_a_file_that_is_no_store(file: Path) -> None:
+    file.parent.mkdir(mode=0o700)
+    file.write_text("not a database, " * 100)
+    with pytest.raises(OSError, match="not a database"):
+        Store(file)

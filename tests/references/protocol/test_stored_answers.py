@@ -1,0 +1,135 @@
+"""Answers of codes taken from the store: every part of the key counts, and only what is missing is asked for."""
+
+import json
+import sqlite3
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import uniform_blade
+from southwell.core.modes import STATIONS, Modes
+from southwell.references.protocol import sources, store, worker
+from southwell.references.protocol.process import Failure, Limits
+from southwell.references.protocol.wire import encode
+from southwell.references.protocol.worker import Answer, answers
+
+BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
+RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
+REUSE = Limits(60.0, reuse=True)
+
+Asked = list[list[list[float]]]
+
+
+@pytest.fixture
+def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
+    """The runs of every request that reaches a process; it answers with the speed in its frequencies."""
+    seen: Asked = []
+
+    def converse(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
+        runs = json.loads(request)["runs"]
+        seen.append(runs)
+        lines = [json.dumps({"run": k, "modes": encode(_modes(*run))}).encode() for k, run in enumerate(runs)]
+        return lines[:expected], Failure("crashed", "ended")
+
+    monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(worker, "converse", converse)
+    return seen
+
+
+def _modes(omega: float, elements: int, count: int) -> Modes:
+    shapes = np.full((count, len(STATIONS), 4), 1.0 / 3.0 + 2.0j / 7.0)
+    return Modes(omega, omega + np.arange(1.0, count + 1), shapes, elements)
+
+
+def ask(**changed: Any) -> list[Answer]:
+    given: dict[str, Any] = {"name": "exact-beam", "blade": BLADE, "runs": RUNS, "limits": REUSE, "version": "1.0"}
+    return answers(**(given | changed))
+
+
+def test_only_what_is_missing_is_asked_for(asked: Asked) -> None:
+    ask(runs=RUNS[:1])
+    more = ask(runs=[RUNS[1], RUNS[0], RUNS[2]])
+    assert asked == [[[0.0, 10, 3]], [[2.0, 10, 3], [0.5, 20, 3]]]
+    for run, modes in zip([RUNS[1], RUNS[0], RUNS[2]], more, strict=True):
+        assert isinstance(modes, Modes)
+        assert (modes.omega, modes.elements) == run[:2]
+        np.testing.assert_array_equal(modes.frequencies, _modes(*run).frequencies)
+        np.testing.assert_array_equal(modes.shapes, _modes(*run).shapes)
+    ask()
+    assert len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"blade": replace(BLADE, hub_radius=np.nextafter(0.3, 1.0))},
+        {"runs": [(np.nextafter(2.0, 3.0), 10, 3)]},
+        {"runs": [(2.0, 11, 3)]},
+        {"runs": [(2.0, 10, 4)]},
+        {"name": "yoo-shin"},
+        {"version": "1.1"},
+    ],
+)
+def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]) -> None:
+    one = {"runs": [RUNS[1]]}
+    ask(**one)
+    ask(**one)
+    assert len(asked) == 1
+    ask(**(one | changed))
+    assert len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda m: m.setattr(sources, "adapter", lambda code: "another source"),
+        lambda m: m.setattr(store, "machine", lambda: ("another machine",)),
+        lambda m: m.setattr(worker, "__name__", "another module"),
+    ],
+)
+def test_source_and_machine_count(
+    asked: Asked, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
+) -> None:
+    ask()
+    change(monkeypatch)
+    ask()
+    assert len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    "changed", [{"limits": replace(REUSE, reuse=False)}, {"version": ""}, {"name": "elsewhere:CODE"}]
+)
+def test_what_is_never_stored(asked: Asked, changed: dict[str, Any]) -> None:
+    """Answers when reuse is not wanted, of a code of unknown version, and of a code that is not part of this package."""
+    ask(**changed)
+    ask(**changed)
+    ask()
+    assert len(asked) == 3
+
+
+def test_failures_are_not_stored(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
+        reply = {"run": 0, "kind": "refused", "reason": "no steady state"}
+        return [json.dumps(reply).encode()], Failure("timed out", "no answer within 60 s")
+
+    with monkeypatch.context() as m:
+        m.setattr(worker, "converse", fails)
+        assert [a.kind for a in ask() if isinstance(a, Failure)] == ["refused", "timed out", "timed out"]
+    assert all(isinstance(a, Modes) for a in ask())
+    assert asked == [[list(run) for run in RUNS]]
+
+
+def test_a_damaged_answer_is_computed_again(asked: Asked, tmp_path: Path) -> None:
+    before = ask()
+    base = sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None)
+    base.execute("update answers set value = replace(value, '.', '')")
+    after = ask()
+    assert len(asked) == 2
+    for a, b in zip(before, after, strict=True):
+        assert isinstance(a, Modes)
+        assert isinstance(b, Modes)
+        np.testing.assert_array_equal(a.frequencies, b.frequencies)
