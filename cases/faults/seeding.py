@@ -10,7 +10,6 @@ cannot be replaced from Python: seams of core are the functions that call them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache, wraps
@@ -30,6 +29,7 @@ from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
 from ..verify import matrix, mechanism_case
 from ..verify.mechanism_case import MechanismCase
+from ..verify.pool import Serial
 
 Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"]
 
@@ -127,19 +127,6 @@ def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> 
         return (wrong if get_ident() == thread else right)(*args, **kwargs)
 
     return chosen
-
-
-class Serial(Executor):
-    """An executor that runs each task immediately, in this thread."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """See ``Executor``."""
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:
-            future.set_exception(error)
-        return future
 
 
 def cells(trial: Trial) -> tuple[Cell, ...]:

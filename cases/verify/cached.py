@@ -1,4 +1,4 @@
-"""Tasks of a run that are taken from the store of answers.
+"""Tasks of a run, and other results, that are taken from the store of answers.
 
 The key of a task is the digest of its question (``identity.digest``: blade, speeds, core's references, code and version, and
 all the sources on which its answer depends) and of the platform. Answers of a code that is not part of this package are not
@@ -13,11 +13,12 @@ from typing import Any
 import msgspec
 
 from ...references.protocol.process import Failure
-from ...references.protocol.store import Store, machine
+from ...references.protocol.store import Store, machine, opened
 from ..judge.results import Cell
 from . import stored
 from .columns import Column
 from .identity import digest
+from .pool import Serial
 
 
 class Cached(Executor):
@@ -61,6 +62,12 @@ class Cached(Executor):
     def _keep(self, key: str, fn: Callable[..., Any], done: Future[Any]) -> None:
         if not done.cancelled() and done.exception() is None and not _failing(value := done.result()):
             self.store.put(key, _label(fn), msgspec.json.encode(stored.encode(value)))
+
+
+def remembered(fn: Callable[..., Any], *args: Any) -> Any:
+    """``fn(*args)``, taken from the store if it is there, computed and stored otherwise."""
+    kept = opened()
+    return Cached(Serial(), kept).submit(fn, *args).result() if kept else fn(*args)
 
 
 def question(fn: Callable[..., Any], *arguments: Any) -> str:

@@ -7,7 +7,7 @@ import os
 import signal
 import tempfile
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
@@ -50,6 +50,19 @@ class Pool(ProcessPoolExecutor):
                 with suppress(ProcessLookupError):  # it has just ended
                     os.kill(child.pid, signal.SIGINT)
         self.shutdown(wait=True, cancel_futures=True)
+
+
+class Serial(Executor):
+    """An executor that runs each task immediately, in this thread."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """See ``Executor``."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
 
 @contextmanager

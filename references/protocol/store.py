@@ -114,9 +114,13 @@ def _intact(checksum: bytes, value: bytes) -> bool:
     return isinstance(value, bytes) and sha256(value).digest() == checksum
 
 
+FRESH = "SOUTHWELL_FRESH"
+"""Environment variable that, if not empty, keeps a run from using the store."""
+
+
 def opened() -> Store | None:
-    """The store, opened once in each process; None if it cannot be used."""
-    return _opened(path())
+    """The store, opened once in each process; None if it is not wanted or cannot be used."""
+    return None if os.environ.get(FRESH) else _opened(path())
 
 
 @lru_cache

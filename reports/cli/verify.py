@@ -46,9 +46,6 @@ from .mounting import Mounting
 from .report import show
 from .subjects import is_blade_file, subjects
 
-FRESH = "SOUTHWELL_FRESH"
-"""Environment variable equivalent to ``--fresh``."""
-
 SCRATCH = "results.partial.tmp"
 """Folder in ``--out`` for temporary files of this run and of the codes it runs."""
 
@@ -261,7 +258,7 @@ def _solve(
 
 def _store(fresh: bool) -> Store | None:
     """Open the store of answers; None if it is not wanted or cannot be used."""
-    if fresh or os.environ.get(FRESH):
+    if fresh or os.environ.get(store.FRESH):
         return None
     try:
         return Store(store.path())

@@ -10,8 +10,10 @@ from cyclopts import Parameter
 from ...cases.closed_forms.closed_forms import FORMS, ClosedForm
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
+from ...cases.verify.cached import remembered
 from ..shared.console import output
 from ..shared.markdown import plain, table
+from ..shared.statuses import FAILED, PASSED
 from ..shared.style import svg
 from .closed_forms_figure import PAGE, Array, Complex, figure, solved
 
@@ -32,22 +34,28 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
     out
         Output folder.
     """
-    found = [(form, *solved(form)) for form in FORMS]
+    written, rows, passed = remembered(_computed)
     try:
-        for path, text in _page(found).items():
+        for path, text in written.items():
             (out / path).parent.mkdir(parents=True, exist_ok=True)
             atomic.write(out / path, text)
     except OSError as error:
         raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()
-    console.print(table(_rows(found)), markup=False, soft_wrap=True)
+    console.print(table(rows), markup=False, soft_wrap=True)
     console.print(f"{out / PAGE}", markup=False, soft_wrap=True)
-    return 0 if all(np.nanmax(off) < form.target for form, _, off in found) else 1
+    return PASSED if passed else FAILED
 
 
 def pages() -> dict[str, str]:
     """The page and its figures as SVG, by path."""
-    return _page([(form, *solved(form)) for form in FORMS])
+    return remembered(_computed)[0]
+
+
+def _computed() -> tuple[dict[str, str], list[dict[str, str]], bool]:
+    """The page and its figures, the rows of the table, and whether all differences are within their targets."""
+    found = [(form, *solved(form)) for form in FORMS]
+    return _page(found), _rows(found), all(np.nanmax(off) < form.target for form, _, off in found)
 
 
 def _page(found: Sequence[Found]) -> dict[str, str]:

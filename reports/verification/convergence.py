@@ -24,7 +24,7 @@ REFINED = ("code", "discretisation")
 """Roles of the cells whose refinements are drawn."""
 
 
-def convergence(run: Run, case: str, units: Units) -> Figure | None:
+def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Figure | None:
     """Draw the distance from core's converged answer against refinement, one panel per mode.
 
     The speed is the highest at which codes were refined. The number at the end of a line is the order observed at its
@@ -37,7 +37,7 @@ def convergence(run: Run, case: str, units: Units) -> Figure | None:
         return None
     omega = max(v.omega for v in levels)
     levels = [v for v in levels if v.omega == omega]
-    style, names = looks(columns(run.cells)), labels(rows)
+    style, names = looks(among or columns(run.cells)), labels(rows)
     at_omega = sorted((c for c in rows if c.omega == omega), key=lambda c: (c.reference != c.full, c.mode))
     modes = list(dict.fromkeys(names[c] for c in at_omega if c.mode <= PANELS))[:PANELS]
     across = min(3, len(modes))

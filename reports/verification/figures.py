@@ -1,6 +1,6 @@
 """The Campbell diagram and the differences of one blade, drawn from the rows of a run."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import fill
 from typing import Any
 
@@ -22,12 +22,12 @@ LONGEST = 22
 """Characters of a code's name in one line beside an axis."""
 
 
-def campbell(run: Run, case: str, units: Units) -> Figure | None:
+def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Figure | None:
     """Draw frequencies against rotor speed: core's as lines, each code's as markers, and rays of n per revolution.
 
     Core's lines are straight in the squares between the computed points, ``ω² = ω₀² + k Ω²`` (Southwell 1921). Codes
     that use core's discretisation are omitted, because their answers are not converged. Returns None if the case has
-    numbers at fewer than two speeds.
+    numbers at fewer than two speeds. ``among`` lists the columns whose order gives the colours: by default those of ``run``.
     """
     cells = [c for c in run.cells if c.case == case and c.role not in ("same discretisation", "measured")]
     data = [c for c in run.cells if c.case == case and c.verdict == "measured"]
@@ -55,7 +55,8 @@ def campbell(run: Run, case: str, units: Units) -> Figure | None:
             style = LINES.get(name.split()[0], "-")
             axes.plot(fine * units.speeds, curve, color=INK, lw=1.0, ls=style, zorder=3)
             ends.append((float(curve[-1]), name))
-        handles = [*_markers(axes, run, cells, shown, units), *_data(axes, data, units)]
+        style = looks(among or columns(run.cells))
+        handles = [*_markers(axes, style, cells, shown, units), *_data(axes, data, units)]
         beside(axes, ends)
         axes.set_xticks([omega * units.speeds for omega in speeds])
         axes.set_xlabel(units.speed_label)
@@ -107,9 +108,10 @@ def _rays(axes: Axes, units: Units) -> None:
         )
 
 
-def _markers(axes: Axes, run: Run, cells: Sequence[Cell], shown: Sequence[str], units: Units) -> list[Line2D]:
+def _markers(
+    axes: Axes, style: Mapping[str, Look], cells: Sequence[Cell], shown: Sequence[str], units: Units
+) -> list[Line2D]:
     """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
-    style = looks(columns(run.cells))
     handles = [Line2D([], [], color=INK, lw=1.0, label="core, converged")]
     for rank, name in enumerate(shown):
         mine = [c for c in cells if column(c) == name and c.frequency is not None]
@@ -163,7 +165,7 @@ BELOW = 1e-5
 """Lower limit of the differences drawn, as a fraction of the smallest target; smaller ones are at the left edge."""
 
 
-def differences(run: Run, case: str, units: Units) -> Figure | None:
+def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Figure | None:
     """Draw every cell's difference ± uncertainty on a log axis, one row per code, one track per mode.
 
     Measured data have no target and are omitted. Returns None if there are no numbers.
@@ -171,7 +173,7 @@ def differences(run: Run, case: str, units: Units) -> Figure | None:
     cells = [c for c in run.cells if c.case == case and c.difference is not None and c.role != "measured"]
     if not cells:
         return None
-    names, style, modes = columns(cells), looks(columns(run.cells)), labels(cells)
+    names, style, modes = columns(cells), looks(among or columns(run.cells)), labels(cells)
     tracks = max(c.mode for c in cells)
     with house():
         low, height = band(1), 1.36 + 0.6 * len(names)

@@ -10,19 +10,22 @@ from matplotlib.figure import Figure
 
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
+from ...cases.verify.cached import remembered
 from ...cases.verify.lumping import CASE as LUMPED
 from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
-from ..shared.style import save
+from ..shared.style import save, svg
 from ..shared.summary import SYMBOL, amount, broad, column, columns
 from ..shared.units import BY_KEY, Units
 from . import bench, closed_forms_figure, controls, error_budget, evidence, lumped, releases, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 
-FIGURES: dict[str, Callable[[Run, str, Units], Figure | None]] = {
+Draw = Callable[[Run, str, Units, Sequence[str]], Figure | None]
+
+FIGURES: dict[str, Draw] = {
     "campbell": campbell,
     "differences": differences,
     "convergence": convergence,
@@ -50,12 +53,12 @@ def write(run: Run, folder: Path) -> Path:
     figures = folder / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     drawn: dict[str, list[str]] = {}
+    among = columns(run.cells)
     for case in summary.cases(run):
-        for kind, draw in FIGURES.items():
-            if figure := draw(run, case, units(run, case)):
-                name = f"{file_name(case)}-{kind}.svg"
-                save(figure, figures / name)
-                drawn.setdefault(case, []).append(f"figures/{name}")
+        for kind, image in remembered(_figures, part(run, case), case, units(run, case), among).items():
+            name = f"{file_name(case)}-{kind}.svg"
+            atomic.write(figures / name, image)
+            drawn.setdefault(case, []).append(f"figures/{name}")
     if figure := lumped.lumping(run):
         save(figure, figures / "lumped-mass.svg")
     path = folder / "report.md"
@@ -66,6 +69,18 @@ def write(run: Run, folder: Path) -> Path:
     }
     atomic.write(path, render(run, drawn, **beside))
     return path
+
+
+def part(run: Run, case: str) -> Run:
+    """The rows of one case, on which its figures depend."""
+    cells, levels = tuple(c for c in run.cells if c.case == case), tuple(v for v in run.levels if v.case == case)
+    return Run(cells, levels, settings=tuple(s for s in run.settings if s.case == case))
+
+
+def _figures(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[str, str]:
+    """The figures of one case as SVG, by kind."""
+    drawn = {kind: draw(run, case, units, among) for kind, draw in FIGURES.items()}
+    return {kind: svg(figure) for kind, figure in drawn.items() if figure}
 
 
 def units(run: Run, case: str) -> Units:
