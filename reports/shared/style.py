@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...cases.input import atomic
+from .compact import compact
 
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
@@ -25,7 +26,7 @@ LINES = {"edgewise": "-", "flapwise": (0, (5, 2)), "torsion": (0, (1, 1.5)), "ax
 
 RC: dict[Any, Any] = {
     "svg.hashsalt": "southwell",
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 10.5,
@@ -105,11 +106,11 @@ def title(figure: Figure, text: str, below: str = "") -> None:
 
 
 def svg(figure: Figure) -> str:
-    """The figure as SVG without date or random identifiers."""
+    """The figure as SVG with its text as text, without date or random identifiers."""
     out = StringIO()
     with house():
         figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "southwell"})
-    return out.getvalue()
+    return compact(out.getvalue())
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -43,7 +43,7 @@ def test_every_measured_point_is_on_the_page() -> None:
     stated = page.count("| model error not visible at") + page.count("| model error visible (at")
     assert stated == len(found) + sum(map(len, beams.values()))
     assert "contradicts" not in page.replace("does not confirm or contradict core", "")
-    assert [figure.startswith("<?xml") for figure in drawn] == [True, True]
+    assert [figure.startswith("<svg") for figure in drawn] == [True, True]
 
 
 def of_beam(name: str) -> Iterator[Point]:
