@@ -121,6 +121,8 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
         return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure))
     if code.refused and code.refused[0]:
         return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", code.refused[0]))
+    if code.version is None:
+        return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)))
     name, effects = code.asked, felt(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)
@@ -139,6 +141,11 @@ def _origin(code: Description, blade: Blade) -> Independence | None:
     declared = code.independence
     plain = straight(blade) and not (blade.twist.any() or blade.precone or blade.pitch)
     return replace(declared, sections="blade") if declared and declared.theory != CORE and plain else declared
+
+
+def not_installed(code: Description) -> Failure:
+    """The failure of a code that is not installed."""
+    return Failure("not installed", f"not installed: {code.hint}")
 
 
 def failing(head: Head, failure: Failure, speeds: Iterable[float]) -> Rows:
