@@ -6,7 +6,8 @@ the libraries these use. A column also has the digest of the source of its code.
 or the number of workers.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import partial
@@ -24,70 +25,106 @@ TIME = "seconds"
 """The field with the time an answer took; not part of a digest."""
 
 
+RECENT = 4096
+"""Number of objects whose digests are kept."""
+
+
 def digest(task: Callable[..., Any], *arguments: Any) -> str:
     """The digest of a task: 64 hexadecimal digits.
+
+    Frozen dataclasses must not be changed in place: the digest of each object is computed once.
 
     Raises:
         TypeError: if an argument has no value to digest, such as a lambda or an open file.
     """
+    made, modules = _digested((task, arguments))
+    return sha256(made + sources.digest(modules).encode()).hexdigest()
+
+
+def _digested(value: Any) -> tuple[bytes, frozenset[str]]:
+    """The digest of a value alone, and the modules of all functions and classes in it."""
     made, modules = sha256(), set[str]()
-    for part in _parts((task, arguments), modules):
+
+    def add(part: bytes) -> None:
         made.update(b"%d:" % len(part))
         made.update(part)
-    made.update(sources.digest(frozenset(modules)).encode())
-    return made.hexdigest()
+
+    _feed(value, add, modules)
+    return made.digest(), frozenset(modules)
 
 
-def _parts(value: Any, modules: set[str]) -> Iterator[bytes]:
-    """The value as a sequence of byte strings; containers include type and length, so that different values differ.
+_recent: OrderedDict[int, tuple[Any, bytes, frozenset[str]]] = OrderedDict()
+"""Digests of frozen dataclasses by identity; the object is kept too, so that no other gets its identity."""
 
-    The modules of all functions and classes in it are added to ``modules``.
-    """
+
+def _once(value: Any) -> tuple[bytes, frozenset[str]]:
+    """The digest of a frozen dataclass, computed once as long as it is among the ``RECENT`` last ones."""
+    if id(value) not in _recent:
+        made, modules = _digested(_members(value))
+        _recent[id(value)] = value, made, modules | {type(value).__module__}
+        if len(_recent) > RECENT:
+            _recent.popitem(last=False)
+    _, made, found = _recent[id(value)]
+    return made, found
+
+
+def _feed(value: Any, add: Callable[[bytes], None], modules: set[str]) -> None:
+    """Add the value as byte strings; containers include type and length, so that different values differ."""
     kind = type(value)
     if value is None or kind in (bool, int, float, complex):
-        yield kind.__name__.encode()
-        yield repr(value).encode()
+        add(kind.__name__.encode())
+        add(repr(value).encode())
     elif isinstance(value, str | PurePath):
-        yield b"str"
-        yield str(value).encode("utf-8", "surrogatepass")
+        add(b"str")
+        add(str(value).encode("utf-8", "surrogatepass"))
     elif isinstance(value, bytes):
-        yield b"bytes"
-        yield value
+        add(b"bytes")
+        add(value)
     elif isinstance(value, np.ndarray | np.generic):
-        yield f"array {value.dtype.str} {value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
-    elif isinstance(value, partial):
-        yield from _tagged("partial", (value.func, value.args, value.keywords), modules)
+        add(f"array {value.dtype.str} {value.shape}".encode())
+        add(np.ascontiguousarray(value).tobytes())
     elif isinstance(value, Enum | FunctionType | type):
         name = value.name if isinstance(value, Enum) else ""
         of = kind if isinstance(value, Enum) else value
         if "<" in of.__qualname__:
             raise TypeError(f"{of.__qualname__}: an anonymous function cannot be identified")
         modules.add(of.__module__)
-        yield f"named {of.__module__}.{of.__qualname__}.{name}".encode()
-    elif is_dataclass(value):
-        modules.add(kind.__module__)
-        yield from _tagged(_name(kind), tuple(getattr(value, f.name) for f in fields(value) if f.name != TIME), modules)
-    elif isinstance(value, msgspec.Struct):
-        modules.add(kind.__module__)
-        yield from _tagged(_name(kind), tuple(getattr(value, name) for name in value.__struct_fields__), modules)
-    elif isinstance(value, Mapping):
-        yield from _tagged("mapping", tuple(value.items()), modules)
-    elif isinstance(value, list | tuple):
-        yield from _tagged("sequence", tuple(value), modules)
+        add(f"named {of.__module__}.{of.__qualname__}.{name}".encode())
+    elif is_dataclass(value) and kind.__dataclass_params__.frozen:  # pyright: ignore[reportAttributeAccessIssue]
+        made, found = _once(value)
+        modules |= found
+        add(b"frozen")
+        add(made)
     elif isinstance(value, set | frozenset):
-        yield from _tagged("set", tuple(sorted(b"".join(_parts(member, modules)) for member in value)), modules)
+        found = [_digested(member) for member in value]
+        add(f"set {len(found)}".encode())
+        for made, its in sorted(found, key=lambda pair: pair[0]):
+            modules |= its
+            add(made)
     elif kind is type(msgspec.UNSET):
-        yield b"unset"
+        add(b"unset")
     else:
-        modules.add(kind.__module__)
-        yield from _tagged(_name(kind), _state(value), modules)
+        name, members = _members(value)
+        if not isinstance(value, partial | Mapping | list | tuple):
+            modules.add(kind.__module__)
+        add(f"{name} {len(members)}".encode())
+        for member in members:
+            _feed(member, add, modules)
 
 
-def _tagged(name: str, members: tuple[Any, ...], modules: set[str]) -> Iterator[bytes]:
-    yield f"{name} {len(members)}".encode()
-    for member in members:
-        yield from _parts(member, modules)
+def _members(value: Any) -> tuple[str, tuple[Any, ...]]:
+    """The name of a container's kind, and its members."""
+    if isinstance(value, partial):
+        return "partial", (value.func, value.args, value.keywords)
+    if isinstance(value, Mapping):
+        return "mapping", tuple(value.items())
+    if isinstance(value, list | tuple):
+        return "sequence", tuple(value)
+    if is_dataclass(value):
+        return _name(type(value)), tuple(getattr(value, f.name) for f in fields(value) if f.name != TIME)
+    if isinstance(value, msgspec.Struct):
+        return _name(type(value)), tuple(getattr(value, name) for name in value.__struct_fields__)
+    return _name(type(value)), _state(value)
 
 
 def _name(kind: type) -> str:

@@ -35,8 +35,13 @@ def digest(modules: frozenset[str]) -> str:
     """
     made = sha256(repr([python_version(), *((name, version(name)) for name in LIBRARIES)]).encode())
     for path in files(modules):
-        made.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
+        made.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + _content(path))
     return made.hexdigest()
+
+
+@cache
+def _content(path: Path) -> bytes:
+    return sha256(path.read_bytes()).digest()
 
 
 def files(modules: Iterable[str]) -> list[Path]:
@@ -123,7 +128,8 @@ def adapter(code: str) -> str:
     return made.hexdigest()
 
 
-def _folder(package: str) -> list[str]:
+@cache
+def _folder(package: str) -> tuple[str, ...]:
     """The modules in the folder of a package of this package."""
     folder = ROOT.joinpath(*package.split(".")[1:])
-    return [package, *(f"{package}.{path.stem}" for path in folder.glob("*.py") if path.stem != "__init__")]
+    return package, *(f"{package}.{path.stem}" for path in folder.glob("*.py") if path.stem != "__init__")

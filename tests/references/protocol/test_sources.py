@@ -33,7 +33,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def _forget() -> None:
-    for function in (sources.digest, sources.imported, sources._file):
+    for function in (sources.digest, sources.imported, sources._file, sources._content, sources._folder):
         function.cache_clear()
 
 
@@ -59,7 +59,7 @@ def test_a_change_of_any_of_them_changes_the_digest(package: Path, name: str) ->
     before = sources.digest(asked)
     with (package / name).open("a") as file:
         file.write("# changed\n")
-    sources.digest.cache_clear()
+    _forget()
     assert sources.digest(asked) != before
 
 
@@ -68,7 +68,7 @@ def test_a_change_elsewhere_does_not(package: Path) -> None:
     before = sources.digest(asked)
     (package / "core/c.py").write_text("c = 2\n")
     (package / "references/one/other.py").write_text("\n")
-    sources.digest.cache_clear()
+    _forget()
     assert sources.digest(asked) == before
 
 

@@ -35,6 +35,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
         lines = [json.dumps({"run": k, "modes": encode(_modes(*run))}).encode() for k, run in enumerate(runs)]
         return lines[:expected], Failure("crashed", "ended")
 
+    monkeypatch.delenv(store.FRESH, raising=False)
     monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(worker, "converse", converse)
     return seen

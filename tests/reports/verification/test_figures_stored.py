@@ -25,7 +25,7 @@ def counted(run: Run, case: str, units: Units, among: tuple[str, ...]) -> Figure
 
 @pytest.fixture(autouse=True)
 def stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(store.FRESH)
+    monkeypatch.delenv(store.FRESH, raising=False)
     monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(report, "FIGURES", {"differences": counted})
     DRAWN.clear()
