@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
 _HERE = Path(__file__).parent
-_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 
 
 @cache
@@ -110,6 +110,16 @@ def inlined(f: F) -> F:
     return cast(F, numba.njit(f, inline="always", **_HOW))
 
 
+def inner(f: F) -> F:
+    """``compiled`` for functions that only compiled code calls; it is not stored by itself."""
+    return cast(F, numba.njit(f, **_HOW))
+
+
+def reduction(f: F) -> F:
+    """``inner`` for sums over long rows: the order of the terms may be changed, for vector instructions."""
+    return cast(F, numba.njit(f, **{**_HOW, "fastmath": {"contract", "reassoc"}}))
+
+
 @compiled
 def clear(out: Array) -> None:
     """out = 0 for a matrix."""
@@ -134,6 +144,16 @@ def transposed_product(a: Array, b: Array, out: Array) -> None:
         a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
         for j in range(min(b.shape[1], out.shape[1])):
             out[i, j] = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+
+
+@inner
+def add_transposed_product(a: Array, b: Array, out: Array, first: int) -> None:
+    """Add aᵀ b, for a (6, m) and b (6, n), to the rows of ``out`` from ``first`` on."""
+    for i in range(a.shape[1]):
+        a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
+        for j in range(b.shape[1]):
+            more = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+            out[first + i, j] += more
 
 
 @compiled

@@ -5,7 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, clear, compiled, congruence, product, transposed_apply
+from ..compiled import (
+    add_transposed_product,
+    apply,
+    clear,
+    compiled,
+    congruence,
+    inner,
+    product,
+    transposed_apply,
+)
 from ..space import rigid
 from . import inertia, measures
 from .corotational import StrainLawArrays
@@ -155,15 +164,14 @@ def _add_inertia(
     from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
     T, D = np.empty((6, 6)), np.empty((6, 6))
     M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    slopes, bent = np.empty((6 * per, 12)), np.empty((6 * per, 12))  # of all points, stacked
-    U, MU, CU, KU = (np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)))
-    H, turn = np.empty((6, 12)), np.empty((6, 6))
+    slope, bent, H, turn = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
+    U, by_U, curvature = np.empty((6, 18)), np.empty((6, 18)), np.zeros((12, 12))
     rigid.ad(frame, turn)
     for i in range(6):
         change[i] = eta[i] - beams.law.eta[k, i]
     for p in range(per):
-        point, at = per * k + p, slice(6 * p, 6 * p + 6)
-        shape, slope = beams.shape[point], slopes[at]
+        point = per * k + p
+        shape = beams.shape[point]
         ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
         rigid.inverse(from_point, pose)
@@ -181,28 +189,38 @@ def _add_inertia(
             sums.f[i] += g[i]
             for j in range(12):
                 sums.f[6 + j] += H[i, j] * g[i]
-        _put_twist(H, U[at])
-        product(M, U[at], MU[at])
-        product(C, U[at], CU[at])
-        product(K, U[at], KU[at])
+        _put_twist(H, U)
+        product(M, U, by_U)
+        _add_on_twists(H, by_U, sums.M)
+        product(C, U, by_U)
+        _add_on_twists(H, by_U, sums.C)
+        product(K, U, by_U)
         if geometric:
             # D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β, H = T(ζ) ∂ζ/∂(ρ, β)
             rigid.cross(g, work)
-            product(work, H, bent[at])
-            for i in range(6 * p, 6 * p + 6):
+            product(work, H, bent)
+            for i in range(6):
                 for j in range(12):
-                    KU[i, 6 + j] -= bent[i, j]
+                    by_U[i, 6 + j] -= bent[i, j]
             transposed_apply(T, g, on_zeta)
             for i in range(6):
                 for j in range(6):
                     sums.on_eta[j] += shape[i, j] * on_zeta[i]
             rigid.tangent_transpose_derivative(zeta, g, D)
-            product(D, slope, bent[at])
-    np.dot(U.T, MU, sums.M)
-    np.dot(U.T, CU, sums.C)
-    np.dot(U.T, KU, sums.K)
+            product(D, slope, bent)
+            add_transposed_product(slope, bent, curvature, 0)
+        _add_on_twists(H, by_U, sums.K)
     if geometric:
-        _split(np.dot(slopes.T, bent), spring, sums.K)
+        _split(curvature, spring, sums.K)
+
+
+@inner
+def _add_on_twists(H: Array, by_U: Array, out: Array) -> None:
+    """Add Uᵀ M U to ``out`` (18, 18), for the twist U = (1, H) of a point from (ξ_a, ρ, β) and ``by_U`` = M U (6, 18)."""
+    for i in range(by_U.shape[0]):
+        for j in range(by_U.shape[1]):
+            out[i, j] += by_U[i, j]
+    add_transposed_product(H, by_U, out, 6)
 
 
 @compiled
