@@ -6,6 +6,7 @@ vectors find the double frequencies of symmetric blades. (Lanczos 1950; Golub an
 Eigenvalue Problem*, 1998, ch. 13.)
 """
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -25,6 +26,7 @@ _SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution wi
 _MAX_SOLVE_ERROR = 0.3  # error of a solution without refinement above which K is lost to rounding
 _MAX_COUNT_ERROR = 1e-4  # error of a solution above which a wrong count or a negative pivot is due to rounding
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
+_FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 18, 4  # the same, starting from the modes of a similar pencil
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 
 
@@ -32,8 +34,31 @@ class EigensolverError(ArithmeticError):
     """The eigensolver failed: whether the blade is stable is not known."""
 
 
-def lanczos(p: ChainPencil, count: int) -> Eigen:
+@dataclass(frozen=True)
+class Start:
+    """Start of the basis for a similar pencil.
+
+    Attributes:
+        vectors: (2, 2n) combinations of the lowest modes and a few more.
+        size: number of vectors of the basis at which convergence is first checked.
+    """
+
+    vectors: Array
+    size: int
+
+
+@dataclass(frozen=True)
+class Lowest(Eigen):
+    """The lowest modes, and the start for a similar pencil."""
+
+    start: Start
+
+
+def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     """The ``count`` lowest modes of a chain about a state where K is symmetric.
+
+    With ``near``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to all
+    of that pencil's is not found, and ``completeness`` reports it as missing.
 
     With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with products
     from the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
@@ -58,18 +83,19 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
         raise eigen.unstable()
     refinements = _refinements(lost)
     a = Operator(M, C, K, factor, exact, refinements)
-    w, _, _ = forward(a, w)  # smooth
+    w = forward(a, w)[0] if near is None else near.vectors.copy()  # smooth
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
-    size, before, look = 0, 0, 3 * count + _FIRST_LOOK
+    size, before = 0, 0
+    look, every = (3 * count + _FIRST_LOOK, _LOOK_EVERY) if near is None else (near.size, _LOOK_EVERY_NEAR)
     while True:
         w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
         if not size:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
-        look = size + _LOOK_EVERY
+        look = size + every
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)
-        beyond, mu, z = mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
+        every_z, beyond, mu, z = z, mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
@@ -94,7 +120,11 @@ def lanczos(p: ChainPencil, count: int) -> Eigen:
             raise _lost_to_rounding(len(K.diagonal), lost) from error
         raise
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
-    return Eigen(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0])
+    start = Start(
+        (_phases(every_z.shape[1]) @ every_z.T).real @ basis[:size],
+        3 * count + _FIRST_LOOK_NEAR if near is None else size,
+    )
+    return Lowest(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0], start)
 
 
 def _lost_to_rounding(elements: int, error: float) -> EigensolverError:
@@ -116,6 +146,13 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
 def _start(size: int) -> Array:
     """Two random start vectors (2, size), the same in every run."""
     return np.random.default_rng(1921).normal(size=(2, size))
+
+
+@lru_cache(maxsize=16)
+def _phases(modes: int) -> NDArray[np.complex128]:
+    """Random coefficients (2, modes) of modes in start vectors, the same in every run."""
+    rng = np.random.default_rng(1950)
+    return rng.normal(size=(2, modes)) + 1j * rng.normal(size=(2, modes))
 
 
 def _refinements(solve_error: float) -> int:
