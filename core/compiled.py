@@ -29,6 +29,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 _HERE = Path(__file__).parent
 _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
+_REORDERED: dict[str, Any] = {**_HOW, "fastmath": {"contract", "reassoc"}}
 
 
 @cache
@@ -117,7 +118,7 @@ def inner(f: F) -> F:
 
 def reduction(f: F) -> F:
     """``inner`` for sums over long rows: the order of the terms may be changed, for vector instructions."""
-    return cast(F, numba.njit(f, **{**_HOW, "fastmath": {"contract", "reassoc"}}))
+    return cast(F, numba.njit(f, **_REORDERED))
 
 
 @compiled
@@ -147,8 +148,9 @@ def transposed_product(a: Array, b: Array, out: Array) -> None:
 
 
 @inner
-def add_transposed_product(a: Array, b: Array, out: Array, first: int) -> None:
-    """Add aᵀ b, for a (6, m) and b (6, n), to the rows of ``out`` from ``first`` on."""
+def add_transposed_product(a: Array, b: Array, out: Array) -> None:
+    """Add aᵀ b, for a (6, m) and b (6, n), to the last m rows of ``out``."""
+    first = len(out) - a.shape[1]
     for i in range(a.shape[1]):
         a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
         for j in range(b.shape[1]):

@@ -34,26 +34,6 @@ class Operator(NamedTuple):
 
 
 @compiled
-def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
-    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
-    n = v.shape[1] // 2
-    force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
-    blocks.times(M, v[:1], force)
-    for i in range(n):
-        x[0, i] = force[0, i]
-    blocks.solve(factor, x)
-    strained.times(exact, x, back)
-    for i in range(n):
-        more[0, i] = back[0, i] = force[0, i] - back[0, i]
-    blocks.solve(factor, more)
-    left = whole = 0.0
-    for i in range(n):
-        left += back[0, i] * more[0, i]
-        whole += force[0, i] * x[0, i]
-    return np.sqrt(abs(left / whole))
-
-
-@compiled
 def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     """w = A⁻¹S v, A w = S v, and M y (k, n), for rows v (k, 2n)."""
     k, n = len(v), v.shape[1] // 2
@@ -227,30 +207,3 @@ def _axes(gram: Array) -> tuple[Array, Array]:
     turn[0, 0], turn[1, 0], turn[0, 1], turn[1, 1] = -sin, cos, cos, sin
     value[0], value[1] = a * sin**2 - 2.0 * b * sin * cos + c * cos**2, a * cos**2 + 2.0 * b * sin * cos + c * sin**2
     return value, turn
-
-
-@compiled
-def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
-    """i times the skew matrix (size, size) with the given upper triangle."""
-    out = np.zeros((size, size), np.complex128)
-    for i in range(size):
-        for j in range(i + 1, size):
-            out[i, j], out[j, i] = 1j * projected[i, j], -1j * projected[i, j]
-    return out
-
-
-@compiled
-def quotients(a: Operator, x: Array) -> Array:
-    """x*Kx, x*Mx and ½ i x*Cx, which is real, as (3, m), for complex vectors x (m, 2, n) by real and imaginary parts."""
-    m, _, n = x.shape
-    out = np.zeros((3, m))
-    Kx, Cx, Mx = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
-    for v in range(m):
-        strained.times(a.exact, x[v], Kx)
-        blocks.times(a.C, x[v], Cx)
-        blocks.times(a.M, x[v], Mx)
-        for i in range(n):
-            out[0, v] += x[v, 0, i] * Kx[0, i] + x[v, 1, i] * Kx[1, i]
-            out[1, v] += x[v, 0, i] * Mx[0, i] + x[v, 1, i] * Mx[1, i]
-            out[2, v] += 0.5 * (x[v, 1, i] * Cx[0, i] - x[v, 0, i] * Cx[1, i])
-    return out

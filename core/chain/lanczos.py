@@ -15,9 +15,11 @@ from scipy.linalg import eigh
 
 from .. import eigen
 from ..eigen import Eigen
-from . import blocks, completeness
-from .krylov import Operator, extend, forward, hermitian, quotients, solve_error
+from . import blocks, completeness, strained
+from .blocks import Factor, Transposed
+from .krylov import Operator, extend, forward
 from .pencil import ChainPencil
+from .strained import Strained
 
 Array = NDArray[np.float64]
 
@@ -94,7 +96,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         look = size + every
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
-        mu, z = eigh(hermitian(projected, size), subset_by_index=[size - more, size - 1], check_finite=False)
+        mu, z = eigh(_hermitian(projected[:size, :size]), subset_by_index=[size - more, size - 1], check_finite=False)
         every_z, beyond, mu, z = z, mu[: more - wanted], mu[more - wanted :], z[:, more - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
@@ -108,8 +110,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     z = z[:, positive].T
     x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
     x = x.reshape(len(z), 2, n)
-    kappa, inertia, half = quotients(a, x)
-    frequencies = kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)  # κ of a free joint is rounding
+    frequencies, kappa = _quotients(M, C, exact, x)
     if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
         raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
     order = np.argsort(frequencies)
@@ -136,10 +137,39 @@ def _lost_to_rounding(elements: int, error: float) -> EigensolverError:
 
 def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
-    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.remainder))
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
-    kappa, inertia, half = quotients(Operator(M, C, K, p.factor, p.strained, 0), x)
-    return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half)
+    return _quotients(blocks.transposed(p.M), blocks.transposed(p.C), p.strained, x)[0]
+
+
+def _quotients(M: Transposed, C: Transposed, K: Strained, x: Array) -> tuple[Array, Array]:
+    """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
+    rows = x.reshape(-1, x.shape[2])
+    Kx, Cx, Mx = np.empty_like(x), np.empty_like(x), np.empty_like(x)
+    strained.times(K, rows, Kx.reshape(rows.shape))
+    blocks.times(C, rows, Cx.reshape(rows.shape))
+    blocks.times(M, rows, Mx.reshape(rows.shape))
+    kappa, inertia = np.einsum("mpi,mpi->m", x, Kx), np.einsum("mpi,mpi->m", x, Mx)
+    half = 0.5 * (np.einsum("mi,mi->m", x[:, 1], Cx[:, 0]) - np.einsum("mi,mi->m", x[:, 0], Cx[:, 1]))  # ½ i x*Cx
+    return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
+
+
+def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
+    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
+    force, back = np.empty((2, 1, v.shape[1] // 2))
+    blocks.times(M, v[:1], force)
+    x = force.copy()
+    blocks.solve(factor, x)
+    strained.times(exact, x, back)
+    left = force - back
+    more = left.copy()
+    blocks.solve(factor, more)
+    return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
+
+
+def _hermitian(projected: Array) -> NDArray[np.complex128]:
+    """i times the skew matrix with the upper triangle of ``projected``."""
+    upper = np.triu(projected, 1)
+    return 1j * (upper - upper.T)
 
 
 @lru_cache(maxsize=4)

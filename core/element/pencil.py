@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 class BeamArrays(NamedTuple):
-    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed``: whether the points carry loads."""
+    """``beams.Beams`` as contiguous arrays for compiled code."""
 
     law: StrainLawArrays
     stiffness: Array
@@ -34,7 +34,6 @@ class BeamArrays(NamedTuple):
     bubble: Array
     mass: Array
     force: Array
-    pushed: bool
 
 
 class _Sums(NamedTuple):
@@ -50,6 +49,8 @@ class _Sums(NamedTuple):
 @compiled
 def assemble(
     beams: BeamArrays,
+    cardan: bool | None,
+    held: bool | None,
     x: Array,
     beta: Array,
     frame: Array,
@@ -62,7 +63,11 @@ def assemble(
     remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``."""
+    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``.
+
+    ``cardan`` is that of ``measures``; ``held`` is None without loads on the points and without components that stay fixed.
+    Numba does not compile the branches that None excludes.
+    """
     eta, back = np.empty(6), np.empty((6, 6))
     sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
     for k in range(len(x)):
@@ -75,11 +80,11 @@ def assemble(
         for matrix in (sums.M, sums.C, sums.K, spring[k]):
             clear(matrix)
         if len(beams.mass):
-            _add_inertia(beams, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
+            _add_inertia(beams, held, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
             for i in range(6):
                 sums.f[12 + i] += beams.inner_preload[k, i] + beta[k, i]
                 sums.K[12 + i, 12 + i] += 1.0
-        _add_elastic(beams, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
+        _add_elastic(beams, cardan, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
         _on_ends(sums.M, M[k])
         _on_ends(sums.C, C[k])
         _on_ends(sums.K, remainder[k])
@@ -107,6 +112,7 @@ def _on_ends(of_rho: Array, out: Array) -> None:
 @compiled
 def _add_elastic(
     beams: BeamArrays,
+    cardan: bool | None,
     k: int,
     x: Array,
     eta: Array,
@@ -119,14 +125,14 @@ def _add_elastic(
     """Add the elastic force on (ρ, β) and its material and geometric stiffness; the part on ρ alone goes to ``spring``."""
     strain, s = np.empty(6), np.empty(6)
     rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
-    measures.strains(beams.law, k, x, eta, back, beta, strain, rate, J, undo)
+    measures.strains(beams.law, cardan, k, x, eta, back, beta, strain, rate, J, undo)
     apply(beams.stiffness[k], strain, s)
     for i in range(6):
         s[i] += beams.preload[k, i]
     work, K = np.empty((6, 12)), np.empty((12, 12))
     congruence(rate, beams.stiffness[k], work, K)
     if geometric:
-        measures.add_curvature(beams.law, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
+        measures.add_curvature(beams.law, cardan, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
     force = np.empty(12)
     transposed_apply(rate, s, force)
     for i in range(12):
@@ -144,6 +150,7 @@ def _add_elastic(
 @compiled
 def _add_inertia(
     beams: BeamArrays,
+    held: bool | None,
     k: int,
     eta: Array,
     back: Array,
@@ -178,7 +185,7 @@ def _add_inertia(
         rigid.adjoint(pose, to_point)
         congruence(to_point, beams.mass[point], work, M)
         inertia.carry(M, frame, turn, fall, g, C, K)
-        if beams.pushed or not geometric:
+        if held is not None:
             for i in range(3):
                 push[i] = 0.0
                 for j in range(3):
@@ -208,7 +215,7 @@ def _add_inertia(
                     sums.on_eta[j] += shape[i, j] * on_zeta[i]
             rigid.tangent_transpose_derivative(zeta, g, D)
             product(D, slope, bent)
-            add_transposed_product(slope, bent, curvature, 0)
+            add_transposed_product(slope, bent, curvature)
         _add_on_twists(H, by_U, sums.K)
     if geometric:
         _split(curvature, spring, sums.K)
@@ -220,7 +227,7 @@ def _add_on_twists(H: Array, by_U: Array, out: Array) -> None:
     for i in range(by_U.shape[0]):
         for j in range(by_U.shape[1]):
             out[i, j] += by_U[i, j]
-    add_transposed_product(H, by_U, out, 6)
+    add_transposed_product(H, by_U, out)
 
 
 @compiled
