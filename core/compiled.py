@@ -31,13 +31,16 @@ _HERE = Path(__file__).parent
 _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 _REORDERED: dict[str, Any] = {**_HOW, "fastmath": {"contract", "reassoc"}}
 
+_MARKS = (b"@compiled", b"@inlined", b"@inner", b"@reduction")  # of files with compiled code
+
 
 @cache
 def _folder() -> Path | None:
     """The cache folder: next to the sources if they are writable, else in the user's cache, else in a temporary folder. Only
     folders that nobody else can write to are used, since their content is executed. None: there is no such folder."""
     sources = [p.read_bytes() for p in sorted(_HERE.rglob("*.py"))]
-    name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
+    loops = (s for s in sources if any(mark in s for mark in _MARKS))
+    name = "compiled-" + hashlib.sha256(b"".join(loops)).hexdigest()[:12]
     for place in _places():
         if folder := compiled_files.folder(place, name):
             if place.parent == _HERE:  # other places may hold the cache of another installation
