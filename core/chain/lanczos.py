@@ -168,8 +168,9 @@ def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> flo
 
 def _hermitian(projected: Array) -> NDArray[np.complex128]:
     """i times the skew matrix with the upper triangle of ``projected``."""
-    upper = np.triu(projected, 1)
-    return 1j * (upper - upper.T)
+    upper, out = np.triu(projected, 1), np.zeros(projected.shape, np.complex128)
+    out.imag = upper - upper.T
+    return out
 
 
 @lru_cache(maxsize=4)
