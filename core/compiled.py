@@ -28,7 +28,10 @@ Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
 _HERE = Path(__file__).parent
-_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True}
+_REORDERED: dict[str, Any] = {**_HOW, "fastmath": {"contract", "reassoc"}}
+
+_MARKS = (b"@compiled", b"@inlined", b"@inner", b"@reduction")  # of files with compiled code
 
 
 @cache
@@ -36,7 +39,8 @@ def _folder() -> Path | None:
     """The cache folder: next to the sources if they are writable, else in the user's cache, else in a temporary folder. Only
     folders that nobody else can write to are used, since their content is executed. None: there is no such folder."""
     sources = [p.read_bytes() for p in sorted(_HERE.rglob("*.py"))]
-    name = "compiled-" + hashlib.sha256(b"".join(s for s in sources if b"@compiled" in s)).hexdigest()[:12]
+    loops = (s for s in sources if any(mark in s for mark in _MARKS))
+    name = "compiled-" + hashlib.sha256(b"".join(loops)).hexdigest()[:12]
     for place in _places():
         if folder := compiled_files.folder(place, name):
             if place.parent == _HERE:  # other places may hold the cache of another installation
@@ -110,6 +114,16 @@ def inlined(f: F) -> F:
     return cast(F, numba.njit(f, inline="always", **_HOW))
 
 
+def inner(f: F) -> F:
+    """``compiled`` for functions that only compiled code calls; it is not stored by itself."""
+    return cast(F, numba.njit(f, **_HOW))
+
+
+def reduction(f: F) -> F:
+    """``inner`` for sums over long rows: the order of the terms may be changed, for vector instructions."""
+    return cast(F, numba.njit(f, **_REORDERED))
+
+
 @compiled
 def clear(out: Array) -> None:
     """out = 0 for a matrix."""
@@ -134,6 +148,17 @@ def transposed_product(a: Array, b: Array, out: Array) -> None:
         a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
         for j in range(min(b.shape[1], out.shape[1])):
             out[i, j] = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+
+
+@inner
+def add_transposed_product(a: Array, b: Array, out: Array) -> None:
+    """Add aᵀ b, for a (6, m) and b (6, n), to the last m rows of ``out``."""
+    first = len(out) - a.shape[1]
+    for i in range(a.shape[1]):
+        a0, a1, a2, a3, a4, a5 = a[0, i], a[1, i], a[2, i], a[3, i], a[4, i], a[5, i]
+        for j in range(b.shape[1]):
+            more = a0 * b[0, j] + a1 * b[1, j] + a2 * b[2, j] + a3 * b[3, j] + a4 * b[4, j] + a5 * b[5, j]
+            out[first + i, j] += more
 
 
 @compiled

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
+from ..compiled import compiled, inner, reduction
 from . import blocks, strained
 from .blocks import Factor, Transposed
 from .strained import Strained
@@ -31,26 +31,6 @@ class Operator(NamedTuple):
     factor: Factor
     exact: Strained
     refinements: int
-
-
-@compiled
-def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
-    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
-    n = v.shape[1] // 2
-    force, back, x, more = np.empty((1, n)), np.empty((1, n)), np.empty((1, n)), np.empty((1, n))
-    blocks.times(M, v[:1], force)
-    for i in range(n):
-        x[0, i] = force[0, i]
-    blocks.solve(factor, x)
-    strained.times(exact, x, back)
-    for i in range(n):
-        more[0, i] = back[0, i] = force[0, i] - back[0, i]
-    blocks.solve(factor, more)
-    left = whole = 0.0
-    for i in range(n):
-        left += back[0, i] * more[0, i]
-        whole += force[0, i] * x[0, i]
-    return np.sqrt(abs(left / whole))
 
 
 @compiled
@@ -83,7 +63,7 @@ def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     return w, force, My
 
 
-@compiled
+@inner
 def _dual(a: Operator, w: Array, My: Array) -> Array:
     """A w for rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
@@ -143,7 +123,7 @@ def extend(
             for j in range(w.shape[1]):
                 basis[size + m, j] = first * w[0, j] + other * w[-1, j]
         w, force, of_these = forward(a, basis[size:end])
-        overlap = np.dot(basis[before:end], force.T)
+        overlap = _products(basis[before:end], force)
         for i in range(len(overlap)):
             for j in range(kept):
                 projected[before + i, size + j] = overlap[i, j]
@@ -155,7 +135,7 @@ def extend(
         before, size = size, end
 
 
-@compiled
+@inner
 def _orthogonalise(
     a: Operator, w: Array, My: Array, basis: Array, projected: Array, size: int, before: int
 ) -> tuple[Array, float]:
@@ -169,14 +149,14 @@ def _orthogonalise(
         if turn > 0:
             blocks.times(a.M, w[:, n:].copy(), My)
         dual = _dual(a, w, My)
-        overlap = np.dot(basis[:size], dual.T)
+        overlap = _products(basis[:size], dual)
         _project_out(w, overlap, basis[:size])
         largest = 0.0
         for i in range(size):
             for j in range(size - before):
                 projected[i, before + j] += overlap[i, j]
                 largest = max(largest, abs(overlap[i, j]))
-        gram = np.dot(w, dual.T)
+        gram = _products(w, dual)
         smallest = gram[0, 0]
         for i in range(len(w)):
             smallest = min(smallest, gram[i, i])
@@ -185,16 +165,37 @@ def _orthogonalise(
     return gram, largest
 
 
-@compiled
+@reduction
+def _products(a: Array, b: Array) -> Array:
+    """a bᵀ (m, k) for rows a (m, n) and one or two rows b (k, n)."""
+    m, k = len(a), len(b)
+    out = np.empty((m, k))
+    for i in range(m):
+        first = other = 0.0
+        for c in range(a.shape[1]):
+            first += a[i, c] * b[0, c]
+            other += a[i, c] * b[k - 1, c]
+        out[i, 0] = first
+        out[i, k - 1] = other
+    return out
+
+
+@inner
 def _project_out(w: Array, overlap: Array, basis: Array) -> None:
-    """w −= overlapᵀ basis."""
-    less = np.dot(overlap.T, basis)
-    for i in range(w.shape[0]):
-        for j in range(w.shape[1]):
-            w[i, j] -= less[i, j]
+    """w −= overlapᵀ basis for one or two rows w; four rows of the basis at a time."""
+    m = len(basis)
+    for i in range(0, m, 4):
+        i1, i2, i3 = min(i + 1, m - 1), min(i + 2, m - 1), min(i + 3, m - 1)
+        for v in range(len(w)):
+            h0 = overlap[i, v]
+            h1 = overlap[i1, v] if i1 == i + 1 else 0.0
+            h2 = overlap[i2, v] if i2 == i + 2 else 0.0
+            h3 = overlap[i3, v] if i3 == i + 3 else 0.0
+            for c in range(w.shape[1]):
+                w[v, c] -= h0 * basis[i, c] + h1 * basis[i1, c] + h2 * basis[i2, c] + h3 * basis[i3, c]
 
 
-@compiled
+@inner
 def _axes(gram: Array) -> tuple[Array, Array]:
     """Eigenvalues, ascending, and eigenvectors, as columns, of a symmetric matrix (1, 1) or (2, 2)."""
     if len(gram) == 1:
@@ -206,30 +207,3 @@ def _axes(gram: Array) -> tuple[Array, Array]:
     turn[0, 0], turn[1, 0], turn[0, 1], turn[1, 1] = -sin, cos, cos, sin
     value[0], value[1] = a * sin**2 - 2.0 * b * sin * cos + c * cos**2, a * cos**2 + 2.0 * b * sin * cos + c * sin**2
     return value, turn
-
-
-@compiled
-def hermitian(projected: Array, size: int) -> NDArray[np.complex128]:
-    """i times the skew matrix (size, size) with the given upper triangle."""
-    out = np.zeros((size, size), np.complex128)
-    for i in range(size):
-        for j in range(i + 1, size):
-            out[i, j], out[j, i] = 1j * projected[i, j], -1j * projected[i, j]
-    return out
-
-
-@compiled
-def quotients(a: Operator, x: Array) -> Array:
-    """x*Kx, x*Mx and ½ i x*Cx, which is real, as (3, m), for complex vectors x (m, 2, n) by real and imaginary parts."""
-    m, _, n = x.shape
-    out = np.zeros((3, m))
-    Kx, Cx, Mx = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
-    for v in range(m):
-        strained.times(a.exact, x[v], Kx)
-        blocks.times(a.C, x[v], Cx)
-        blocks.times(a.M, x[v], Mx)
-        for i in range(n):
-            out[0, v] += x[v, 0, i] * Kx[0, i] + x[v, 1, i] * Kx[1, i]
-            out[1, v] += x[v, 0, i] * Mx[0, i] + x[v, 1, i] * Mx[1, i]
-            out[2, v] += 0.5 * (x[v, 1, i] * Cx[0, i] - x[v, 0, i] * Cx[1, i])
-    return out

@@ -11,9 +11,10 @@ from ..eigen import UnstableError
 from ..element.discretize import Chain
 from ..modes import Modes
 from . import accuracy, pencil, steady
-from .lanczos import EigensolverError, lanczos
+from .completeness import MissedModesError
+from .lanczos import EigensolverError, Lowest, Start, lanczos
 from .mode_shapes import mode_shapes
-from .pencil import Shape
+from .pencil import ChainPencil, Shape
 from .steady import Steady
 
 Array = NDArray[np.float64]
@@ -30,13 +31,18 @@ class Solved:
 
 @dataclass
 class MeshSolver:
-    """A chain, and its steady shapes at previous speeds."""
+    """A chain, its steady shapes at previous speeds, and the start of a basis from the modes at the last one.
+
+    ``restarts`` counts the speeds at which that basis missed a mode and the modes were computed again without it.
+    """
 
     body: Chain
     count: int
     effects: Effects
     gravity: Array
     known: list[tuple[float, Shape]] = field(default_factory=list)
+    start: Start | None = None
+    restarts: int = 0
 
     def at(self, omega: float, near: Shape | None = None) -> Solved:
         """Solve at one speed (rad/s), starting from the shapes at previous speeds or else from the shape ``near``."""
@@ -44,7 +50,7 @@ class MeshSolver:
         guess = steady.extrapolate(self.known, omega)
         state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
         try:
-            found = lanczos(state.pencil, self.count)
+            found = self._lowest(state.pencil)
         except (UnstableError, EigensolverError) as error:
             if pencil.loose(state.pencil):
                 raise UnstableError(
@@ -52,11 +58,20 @@ class MeshSolver:
                     "spring"
                 ) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
+        self.start = found.start
         self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
         shapes, strain = mode_shapes(body, state.shape, found.vectors), steady.largest_strain(body, state.shape)
         seconds = time.perf_counter() - begun
         modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
         return Solved(modes, state, found.vectors)
+
+    def _lowest(self, p: ChainPencil) -> Lowest:
+        if self.start is not None:
+            try:
+                return lanczos(p, self.count, self.start)
+            except (MissedModesError, EigensolverError):
+                self.restarts += 1
+        return lanczos(p, self.count)
 
     def rounding(self, solved: Solved) -> Array:
         """(m,) relative error of the frequencies due to rounding."""

@@ -81,10 +81,11 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
 
     The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
     nodes' poses, below which a step is meaningless. The size of a step is not a criterion: the steps of an almost
-    inextensible blade are tiny.
+    inextensible blade are tiny. A step below the rounding energy ends the iteration if the next one would be negligible by
+    quadratic convergence, or if it is hardly smaller than the last: rounding may be much less than its bound.
     """
     size = np.repeat([chain.scale, 1.0], 3)
-    before = np.inf
+    before = np.nan  # energy of the last step
     for _ in range(_MAX_STEPS):
         if chain.clamped.size:
             nodes, first = root_joint.put(chain, shape.nodes, shape.relative[0])
@@ -100,8 +101,12 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
-        stalled = energy > _MIN_REDUCTION * before  # if not, continue: rounding may be much less than its bound
-        if energy <= _CONVERGED_FACTOR * rounding or (stalled and energy <= _STALL_FACTOR * rounding):
+        following = (
+            energy * (energy / before) ** 2
+        )  # predicted energy of the next step: √e of a step is as e of the last
+        settled = energy <= rounding and following <= _CONVERGED_FACTOR * rounding
+        stalled = energy <= _STALL_FACTOR * rounding and energy > _MIN_REDUCTION * before
+        if energy <= _CONVERGED_FACTOR * rounding or settled or stalled:
             if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
                 raise SteadyStateError("elements are deformed beyond the range of their strain measure")
             return Steady(displaced(shape, step), p)

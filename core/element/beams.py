@@ -197,6 +197,8 @@ def pencil(
     out = Pencil(np.empty((n, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, 6, 6)))
     assemble(
         _arrays(beams),
+        measures.cardan(beams.law),
+        None if effects.geometric and not beams.points.force.any() else True,
         np.ascontiguousarray(x),
         np.ascontiguousarray(beta) if beams.inner else np.zeros((n, 6)),
         np.ascontiguousarray(frame),
@@ -232,5 +234,4 @@ def _arrays(beams: Beams) -> BeamArrays:
         bubble=np.ascontiguousarray(p.bubble),
         mass=np.ascontiguousarray(p.mass),
         force=np.ascontiguousarray(p.force),
-        pushed=bool(p.force.any()),
     )

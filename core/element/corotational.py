@@ -13,9 +13,8 @@ Array = NDArray[np.float64]
 
 
 class StrainLawArrays(NamedTuple):
-    """``measures.StrainLaw`` for compiled code; ``corotational`` is false for the body-fixed measure."""
+    """``measures.StrainLaw`` for compiled code."""
 
-    corotational: bool
     undeformed: Array
     shortening: Array
     mean: Array

@@ -109,14 +109,21 @@ def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_e
         np.zeros((n, 6)) if v is None or not v.size else np.ascontiguousarray(v) for v in (beta, s, on_eta)
     )
     out = Response(np.empty((n, 6)), np.empty((n, 6, 12)), np.empty((n, 12, 12)))
-    _respond(arrays(law), np.ascontiguousarray(x), beta, force, conjugate, out.strain, out.rate, out.curvature)
+    _respond(
+        arrays(law), cardan(law), np.ascontiguousarray(x), beta, force, conjugate, out.strain, out.rate, out.curvature
+    )
     return out
 
 
 def arrays(law: StrainLaw) -> StrainLawArrays:
     """The law as contiguous arrays for compiled code."""
     parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
-    return StrainLawArrays(law.measure == "corotational", *parts)
+    return StrainLawArrays(*parts)
+
+
+def cardan(law: StrainLaw) -> bool | None:
+    """True for the body-fixed measure, None for the corotational one: for None, Numba does not compile the other branch."""
+    return None if law.measure == "corotational" else True
 
 
 def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
@@ -126,7 +133,9 @@ def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
     """
     length = np.linalg.norm(law.eta[:, :3], axis=1)
     components = 3 if law.measure == "corotational" else 1
-    strain = np.linalg.norm(response(law, x, beta).strain[:, :components], axis=1)
+    found, none = np.empty((len(x), 6)), np.zeros((len(x), 6))
+    _strain(arrays(law), cardan(law), np.ascontiguousarray(x), np.ascontiguousarray(beta) if beta.size else none, found)
+    strain = np.linalg.norm(found[:, :components], axis=1)
     return np.divide(strain, length, out=np.zeros_like(length), where=length > 0)
 
 
@@ -142,21 +151,40 @@ def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
 
 
 @compiled
+def _strain(law: StrainLawArrays, cardan: bool | None, x: Array, beta: Array, strain: Array) -> None:
+    eta, back = np.empty(6), np.empty((6, 6))
+    rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
+    for k in range(len(x)):
+        rigid.log(x[k], eta)
+        rigid.tangent_inverse(eta, back)
+        strains(law, cardan, k, x[k], eta, back, beta[k], strain[k], rate, J, undo)
+
+
+@compiled
 def _respond(
-    law: StrainLawArrays, x: Array, beta: Array, s: Array, on_eta: Array, strain: Array, rate: Array, curvature: Array
+    law: StrainLawArrays,
+    cardan: bool | None,
+    x: Array,
+    beta: Array,
+    s: Array,
+    on_eta: Array,
+    strain: Array,
+    rate: Array,
+    curvature: Array,
 ) -> None:
     eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
     for k in range(len(x)):
         rigid.log(x[k], eta)
         rigid.tangent_inverse(eta, back)
-        strains(law, k, x[k], eta, back, beta[k], strain[k], rate[k], J, undo)
+        strains(law, cardan, k, x[k], eta, back, beta[k], strain[k], rate[k], J, undo)
         clear(curvature[k])
-        add_curvature(law, k, eta, back, J, undo, rate[k], strain[k], s[k], on_eta[k], curvature[k])
+        add_curvature(law, cardan, k, eta, back, J, undo, rate[k], strain[k], s[k], on_eta[k], curvature[k])
 
 
 @compiled
 def strains(
     law: StrainLawArrays,
+    cardan: bool | None,
     k: int,
     x: Array,
     eta: Array,
@@ -171,7 +199,7 @@ def strains(
 
     ``eta`` (6,) is the logarithm of its pose ``x`` (4, 4), and ``back`` (6, 6) = ``tangent_inverse(eta)``.
     """
-    if law.corotational:
+    if cardan is None:
         corotational.strains(law, k, eta, beta, strain, J, undo)
         product(J, back, rate)
         for i in range(6):
@@ -184,6 +212,7 @@ def strains(
 @compiled
 def add_curvature(
     law: StrainLawArrays,
+    cardan: bool | None,
     k: int,
     eta: Array,
     back: Array,
@@ -196,7 +225,7 @@ def add_curvature(
     out: Array,
 ) -> None:
     """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments are results of ``strains``."""
-    if law.corotational:
+    if cardan is None:
         corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
     else:
         body_fixed.add_curvature(law.undeformed[k], eta, back, rate, strain, s, on_eta, out)

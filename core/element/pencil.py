@@ -5,7 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import apply, clear, compiled, congruence, product, transposed_apply
+from ..compiled import (
+    add_transposed_product,
+    apply,
+    clear,
+    compiled,
+    congruence,
+    inner,
+    product,
+    transposed_apply,
+)
 from ..space import rigid
 from . import inertia, measures
 from .corotational import StrainLawArrays
@@ -14,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 class BeamArrays(NamedTuple):
-    """``beams.Beams`` as contiguous arrays for compiled code; ``pushed``: whether the points carry loads."""
+    """``beams.Beams`` as contiguous arrays for compiled code."""
 
     law: StrainLawArrays
     stiffness: Array
@@ -25,7 +34,6 @@ class BeamArrays(NamedTuple):
     bubble: Array
     mass: Array
     force: Array
-    pushed: bool
 
 
 class _Sums(NamedTuple):
@@ -41,6 +49,8 @@ class _Sums(NamedTuple):
 @compiled
 def assemble(
     beams: BeamArrays,
+    cardan: bool | None,
+    held: bool | None,
     x: Array,
     beta: Array,
     frame: Array,
@@ -53,7 +63,11 @@ def assemble(
     remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``."""
+    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``.
+
+    ``cardan`` is that of ``measures``; ``held`` is None without loads on the points and without components that stay fixed.
+    Numba does not compile the branches that None excludes.
+    """
     eta, back = np.empty(6), np.empty((6, 6))
     sums = _Sums(np.empty(18), np.empty((18, 18)), np.empty((18, 18)), np.empty((18, 18)), np.empty(6))
     for k in range(len(x)):
@@ -66,11 +80,11 @@ def assemble(
         for matrix in (sums.M, sums.C, sums.K, spring[k]):
             clear(matrix)
         if len(beams.mass):
-            _add_inertia(beams, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
+            _add_inertia(beams, held, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
             for i in range(6):
                 sums.f[12 + i] += beams.inner_preload[k, i] + beta[k, i]
                 sums.K[12 + i, 12 + i] += 1.0
-        _add_elastic(beams, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
+        _add_elastic(beams, cardan, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
         _on_ends(sums.M, M[k])
         _on_ends(sums.C, C[k])
         _on_ends(sums.K, remainder[k])
@@ -98,6 +112,7 @@ def _on_ends(of_rho: Array, out: Array) -> None:
 @compiled
 def _add_elastic(
     beams: BeamArrays,
+    cardan: bool | None,
     k: int,
     x: Array,
     eta: Array,
@@ -110,14 +125,14 @@ def _add_elastic(
     """Add the elastic force on (ρ, β) and its material and geometric stiffness; the part on ρ alone goes to ``spring``."""
     strain, s = np.empty(6), np.empty(6)
     rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
-    measures.strains(beams.law, k, x, eta, back, beta, strain, rate, J, undo)
+    measures.strains(beams.law, cardan, k, x, eta, back, beta, strain, rate, J, undo)
     apply(beams.stiffness[k], strain, s)
     for i in range(6):
         s[i] += beams.preload[k, i]
     work, K = np.empty((6, 12)), np.empty((12, 12))
     congruence(rate, beams.stiffness[k], work, K)
     if geometric:
-        measures.add_curvature(beams.law, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
+        measures.add_curvature(beams.law, cardan, k, eta, back, J, undo, rate, strain, s, sums.on_eta, K)
     force = np.empty(12)
     transposed_apply(rate, s, force)
     for i in range(12):
@@ -135,6 +150,7 @@ def _add_elastic(
 @compiled
 def _add_inertia(
     beams: BeamArrays,
+    held: bool | None,
     k: int,
     eta: Array,
     back: Array,
@@ -155,22 +171,21 @@ def _add_inertia(
     from_point, pose, to_point = np.empty((4, 4)), np.empty((4, 4)), np.empty((6, 6))
     T, D = np.empty((6, 6)), np.empty((6, 6))
     M, C, K, work = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    slopes, bent = np.empty((6 * per, 12)), np.empty((6 * per, 12))  # of all points, stacked
-    U, MU, CU, KU = (np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)), np.empty((6 * per, 18)))
-    H, turn = np.empty((6, 12)), np.empty((6, 6))
+    slope, bent, H, turn = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
+    U, by_U, curvature = np.empty((6, 18)), np.empty((6, 18)), np.zeros((12, 12))
     rigid.ad(frame, turn)
     for i in range(6):
         change[i] = eta[i] - beams.law.eta[k, i]
     for p in range(per):
-        point, at = per * k + p, slice(6 * p, 6 * p + 6)
-        shape, slope = beams.shape[point], slopes[at]
+        point = per * k + p
+        shape = beams.shape[point]
         ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
         rigid.inverse(from_point, pose)
         rigid.adjoint(pose, to_point)
         congruence(to_point, beams.mass[point], work, M)
         inertia.carry(M, frame, turn, fall, g, C, K)
-        if beams.pushed or not geometric:
+        if held is not None:
             for i in range(3):
                 push[i] = 0.0
                 for j in range(3):
@@ -181,28 +196,38 @@ def _add_inertia(
             sums.f[i] += g[i]
             for j in range(12):
                 sums.f[6 + j] += H[i, j] * g[i]
-        _put_twist(H, U[at])
-        product(M, U[at], MU[at])
-        product(C, U[at], CU[at])
-        product(K, U[at], KU[at])
+        _put_twist(H, U)
+        product(M, U, by_U)
+        _add_on_twists(H, by_U, sums.M)
+        product(C, U, by_U)
+        _add_on_twists(H, by_U, sums.C)
+        product(K, U, by_U)
         if geometric:
             # D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β, H = T(ζ) ∂ζ/∂(ρ, β)
             rigid.cross(g, work)
-            product(work, H, bent[at])
-            for i in range(6 * p, 6 * p + 6):
+            product(work, H, bent)
+            for i in range(6):
                 for j in range(12):
-                    KU[i, 6 + j] -= bent[i, j]
+                    by_U[i, 6 + j] -= bent[i, j]
             transposed_apply(T, g, on_zeta)
             for i in range(6):
                 for j in range(6):
                     sums.on_eta[j] += shape[i, j] * on_zeta[i]
             rigid.tangent_transpose_derivative(zeta, g, D)
-            product(D, slope, bent[at])
-    np.dot(U.T, MU, sums.M)
-    np.dot(U.T, CU, sums.C)
-    np.dot(U.T, KU, sums.K)
+            product(D, slope, bent)
+            add_transposed_product(slope, bent, curvature)
+        _add_on_twists(H, by_U, sums.K)
     if geometric:
-        _split(np.dot(slopes.T, bent), spring, sums.K)
+        _split(curvature, spring, sums.K)
+
+
+@inner
+def _add_on_twists(H: Array, by_U: Array, out: Array) -> None:
+    """Add Uᵀ M U to ``out`` (18, 18), for the twist U = (1, H) of a point from (ξ_a, ρ, β) and ``by_U`` = M U (6, 18)."""
+    for i in range(by_U.shape[0]):
+        for j in range(by_U.shape[1]):
+            out[i, j] += by_U[i, j]
+    add_transposed_product(H, by_U, out)
 
 
 @compiled

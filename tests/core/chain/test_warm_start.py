@@ -1,0 +1,102 @@
+"""Sweeps start from the previous speeds: the same frequencies with less work, and no mode is missed."""
+
+import numpy as np
+import pytest
+
+from southwell.core import solve
+from southwell.core.blade import uniform_blade
+from southwell.core.chain import completeness, lanczos, solution, steady
+from southwell.core.chain.completeness import MissedModesError
+from southwell.core.chain.lanczos import Start
+from southwell.core.chain.solution import MeshSolver
+from southwell.core.effects import ALL_EFFECTS
+from southwell.core.element.discretize import discretize
+
+FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
+ROUND = uniform_blade("round", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=1e6, mass=10.0)
+
+
+def solver(blade=FLAT, count: int = 6) -> MeshSolver:
+    return MeshSolver(discretize(blade, 20), count, ALL_EFFECTS, np.zeros(3))
+
+
+@pytest.mark.numerical
+@pytest.mark.parametrize("blade", [FLAT, ROUND], ids=["flat", "round"])
+def test_a_sweep_agrees_with_single_speeds(blade) -> None:
+    speeds = [0.0, 3.0, 6.0, 7.0, 30.0, 7.0, 7.0]  # also far apart, back, and the same again
+    swept = solve.mesh_sweep(blade, speeds, 20, 6)
+    for omega, found in zip(speeds, swept, strict=True):
+        alone = solve.chain_modes(discretize(blade, 20), omega, 6)
+        assert (np.abs(found.frequencies / alone.frequencies - 1.0) <= alone.rounding).all()
+
+
+@pytest.mark.numerical
+def test_the_basis_of_a_sweep_is_smaller(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = []
+    project = lanczos._hermitian
+
+    def recorded(projected):
+        sizes.append(len(projected))
+        return project(projected)
+
+    monkeypatch.setattr(lanczos, "_hermitian", recorded)
+    one = solver(count=10)
+    one.at(3.0)
+    first = max(sizes)
+    sizes.clear()
+    for omega in (4.0, 5.0, 6.0):
+        one.at(omega)
+    assert max(sizes) < first
+    assert one.restarts == 0
+
+
+def only_flap(one: MeshSolver) -> Start:
+    """A start without any motion out of the plane of flap, which is decoupled at rest."""
+    n = len(one.body.nodes) - 1
+    mask = np.zeros((n, 12))
+    mask[:, [2, 4, 8, 10]] = 1.0  # z and the rotation about y, of β and of the node
+    vectors = np.random.default_rng(7).normal(size=(2, 2 * mask.size))
+    return Start(vectors * np.tile(mask.ravel(), 2), 26)
+
+
+@pytest.mark.numerical
+def test_modes_that_the_start_does_not_contain_are_reported_and_computed() -> None:
+    one, right = solver(), solver().at(0.0).modes.frequencies
+    one.start = only_flap(one)
+    with pytest.raises(MissedModesError):
+        lanczos.lanczos(solution.balance(one.body, 0.0, np.zeros(3), ALL_EFFECTS).pencil, 6, one.start)
+    np.testing.assert_allclose(one.at(0.0).modes.frequencies, right, rtol=1e-12)
+    assert one.restarts == 1
+
+
+def test_the_count_alone_reports_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, right = solver(), solver().at(0.0).modes.frequencies
+    one.start = only_flap(one)
+    monkeypatch.setattr(completeness, "check", lambda *_: None)
+    assert np.abs(one.at(0.0).modes.frequencies / right - 1.0).max() > 0.1
+
+
+@pytest.mark.numerical
+@pytest.mark.parametrize("gravity", [0.0, -9.81])
+def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
+    gravity: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In both cases within the rounding error that is stated; the settled one takes fewer linearisations."""
+    body, fall, speeds = discretize(FLAT, 20), np.array([0.0, 0.0, gravity]), np.linspace(5.0, 8.0, 7)
+    counts, found = [], []
+    linearize = steady.linearize
+
+    def counted(*args):
+        counts[-1] += 1
+        return linearize(*args)
+
+    monkeypatch.setattr(steady, "linearize", counted)
+    for factor in (steady._CONVERGED_FACTOR, 0.0):  # with 0, a state is accepted only after a step as small as the last
+        monkeypatch.setattr(steady, "_CONVERGED_FACTOR", factor)
+        counts.append(0)
+        one = MeshSolver(body, 6, ALL_EFFECTS, fall)
+        solved = [one.at(omega) for omega in speeds]
+        found.append((np.array([s.modes.frequencies for s in solved]), np.array([one.rounding(s) for s in solved])))
+    (settled, rounding), (stalled, _) = found
+    assert (np.abs(settled / stalled - 1.0) <= rounding).all()
+    assert counts[0] <= counts[1] - 5
