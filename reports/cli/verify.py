@@ -19,6 +19,7 @@ from ...cases.input import atomic, library, mechanisms
 from ...cases.input import changes as blade_changes
 from ...cases.input.changes import Change, parse
 from ...cases.input.default_case import default_case
+from ...cases.input.library import is_blade_file
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
@@ -43,7 +44,7 @@ from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, wri
 from .errors import UsageError
 from .mounting import Mounting
 from .report import show
-from .subjects import is_blade_file, subjects
+from .subjects import subjects
 
 FRESH = "SOUTHWELL_FRESH"
 """Environment variable equivalent to ``--fresh``."""
