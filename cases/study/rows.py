@@ -107,8 +107,8 @@ def _answers(task: Task) -> Iterator[tuple[float, list[Named] | str]]:
     """The modes at each speed, or the reason why there are none. The sweep begins again after a speed without modes."""
     try:
         blade = apply(task.blade, task.changes)
-    except CaseError as error:
-        yield from ((omega, str(error).removeprefix("--set ")) for omega in task.speeds)
+    except Exception as error:
+        yield from ((omega, _reason(error, task)) for omega in task.speeds)
         return
     sweep = None
     for k, omega in enumerate(task.speeds):
@@ -116,10 +116,14 @@ def _answers(task: Task) -> Iterator[tuple[float, list[Named] | str]]:
             blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain
         )
         try:
-            yield omega, next(sweep)
-        except CaseError as error:
-            sweep = None
-            yield omega, str(error).removeprefix(f"{blade.name}: ")
-        except Exception as error:  # a defect costs one row, not the study
-            sweep = None
-            yield omega, f"{INTERNAL}{raised(error)}"
+            answer = next(sweep)
+        except Exception as error:
+            sweep, answer = None, _reason(error, task)
+        yield omega, answer
+
+
+def _reason(error: Exception, task: Task) -> str:
+    """Why there is no answer; a defect costs rows, not the study."""
+    if isinstance(error, CaseError):
+        return str(error).removeprefix("--set ").removeprefix(f"{task.blade.name}: ")
+    return f"{INTERNAL}{raised(error)}"

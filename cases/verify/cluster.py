@@ -39,11 +39,16 @@ class Cluster(Executor):
 
 
 class _Task(Future[Any]):
-    """Future of a task that is submitted again if its workers die."""
+    """Future of a task that is submitted again if its workers die.
+
+    It lets go of Dask's future as soon as there is a result; until then the scheduler keeps the result on the worker, and
+    would compute it again if that worker died.
+    """
 
     def __init__(self, submit: Callable[[], Future[Any]]) -> None:
         super().__init__()
         self.submit, self.rounds = submit, 0
+        self.inner: Future[Any] | None = None
 
     def start(self) -> None:
         self.rounds += 1
@@ -51,9 +56,11 @@ class _Task(Future[Any]):
         self.inner.add_done_callback(self._finish)
 
     def cancel(self) -> bool:
-        return super().cancel() and self.inner.cancel()
+        inner = self.inner
+        return super().cancel() and (inner is None or inner.cancel())
 
     def _finish(self, inner: Future[Any]) -> None:
+        self.inner = None
         error = BrokenExecutor("the Dask scheduler is lost") if inner.cancelled() else inner.exception()
         if isinstance(error, KilledWorker):
             if self.rounds < ROUNDS and not self.cancelled():
