@@ -11,6 +11,7 @@ from ...core.blade import Blade
 from ...core.blade_checks import MAX_LENGTH, MIN_LENGTH
 from ..input import files, library, readers
 from ..input.errors import CaseError
+from ..input.names import Typed
 from ..input.readers import Mount, Unused
 from ..input.schema import Speeds, rad_s
 from ..input.toml import convert, document, finite
@@ -46,6 +47,7 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
 class StudyFile(Struct, frozen=True, forbid_unknown_fields=True):
     """A study file."""
 
+    name: Typed
     blades: Annotated[
         tuple[str | BladeFile, ...],
         Meta(min_length=1, description="cases, blades of cases (case/blade), or blade files"),

@@ -18,14 +18,14 @@ import pytest
 
 
 @contextmanager
-def local(workers: int = 2) -> Iterator[Any]:
-    """A ``LocalCluster`` of processes with one thread each, which are started again when they die."""
+def local(workers: int = 2, threads: int = 1) -> Iterator[Any]:
+    """A ``LocalCluster`` of processes, which are started again when they die."""
     distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
     patient = {"distributed.deploy.lost-worker-timeout": "10 min"}  # else a worker that starts slowly is given up
     with (
         import_module("dask.config").set(patient),
         distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+            n_workers=workers, threads_per_worker=threads, processes=True, dashboard_address=None, silence_logs=50
         ) as cluster,
     ):
         yield cluster

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from southwell.cases.study.journal import StudyJournal
-from southwell.cases.study.plan import header
+from southwell.cases.study.plan import header, tasks
 from southwell.cases.study.rows import Row, Task, encoded
 from southwell.cases.study.run import run
 from southwell.cases.study.schema import Study, read
 
 TEXT = """
+name = "small"
 blades = ["{blade}"]
 modes = {modes}
 samples = {samples}
@@ -93,3 +94,8 @@ def deadly(task: Task) -> bytes:
     """A task that kills every worker that it is given to."""
     os.kill(os.getpid(), signal.SIGKILL)
     return b""
+
+
+def tasks_of(one: Study) -> list[Task]:
+    """All tasks of a study."""
+    return [task for _, task in tasks(one, range(header(one).tasks))]

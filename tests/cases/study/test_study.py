@@ -23,6 +23,7 @@ from southwell.cases.verify import identity
 from ...support.studies import Inline, solved, stub, study, text
 
 STIFFER = """
+name = "stiffer"
 blades = ["park-cantilever"]
 modes = 4
 [speeds]
@@ -59,7 +60,7 @@ def test_every_sample_speed_and_mode_has_a_row(tmp_path: Path) -> None:
 
 def test_a_speed_without_a_steady_state_costs_its_own_row_only(tmp_path: Path) -> None:
     """An articulated blade has no stable state at rest; the later speeds are those of a study without rest."""
-    given = 'blades = ["articulated/hinged"]\nmodes = 3\n[speeds]\nrad_s = {}\n'
+    given = 'name = "hinged"\nblades = ["articulated/hinged"]\nmodes = 3\n[speeds]\nrad_s = {}\n'
     name = next(v.name for v in library.load("articulated").variants)
     given = given.replace("articulated/hinged", name)
     solved(study(tmp_path, given.format("[0.0, 5.0, 10.0]")), tmp_path / "all.jsonl")
