@@ -64,7 +64,7 @@ def header(study: Study) -> Header:
         samples=text.samples,
         speeds_rad_s=study.speeds,
         modes=text.modes,
-        properties=tuple(text.properties),
+        properties=tuple(study.properties),
     )
 
 
@@ -74,7 +74,7 @@ def tasks(study: Study, numbers: Iterable[int]) -> Iterator[tuple[int, Task]]:
     Sample k has the same values on every blade.
     """
     text = study.text
-    values = sample(text.properties, text.samples, text.seed)
+    values = sample(study.properties, text.samples, text.seed)
     for number in numbers:
         blade, one = divmod(number, text.samples)
         yield (
@@ -82,7 +82,7 @@ def tasks(study: Study, numbers: Iterable[int]) -> Iterator[tuple[int, Task]]:
             Task(
                 blade=study.blades[blade],
                 sample=one,
-                changes=changes(text.properties, values[one]),
+                changes=changes(study.properties, values[one]),
                 speeds=study.speeds,
                 modes=text.modes,
                 elements=text.elements,

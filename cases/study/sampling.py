@@ -5,7 +5,7 @@ probability. Properties are independent.
 """
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from msgspec import UNSET, Meta, Struct, UnsetType
@@ -15,6 +15,7 @@ from scipy.stats import qmc
 
 from ..input.changes import PROPERTIES, UNITS, Change
 from ..input.errors import CaseError, nearest
+from ..input.toml import convert
 
 Array = NDArray[np.float64]
 
@@ -82,21 +83,25 @@ def _factor(field: str, least: float, absolute: bool) -> str | None:
     return None if absolute or least > 0 else f"{field}: {least:g}: a factor is positive: correct it"
 
 
-def check(properties: Mapping[str, Distribution], path: str) -> None:
-    """Check the parameters of all distributions.
+def distributions(given: Mapping[str, Any], path: str) -> dict[str, Distribution]:
+    """The distributions in the table ``properties`` of a study file.
 
     Raises:
         CaseError: naming the property and the field.
     """
-    for name, one in properties.items():
+    found: dict[str, Distribution] = {}
+    for name, table in given.items():
         if name not in PROPERTIES:
             raise CaseError(f"{path}: properties.{name}: not a property of a blade: {nearest(name, PROPERTIES)}")
+        one: Distribution = convert(table, Distribution, path, f"properties.{name}")  # type: ignore[arg-type]
         if one.absolute and name not in UNITS:
             raise CaseError(
                 f"{path}: properties.{name}.absolute: {name} varies along the blade: leave it out and give factors"
             )
         if error := one.error():
             raise CaseError(f"{path}: properties.{name}.{error}")
+        found[name] = one
+    return found
 
 
 def sample(properties: Mapping[str, Distribution], samples: int, seed: int) -> Array:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
@@ -15,7 +15,7 @@ from ..input.names import Typed
 from ..input.readers import Mount, Unused
 from ..input.schema import Speeds, rad_s
 from ..input.toml import convert, document, finite
-from .sampling import Distribution, check
+from .sampling import Distribution, distributions
 
 MOST_SAMPLES = 1_000_000
 """Largest number of samples; their values are kept in memory, 8 bytes each."""
@@ -56,7 +56,7 @@ class StudyFile(Struct, frozen=True, forbid_unknown_fields=True):
     modes: Annotated[int, Meta(ge=1, le=100, description="number of modes, from the lowest")] = 6
     samples: Annotated[int, Meta(ge=1, le=MOST_SAMPLES)] = 1
     seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
-    properties: dict[str, Distribution] = {}
+    properties: Annotated[dict[str, dict[str, Any]], Meta(description="property → its distribution")] = {}
     elements: Annotated[int, Meta(ge=1, le=20_000, description="default: as many as accuracy requires")] | None = None
     accuracy: Annotated[float, Meta(ge=1e-12, le=0.1, description="largest relative uncertainty, without elements")] = (
         1e-6
@@ -71,11 +71,13 @@ class Study:
     Attributes:
         blades: nominal blades, of different names.
         speeds: rotor speeds, rad/s, ascending.
+        properties: distribution of each sampled property.
         text: the contents of the study file.
     """
 
     blades: tuple[Blade, ...]
     speeds: tuple[float, ...]
+    properties: dict[str, Distribution]
     text: StudyFile
 
 
@@ -90,14 +92,14 @@ def read(path: Path) -> tuple[Study, tuple[Unused, ...]]:
     text = convert(data, StudyFile, str(path))
     if text.samples > 1 and not text.properties:
         raise CaseError(f"{path}: samples: {text.samples}: no sampled properties: add [properties], or leave it out")
-    check(text.properties, str(path))
+    properties = distributions(text.properties, str(path))
     speeds = rad_s(text.speeds, str(path))
     found = [pair for one in text.blades for pair in _blades(one, path)]
     blades = tuple(blade for blade, _ in found)
     for k, blade in enumerate(blades):
         if blade.name in [other.name for other in blades[:k]]:
             raise CaseError(f"{path}: blades: {blade.name!r} twice: rows are found by its name: rename one, or drop it")
-    return Study(blades, tuple(speeds.tolist()), text), tuple(one for _, unused in found for one in unused)
+    return Study(blades, tuple(speeds.tolist()), properties, text), tuple(one for _, unused in found for one in unused)
 
 
 def _blades(given: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unused, ...]]]:

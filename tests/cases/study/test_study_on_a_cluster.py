@@ -17,7 +17,7 @@ from ...support.studies import lines, solved, study, text
 
 pytestmark = pytest.mark.slow
 
-SAMPLES, KILLS = 150, 20
+SAMPLES, KILLS = 80, 20
 
 
 def test_workers_killed_at_twenty_random_moments(tmp_path: Path) -> None:
