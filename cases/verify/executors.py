@@ -55,7 +55,7 @@ def executor(
     with ExitStack() as stack:
         address = scheduler if scheduler != SLURM else stack.enter_context(_slurm(workers or 1))
         client = stack.enter_context(_client(address, scheduler))
-        count = len(client.scheduler_info(n_workers=-1)["workers"])
+        count = len(client.nthreads())
         tell(f"{scheduler}: {count} worker{'s' * (count != 1)}{'' if count else ' so far: waiting for the first'}")
         from .cluster import Cluster
 
