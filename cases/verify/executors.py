@@ -4,6 +4,7 @@ Both are a ``concurrent.futures.Executor``. ``executor`` yields one and stops it
 """
 
 import asyncio
+import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager, suppress
@@ -66,6 +67,7 @@ def executor(
 def _client(address: str, given: str) -> Iterator[Any]:
     from distributed import Client
     from distributed.comm.core import connect
+    from distributed.utils import silence_logging_cmgr
 
     async def reach() -> None:  # a Client that cannot connect prints tracebacks when it is collected
         await (await connect(address, timeout=CONNECT)).close()
@@ -78,11 +80,13 @@ def _client(address: str, given: str) -> Iterator[Any]:
             f"--scheduler {given}: no Dask scheduler answers ({error}): give the address that `dask scheduler` prints, as in "
             "tcp://host:8786"
         ) from error
-    try:
-        yield client
-    finally:
-        with suppress(OSError, TimeoutError):  # the scheduler has ended
-            client.close()
+    logging.getLogger("asyncio").setLevel(logging.CRITICAL)  # what Dask's loop leaves behind when a scheduler is lost
+    with silence_logging_cmgr(logging.CRITICAL):  # what concerns the run is raised by its futures
+        try:
+            yield client
+        finally:
+            with suppress(OSError, TimeoutError):  # the scheduler has ended
+                client.close()
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 import os
 import stat
+import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor
@@ -16,7 +17,7 @@ from southwell.cases.verify.executors import executor
 from southwell.cases.verify.pool import Pool
 from southwell.cases.verify.software import Software, installed
 
-from ...support import clusters
+from ...support import clusters, killing
 from ...support.studies import deadly, sleeping, solved, stub, study, tasks_of
 
 
@@ -146,3 +147,15 @@ def test_slurm_jobs_are_submitted_and_cancelled(tmp_path: Path, monkeypatch: pyt
         with executor(1, "slurm") as pool:
             assert solved(one, tmp_path / "slurm.jsonl", pool) == solved(one, tmp_path / "serial.jsonl")
     assert (tmp_path / "cancelled").read_text().strip()
+
+
+@pytest.mark.slow
+def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path) -> None:
+    found = {}
+    for name, options in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):
+        line = ["verify", "tip-mass", "--codes", "exact-beam", "--faults", "none", "--out", name, *options]
+        done = subprocess.run([sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        found[name] = killing.untimed(tmp_path / name / "results.jsonl")
+    assert found["here"] == found["there"]
+    assert len(found["here"]) > 10

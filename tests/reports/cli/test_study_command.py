@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from southwell.reports.cli import app as cli
+from southwell.reports.shared import console
 
 from ...support.studies import lines, text
 
@@ -162,3 +163,16 @@ def test_a_blade_file_is_in_the_folder_of_the_study(capsys: pytest.CaptureFixtur
     status, _, err = run(capsys, "inner/study.toml", "--out", "other.jsonl")
     assert (status, err.count("\n")) == (2, 1)
     assert f"outside {inner}: files that a file names are read from its folder only" in err
+
+
+def test_a_log_has_the_remaining_time_of_this_run(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten samples are from an earlier run; the next ten took 20 s, so that the last 80 take 160 s."""
+    clock = iter([0.0, 100.0, 105.0, 120.0])
+    monkeypatch.setattr("southwell.reports.shared.console.time.monotonic", lambda: next(clock))
+    counter = console.Counter("samples", 100)
+    for done in (10, 11, 20):
+        counter.show(done)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == ["11 of 100 samples; remaining: 0:07:25", "20 of 100 samples; remaining: 0:02:40"]
