@@ -53,6 +53,8 @@ def test_the_same_seed_gives_the_same_sample_and_another_another() -> None:
 def test_a_task_does_not_depend_on_the_tasks_before_it(tmp_path: Path) -> None:
     one = study(tmp_path, samples=20)
     whole = dict(tasks(one, range(20)))
+    drawn = sample(one.properties, 20, one.text.seed)
+    assert [[change.value for change in whole[k].changes] for k in range(20)] == drawn.tolist()
     for start in (1, 7, 19):
         for number, task in tasks(one, range(start, 20)):
             assert task.changes == whole[number].changes

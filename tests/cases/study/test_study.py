@@ -125,6 +125,24 @@ def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: P
     assert sorted(asked) == list(range(6))
 
 
+class BrokenFirst(Inline):
+    """Loses the first task, and no other."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if args[0].sample:
+            return super().submit(fn, *args, **kwargs)
+        future: Future[Any] = Future()
+        future.set_exception(BrokenExecutor("killed"))
+        return future
+
+
+def test_answers_that_arrived_before_the_study_stopped_are_kept(tmp_path: Path) -> None:
+    one = study(tmp_path)
+    with pytest.raises(BrokenExecutor):
+        solved(one, tmp_path / "out.jsonl", BrokenFirst(), answer=stub)
+    assert {row.sample for row in rows(tmp_path / "out.jsonl")} == {1, 2, 3, 4, 5}
+
+
 @pytest.mark.parametrize("cut", [1, 60, 400, 2000])
 def test_a_truncated_file_continues_as_if_it_had_not_been(cut: int, tmp_path: Path) -> None:
     one, path = study(tmp_path), tmp_path / "out.jsonl"
@@ -156,6 +174,14 @@ def test_the_file_of_another_study_is_refused_and_unchanged(change: dict[str, An
     with pytest.raises(CaseError, match=said):
         solved(study(tmp_path, **change), path, answer=stub)
     assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(("before", "after"), [("0.05", "0.06"), ("elements = 8", "elements = 9"), ("10.0", "10.5")])
+def test_the_file_of_a_changed_study_is_refused(before: str, after: str, tmp_path: Path) -> None:
+    path = tmp_path / "out.jsonl"
+    solved(study(tmp_path), path, answer=stub)
+    with pytest.raises(CaseError, match="of another study: the study file or a blade has changed"):
+        solved(study(tmp_path, text().replace(before, after)), path, answer=stub)
 
 
 def test_the_file_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
