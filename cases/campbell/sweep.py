@@ -59,25 +59,38 @@ def sweep(
     Raises:
         CaseError: if a speed has no stable steady state, or one of large strain.
     """
+    found = at_each(blade, speeds, elements, count, accuracy, allow_large_strain, method, at)
+    return [row for rows in found for row in rows]
+
+
+def at_each(
+    blade: Blade,
+    speeds: Sequence[float],
+    elements: int | None,
+    count: int,
+    accuracy: float = 1e-6,
+    allow_large_strain: bool = False,
+    method: Method = "chain",
+    at: Callable[[float], str] = rad_s,
+) -> Iterator[list[Named]]:
+    """The modes at one speed after another; arguments and errors as for ``sweep``."""
     weight = weights(blade)
-    rows = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
-        if method == "velocity-transformation":
-            found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)
-        else:
-            found = solve.sweep(
-                blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain
-            )
-        for omega in speeds:
-            try:
+    if method == "velocity-transformation":
+        found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)
+    else:
+        found = solve.sweep(blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain)
+    for omega in speeds:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
                 one = aligned(next(found), weight)
-            except NO_STATE as error:
-                raise unsteady(blade.name, omega, error, at) from error
-            known = zip(numbered(families(one, weight)), one.frequencies, one.uncertainty, strict=True)
-            for mode, (name, frequency, sure) in enumerate(known, 1):
-                rows.append(Named(float(omega), mode, name, float(frequency), float(sure), one.strain))
-    return rows
+        except NO_STATE as error:
+            raise unsteady(blade.name, omega, error, at) from error
+        known = zip(numbered(families(one, weight)), one.frequencies, one.uncertainty, strict=True)
+        yield [
+            Named(float(omega), mode, name, float(frequency), float(sure), one.strain)
+            for mode, (name, frequency, sure) in enumerate(known, 1)
+        ]
 
 
 def _by_velocity_transformation(

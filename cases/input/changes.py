@@ -63,9 +63,11 @@ def apply(blade: Blade, changes: Sequence[Change]) -> Blade:
     """Apply all changes to a blade, in order.
 
     Raises:
-        CaseError: if a stiffness is rigid, a property is zero, or a value is invalid for a blade.
+        CaseError: if a factor is not positive, a stiffness is rigid, a property is zero, or a value is invalid for a blade.
     """
     for change in changes:
+        if change.factor and not change.value > 0:
+            raise CaseError(f"--set {change}: a factor is positive")
         try:
             blade = PROPERTIES[change.name](blade, change)
         except BladeError as error:

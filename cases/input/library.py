@@ -1,5 +1,6 @@
 """The cases and mechanisms of the package, and others given by file."""
 
+import os
 from dataclasses import replace
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -8,6 +9,7 @@ from .. import data
 from .errors import CaseError, FilesMissingError, nearest
 from .mechanisms import Described, is_one
 from .mechanisms import read as describe
+from .readers import southwell_toml
 from .schema import Case, read
 
 
@@ -80,3 +82,11 @@ def select(name: str) -> Case:
     if not kept:
         raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
     return replace(case, variants=kept)
+
+
+def is_blade_file(name: str) -> bool:
+    """Whether a name is that of a blade file, not of a case."""
+    path = Path(name)
+    if name in names() or name.partition("/")[0] in names() or not (path.suffix or os.path.isfile(path)):
+        return False
+    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.is_one(path))

@@ -21,16 +21,13 @@ import portalocker
 from ..input.errors import CaseError
 from ..judge.results import Cell, Level, Planned, Run, Setting, gaps
 from . import stored
+from .appending import Appending
 from .identity import digest
 
 NAME = "results.partial.jsonl"
 
 WORDS = {"run": {"plan", "settings", "versions", "command"}, "answer": {"key", "value"}, "kept": {"key"}}
 """Fields of each kind of line: a started run, an answer, an earlier answer reused by the latest run."""
-
-
-class JournalError(OSError):
-    """An answer could not be written to disk; the run stops."""
 
 
 @contextmanager
@@ -61,9 +58,9 @@ class Journal:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / NAME
-        self.file = self.path.open("ab", buffering=0)
-        self.lines, self.size = _lines(self.path)
-        self.file.truncate(self.size)  # remove a truncated line
+        self.file = Appending(self.path)
+        self.lines, size = _lines(self.path)
+        self.file.truncate(size)  # remove a truncated line
         self.answers: dict[str, Any] = {line["key"]: line["value"] for line in self.lines if line["kind"] == "answer"}
         self.current: set[str] = set()
         self.lock = Lock()
@@ -96,17 +93,8 @@ class Journal:
         self.current.add(key)
 
     def _append(self, line: dict[str, Any]) -> None:
-        text = msgspec.json.encode(line) + b"\n"
         with self.lock:
-            written = 0
-            try:
-                while written < len(text):
-                    written += self.file.write(text[written:])
-            except OSError as error:
-                with suppress(OSError):
-                    self.file.truncate(self.size)
-                raise JournalError(error.errno, error.strerror, str(self.path)) from error
-            self.size += len(text)
+            self.file.append(msgspec.json.encode(line) + b"\n")
 
     def __enter__(self) -> "Journal":
         return self

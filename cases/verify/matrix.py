@@ -20,8 +20,8 @@ from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
 from . import error_budget, mechanism_columns
+from .appending import JournalError
 from .columns import Column, Rows, columns, failing
-from .journal import JournalError
 from .mechanism_case import MechanismCase, Turning
 from .names import unique
 from .reference import references

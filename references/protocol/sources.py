@@ -95,6 +95,16 @@ def _file(name: str) -> Path | None:
     return next((p for p in (place / "__init__.py", place.with_suffix(".py")) if p.is_file()), None)
 
 
+FLOORS = ("core", "references", "cases")
+"""Parts of this package that compute answers; the others present them."""
+
+
+def package() -> str:
+    """Digest of all sources that compute answers, and of the versions of Python and the libraries they use."""
+    paths = (path.relative_to(ROOT).with_suffix("") for floor in FLOORS for path in (ROOT / floor).rglob("*.py"))
+    return digest(frozenset(".".join((PACKAGE, *path.parts)).removesuffix(".__init__") for path in paths))
+
+
 def bundled(code: str) -> bool:
     """Whether a code, by name or import path, is one of this package.
 

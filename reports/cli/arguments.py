@@ -13,6 +13,7 @@ from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
 from ...cases.verify import journal
+from ...cases.verify.executors import SLURM
 from .errors import IncompleteError, UsageError
 
 RESULTS = "results.jsonl"
@@ -98,3 +99,18 @@ def found(path: Path) -> Run:
     if not run.cells:
         raise CaseError(f"{file}: no results in it: run `southwell verify`")
     return run
+
+
+def cluster_workers(workers: int | None, scheduler: str | None) -> int | None:
+    """The number of workers to start; None if those of a running Dask scheduler are used.
+
+    Raises:
+        UsageError: if the number is given for a running scheduler, or missing for Slurm.
+    """
+    if scheduler is None:
+        return workers or os.cpu_count() or 1
+    if scheduler == SLURM and workers is None:
+        raise UsageError(f"--scheduler {SLURM}: --workers: missing: give the number of workers, as in --workers 16")
+    if scheduler != SLURM and workers is not None:
+        raise UsageError(f"--workers {workers}: the workers of {scheduler} are used: leave it out")
+    return workers

@@ -1,15 +1,14 @@
 """The blades that a command is given: a blade file in any readable format, or the blades of a case."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ...cases.input import changes, library, readers
+from ...cases.input import changes, readers
 from ...cases.input.changes import Change
 from ...cases.input.errors import CaseError
-from ...cases.input.library import select
-from ...cases.input.readers import Mount, Unused, southwell_toml
+from ...cases.input.library import is_blade_file, select
+from ...cases.input.readers import Mount, Unused
 from ...cases.verify.settings import settings
 from ...core.blade import Blade
 from ..shared.units import BY_KEY, RPM, Units
@@ -86,15 +85,3 @@ def subjects(name: str, mount: Mount) -> list[Subject]:
             Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about, unused=variant.unused)
         )
     return out
-
-
-def is_blade_file(name: str) -> bool:
-    """Whether a name is that of a blade file, not of a case."""
-    path = Path(name)
-    if (
-        name in library.names()
-        or name.partition("/")[0] in library.names()
-        or not (path.suffix or os.path.isfile(path))
-    ):
-        return False
-    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.is_one(path))

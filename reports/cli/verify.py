@@ -5,9 +5,10 @@ import shlex
 import shutil
 import sys
 import time
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Future
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from ...cases.input import atomic, library, mechanisms
 from ...cases.input import changes as blade_changes
 from ...cases.input.changes import Change, parse
 from ...cases.input.default_case import default_case
+from ...cases.input.library import is_blade_file
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge import results
@@ -26,10 +28,11 @@ from ...cases.judge.results import Control, Level, Planned, Run, Setting
 from ...cases.verify import bisection, journal, lumping, matrix, mechanism_case, user_results
 from ...cases.verify import names as names_of
 from ...cases.verify.cached import Cached
+from ...cases.verify.executors import executor
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
-from ...cases.verify.pool import Pool
 from ...cases.verify.settings import NOT_USED, settings
+from ...cases.verify.software import Software
 from ...cases.verify.user_results import UserResults
 from ...references.protocol import registry, store
 from ...references.protocol.description import Description, describe
@@ -40,11 +43,14 @@ from ..shared import console, summary
 from ..shared.statuses import INCOMPLETE, INTERRUPTED
 from ..shared.units import RPM, Units
 from . import campbell_options, measured, versions
-from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, writing
+from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
 from .mounting import Mounting
 from .report import show
-from .subjects import is_blade_file, subjects
+from .subjects import subjects
+
+SHARES = 8
+"""Largest number of tasks for the seeded faults on a cluster, whose number of workers may change."""
 
 SCRATCH = "results.partial.tmp"
 """Folder in ``--out`` for temporary files of this run and of the codes it runs."""
@@ -55,6 +61,7 @@ def command(
     codes: str | None = None,
     out: Path = Path("southwell-report"),
     workers: Workers | None = None,
+    scheduler: str | None = None,
     add: tuple[str, ...] = (),
     data_uncertainty: str | None = None,
     input_uncertainty: str | None = None,
@@ -88,7 +95,9 @@ def command(
     out
         Output folder; only one run at a time may write in it.
     workers
-        Worker processes (default: one per processor).
+        Worker processes (default: one per processor), or workers of Slurm.
+    scheduler
+        Address of a Dask scheduler, as `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this machine.
     add
         `NAME=FILE.csv`: results of another program as one more column; may be repeated. Columns of the file: `speed [rpm]` (or
         rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number). Measurements have `measured [Hz]`
@@ -122,6 +131,11 @@ def command(
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
+    count = cluster_workers(workers, scheduler)
+    if scheduler and against_version:
+        raise UsageError(
+            f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
+        )
     decks = _Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
     chosen = [_changed(_chosen(name, decks), given) for name in dict.fromkeys(case or everything())]
@@ -151,26 +165,31 @@ def command(
         command=shlex.join(line),
         settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
     )
-    seeded = table.chosen(faults)
+    seeded = _shared_out(table.chosen(faults), count or SHARES)
     for setting in about.settings:
         if NOT_USED in setting.facts:
             print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
     kept_before = _store(fresh)
     limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30), "reuse": kept_before is not None}
-    with writing(out), _journal(out) as kept:
-        run, stopped = _solve(
-            chosen, known, files, about, kept, out, workers or os.cpu_count() or 1, seeded, limits, kept_before
-        )
-        try:
-            if run.cells:
-                show(run, out)
-                if junit:
-                    _junit(run, junit)
-        except OSError as error:
-            stopped = stopped or Stopped(_said(error), INCOMPLETE)
-        if not stopped:
-            kept.remove()
-            return summary.status(run)
+    software = Software(
+        tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
+    )
+    with writing(out), ExitStack() as started:
+        pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _tell))
+        with _journal(out) as kept:
+            run, stopped = _solve(
+                chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
+            )
+            try:
+                if run.cells:
+                    show(run, out)
+                    if junit:
+                        _junit(run, junit)
+            except OSError as error:
+                stopped = stopped or Stopped(_said(error), INCOMPLETE)
+            if not stopped:
+                kept.remove()
+                return summary.status(run)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
@@ -198,19 +217,21 @@ def _solve(
     about: Run,
     kept: Journal,
     out: Path,
-    workers: int,
-    seeded: Sequence[str],
+    pool: Executor,
+    stop: Callable[[], None],
+    seeded: Sequence[Sequence[str]],
     limits: Mapping[str, Any],
     kept_before: Store | None,
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
     Answers go to the journal at once. Seeded faults are executed in every run, because they show that this run would
-    detect a fault; only what codes answered to the same questions is reused.
+    detect a fault; only what codes answered to the same questions is reused. ``stop`` ends the workers of ``pool``;
+    ``seeded`` are the faults of each task.
     """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
-    pool, watch = Pool(workers, scratch.resolve()), console.Watch()
+    watch = console.Watch()
     fresh = Remembering(pool, kept)
     cached = Cached(pool, kept_before) if kept_before else None
     executor = Remembering(cached, kept) if cached else fresh
@@ -221,7 +242,7 @@ def _solve(
         kept.begin(replace(about, plan=plan))
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
-        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in _shared_out(seeded, workers))
+        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in seeded)
 
     try:
         scratch.mkdir()
@@ -232,7 +253,7 @@ def _solve(
             )
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
-        controls = tuple(found[name] for name in seeded)
+        controls = tuple(found[name] for part in seeded for name in part)
         run = replace(done, levels=levels, controls=controls, bisections=moved)
         run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
         if missing := results.gaps(run):
@@ -246,10 +267,12 @@ def _solve(
     except BrokenProcessPool:
         why = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
         stopped = Stopped(why, INCOMPLETE)
+    except BrokenExecutor as error:
+        stopped = Stopped(str(error), INCOMPLETE)
     except OSError as error:
         stopped = Stopped(_said(error), INCOMPLETE)
     finally:
-        pool.stop()
+        stop()
         if kept_before:
             kept_before.close()
         shutil.rmtree(scratch, ignore_errors=True)
@@ -279,10 +302,14 @@ def _said(error: OSError) -> str:
     return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
-def _shared_out(names: Sequence[str], workers: int) -> list[Sequence[str]]:
-    """Distribute faults over workers; neighbours stay together, because they are tried on the same case."""
-    size = -(-len(names) // workers)
+def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
+    """Distribute faults over tasks; neighbours stay together, because they are tried on the same case."""
+    size = -(-len(names) // parts)
     return [names[k : k + size] for k in range(0, len(names), size)] if names else []
+
+
+def _tell(line: str) -> None:
+    print(f"southwell: {line}", file=sys.stderr)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,129 @@
+"""A task of a study and its rows. A task is one sample of one blade at all speeds, so that its meshes are made once."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite, pi
+
+import msgspec
+from msgspec import Struct
+from msgspec.structs import replace
+
+from ...core.blade import Blade
+from ...references.protocol.process import raised
+from ..campbell.sweep import Named, at_each
+from ..input.changes import Change, apply
+from ..input.errors import CaseError
+
+INTERNAL = "internal error of southwell: "
+"""Beginning of the reason of a row that a defect of this package has cost."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One sample of one blade.
+
+    Attributes:
+        blade: the nominal blade.
+        sample: number of the sample, from 0.
+        changes: the sampled properties.
+        speeds: rotor speeds, rad/s.
+        modes: number of modes, from the lowest.
+        elements, accuracy, allow_large_strain: as in ``core.solve.modes``.
+    """
+
+    blade: Blade
+    sample: int
+    changes: tuple[Change, ...]
+    speeds: tuple[float, ...]
+    modes: int
+    elements: int | None
+    accuracy: float
+    allow_large_strain: bool
+
+
+class Row(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """One line of a study: a frequency, or the reason why there is none at this speed.
+
+    Attributes:
+        blade: name of the blade.
+        sample: number of the sample, from 0.
+        properties: sampled values, by property.
+        omega_rad_s: rotor speed.
+        mode: 1 for the lowest; None without a frequency, as the following fields.
+        name: family and number within the family, ``flapwise 2``.
+        frequency_rad_s, frequency_hz: the frequency.
+        relative_uncertainty: numerical; None if unknown.
+        steady_strain: largest steady strain at this speed.
+        reason: why there is no frequency; None if there is one.
+        rows_left: number of rows of the same task that follow.
+    """
+
+    blade: str
+    sample: int
+    properties: dict[str, float]
+    omega_rad_s: float
+    mode: int | None = None
+    name: str | None = None
+    frequency_rad_s: float | None = None
+    frequency_hz: float | None = None
+    relative_uncertainty: float | None = None
+    steady_strain: float | None = None
+    reason: str | None = None
+    rows_left: int = 0
+
+
+def solve(task: Task) -> bytes:
+    """Solve a task; return its rows, one JSON object per line. Every speed has a row; no exception is raised."""
+    values = {change.name: change.value for change in task.changes}
+    rows: list[Row] = []
+    for omega, answer in _answers(task):
+        empty = Row(blade=task.blade.name, sample=task.sample, properties=values, omega_rad_s=omega)
+        if isinstance(answer, str):
+            rows.append(replace(empty, reason=answer))
+        else:
+            rows += [_filled(empty, one) for one in answer]
+    return encoded(rows)
+
+
+def encoded(rows: Sequence[Row]) -> bytes:
+    """The rows of one task as lines, with ``rows_left``."""
+    left = range(len(rows) - 1, -1, -1)
+    return b"".join(msgspec.json.encode(replace(row, rows_left=k)) + b"\n" for row, k in zip(rows, left, strict=True))
+
+
+def _filled(row: Row, one: Named) -> Row:
+    return replace(
+        row,
+        mode=one.mode,
+        name=one.name,
+        frequency_rad_s=one.frequency,
+        frequency_hz=one.frequency / (2 * pi),
+        relative_uncertainty=one.uncertainty if isfinite(one.uncertainty) else None,
+        steady_strain=one.strain if isfinite(one.strain) else None,
+    )
+
+
+def _answers(task: Task) -> Iterator[tuple[float, list[Named] | str]]:
+    """The modes at each speed, or the reason why there are none. The sweep begins again after a speed without modes."""
+    try:
+        blade = apply(task.blade, task.changes)
+    except Exception as error:
+        yield from ((omega, _reason(error, task)) for omega in task.speeds)
+        return
+    sweep = None
+    for k, omega in enumerate(task.speeds):
+        sweep = sweep or at_each(
+            blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain
+        )
+        try:
+            answer = next(sweep)
+        except Exception as error:
+            sweep, answer = None, _reason(error, task)
+        yield omega, answer
+
+
+def _reason(error: Exception, task: Task) -> str:
+    """Why there is no answer; a defect costs rows, not the study."""
+    if isinstance(error, CaseError):
+        return str(error).removeprefix("--set ").removeprefix(f"{task.blade.name}: ")
+    return f"{INTERNAL}{raised(error)}"

@@ -1,0 +1,130 @@
+"""``southwell study``: sampled properties of blades, solved at many speeds on one machine or a cluster."""
+
+import sys
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from msgspec import UNSET
+
+from ...cases.study import parquet
+from ...cases.study.journal import StudyJournal, read
+from ...cases.study.plan import Header, header
+from ...cases.study.run import run
+from ...cases.study.schema import Study
+from ...cases.study.schema import read as read_study
+from ...cases.study.statistics import Outcome, outcome, spreads
+from ...cases.verify.appending import JournalError
+from ...cases.verify.executors import executor
+from ..campbell import tables
+from ..campbell.tables import Sheet
+from ..shared import not_used
+from ..shared.console import Counter, output
+from ..shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
+from ..shared.units import RAD_S, RPM
+from .arguments import Workers, cluster_workers
+from .errors import UsageError
+
+SUFFIX = ".jsonl"
+
+
+def command(
+    study: Path,
+    /,
+    *,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("study.jsonl"),
+    workers: Workers | None = None,
+    scheduler: str | None = None,
+    summary: bool = False,
+) -> int:
+    """Solve sampled variants of blades at many speeds.
+
+    Writes one row per blade, sample, speed and mode to a JSON Lines file as soon as a sample is solved. An interrupted study
+    (status 130), or one that was killed (status 3), continues with the same command. Status 1 if a speed of a sample has no
+    frequency; its row has the reason.
+
+    Parameters
+    ----------
+    study
+        Study file (TOML): blades, speeds, modes, samples, seed, and the distribution of each sampled property.
+    out
+        Output file: `.jsonl`, or `.parquet`, which is written from the `.jsonl` file of the same name when the study is
+        complete.
+    workers
+        Worker processes, or workers of Slurm. Default: one per processor.
+    scheduler
+        Address of a Dask scheduler, as `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this machine.
+    summary
+        Print mean, standard deviation and percentiles of every frequency over the samples.
+    """
+    if out.suffix not in (SUFFIX, parquet.SUFFIX):
+        raise UsageError(f"--out {out}: the name says neither JSON Lines nor Parquet: end it with .jsonl or .parquet")
+    count = cluster_workers(workers, scheduler)
+    if out.suffix == parquet.SUFFIX:
+        parquet.library(out)  # before the first answer
+    asked, unused = read_study(study)
+    not_used.show(unused, output())
+    head, path = header(asked), out.with_suffix(SUFFIX)
+    with _journal(path, head) as journal:
+        stopped = _run(asked, journal, count, scheduler)
+        if stopped:
+            done = f"{sum(journal.done)} of {head.tasks} samples are in {path}"
+            print(f"southwell: {stopped[0]}: {done}; the same command continues", file=sys.stderr)
+            return stopped[1]
+        if out != path:
+            parquet.write(out, path, head)
+        found = outcome(read(path))
+        if summary:
+            output().print(tables.terminal(_sheet(path, asked)))
+    output().print(f"{out}: {_said(found, head)}", markup=False, soft_wrap=True)
+    return FAILED if found.missing else PASSED
+
+
+@contextmanager
+def _journal(path: Path, head: Header) -> Iterator[StudyJournal]:
+    try:
+        journal = StudyJournal(path, head)
+    except OSError as error:
+        raise UsageError(f"--out {path}: cannot be written ({error.strerror}): give another file") from error
+    with journal:
+        yield journal
+
+
+def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: str | None) -> tuple[str, int] | None:
+    """Run a study; return why it stopped before its end and the exit status, or None."""
+    if all(journal.done):
+        return None
+    counter = Counter("samples", journal.header.tasks)
+    try:
+        with counter, executor(workers, scheduler, tell=counter.tell) as pool:
+            run(study, pool, journal, counter.show)
+    except KeyboardInterrupt:
+        return "interrupted", INTERRUPTED
+    except BrokenExecutor as error:
+        return f"workers are lost ({error})", INCOMPLETE
+    except JournalError as error:
+        return f"{error.filename}: {error.strerror}", INCOMPLETE
+    return None
+
+
+def _said(found: Outcome, head: Header) -> str:
+    said = f"{found.frequencies} frequencies of {head.tasks} samples at {len(head.speeds_rad_s)} speeds"
+    if found.missing:
+        said += f"; {found.missing} speeds of samples without one (first: {found.reason})"
+    if found.internal:
+        said += f"; {found.internal} of these are internal errors: please report them"
+    return said
+
+
+def _sheet(path: Path, study: Study) -> Sheet:
+    units = RAD_S if study.text.speeds.rpm is UNSET else RPM
+    head = ("blade", "speed", "mode", "name", "samples", f"mean, {units.frequency}", "std. deviation", "5 %", "95 %")
+    rows = []
+    for blade, omega, mode, name, samples, *numbers in spreads(read(path)).itertuples(index=False):
+        shown = (f"{value * units.frequencies:.6g}" for value in numbers)
+        rows.append((blade, units.at(omega), str(mode), name, str(samples), *shown))
+    note = "A mode is a number in the order of each sample; its name is the most frequent one."
+    return Sheet("Frequencies over the samples", head, tuple(rows), note)

@@ -1,0 +1,161 @@
+"""Executors: which workers do a run's tasks, and the errors when there are none."""
+
+import os
+import stat
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from southwell.cases.input.errors import CaseError
+from southwell.cases.verify.executors import executor
+from southwell.cases.verify.pool import Pool
+from southwell.cases.verify.software import Software, installed
+
+from ...support import clusters, killing
+from ...support.studies import deadly, sleeping, solved, stub, study, tasks_of
+
+
+def test_processes_of_this_machine_by_default() -> None:
+    with executor(1) as pool:
+        assert isinstance(pool, Pool)
+        assert pool.submit(os.getpid).result(60) != os.getpid()
+    with pytest.raises(RuntimeError, match="shutdown"):
+        pool.submit(os.getpid)
+
+
+@pytest.mark.parametrize("module", ["distributed", "dask_jobqueue"])
+def test_without_dask_there_is_a_hint(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    if module == "dask_jobqueue":
+        pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
+    monkeypatch.setitem(sys.modules, module, None)
+    with (
+        pytest.raises(
+            CaseError, match=rf"--scheduler slurm: {module} is not installed: pip install 'southwell\[cluster\]'"
+        ),
+        executor(1, "slurm"),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [("host", "missing port number"), ("nothing://host:1", "unknown address scheme"), ("tcp://127.0.0.1:1", "after")],
+)
+def test_an_address_without_a_scheduler_is_one_line(address: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
+    monkeypatch.setattr("southwell.cases.verify.executors.CONNECT", 0.5)
+    with (
+        pytest.raises(CaseError, match=f"--scheduler {address}: no Dask scheduler answers .*{said}"),
+        executor(1, address),
+    ):
+        pass
+
+
+def test_software_is_versions_and_sources() -> None:
+    found = dict(installed(Software(("numpy", "no-such-package"), ("no-such-code",))))
+    assert found["numpy"] == import_module("numpy").__version__
+    assert found["no-such-package"] == found["the source of no-such-code"] == ""
+    assert len(found["Southwell or its libraries"]) == 12
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    with clusters.local(1) as one:
+        yield one
+
+
+@pytest.mark.slow
+def test_workers_with_other_software_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("southwell.cases.verify.cluster.installed", lambda _: (("exudyn", "0.1"),))
+    with executor(scheduler=cluster.scheduler_address, software=Software(("exudyn",))) as pool:
+        error = pool.submit(os.getpid).exception(60)
+    assert isinstance(error, CaseError)
+    assert "worker tcp://" in str(error)
+    assert "but 0.1 in the process that asks: install the same version" in str(error)
+
+
+@pytest.mark.slow
+def test_workers_with_several_threads_are_refused() -> None:
+    with clusters.local(1, threads=2) as cluster, executor(scheduler=cluster.scheduler_address) as pool:
+        error = pool.submit(os.getpid).exception(60)
+    assert isinstance(error, CaseError)
+    assert "2 threads: start it with --nthreads 1" in str(error)
+
+
+@pytest.mark.slow
+def test_finished_tasks_are_forgotten_on_the_cluster(cluster: Any, tmp_path: Path) -> None:
+    """Otherwise results pile up in the workers' memory, and those of a dead worker are computed again."""
+    with executor(scheduler=cluster.scheduler_address) as pool:
+        solved(study(tmp_path, samples=50), tmp_path / "out.jsonl", pool, answer=stub)
+        held = [pool.submit(os.getpid) for _ in range(5)]
+        assert all(future.result(60) for future in held)
+        assert sum(task.state == "memory" for task in cluster.scheduler.tasks.values()) <= 1  # the last, for a moment
+
+
+@pytest.mark.slow
+def test_a_task_that_kills_every_worker_ends_the_run(tmp_path: Path) -> None:
+    (task,) = tasks_of(study(tmp_path, samples=1))
+    with (
+        import_module("dask.config").set({"distributed.scheduler.allowed-failures": 0}),
+        clusters.local(1) as cluster,
+        executor(scheduler=cluster.scheduler_address) as pool,
+    ):
+        error = pool.submit(deadly, task).exception(120)
+        assert isinstance(error, BrokenExecutor)
+        assert "3 workers died while they had the same task" in str(error)
+        assert pool.submit(stub, task).result(120) == stub(task)
+
+
+@pytest.mark.slow
+def test_a_cancelled_task_stays_cancelled(cluster: Any, tmp_path: Path) -> None:
+    (task,) = tasks_of(study(tmp_path, samples=1))
+    with executor(scheduler=cluster.scheduler_address) as pool:
+        futures = [pool.submit(sleeping, task) for _ in range(20)]
+        assert futures[-1].cancel()
+        assert futures[0].result(60) == stub(task)
+        assert futures[-1].cancelled()
+
+
+SBATCH = """#!/bin/sh
+sh "$1" > job.log 2>&1 &
+echo "Submitted batch job $!"
+"""
+
+
+@pytest.mark.slow
+def test_slurm_jobs_are_submitted_and_cancelled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The commands of Slurm are replaced by scripts that run the job on this machine."""
+    pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
+    pytest.importorskip("dask_jobqueue", reason="Dask-Jobqueue is not installed: pip install -e '.[cluster]'")
+    for name, text in (("sbatch", SBATCH), ("scancel", '#!/bin/sh\necho "$@" >> cancelled; kill "$@"\n')):
+        path = tmp_path / name
+        path.write_text(text)
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(CaseError, match=r"--scheduler slurm: .*jobqueue\.slurm"), executor(1, "slurm"):
+        pass
+    options = {"cores": 1, "processes": 1, "memory": "1GB", "interface": "lo"}
+    with import_module("dask.config").set({f"jobqueue.slurm.{key}": value for key, value in options.items()}):
+        one = study(tmp_path, samples=3)
+        with executor(1, "slurm") as pool:
+            assert solved(one, tmp_path / "slurm.jsonl", pool) == solved(one, tmp_path / "serial.jsonl")
+    assert (tmp_path / "cancelled").read_text().strip()
+
+
+@pytest.mark.slow
+def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path) -> None:
+    found = {}
+    for name, options in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):
+        line = ["verify", "tip-mass", "--codes", "exact-beam", "--faults", "none", "--out", name, *options]
+        done = subprocess.run([sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        found[name] = killing.untimed(tmp_path / name / "results.jsonl")
+    assert found["here"] == found["there"]
+    assert len(found["here"]) > 10
