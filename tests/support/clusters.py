@@ -21,13 +21,11 @@ import pytest
 def local(workers: int = 2, threads: int = 1) -> Iterator[Any]:
     """A ``LocalCluster`` of processes, which are started again when they die."""
     distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
-    patient = {"distributed.deploy.lost-worker-timeout": "1 h"}  # else a worker that starts slowly is given up
-    with (
-        import_module("dask.config").set(patient),
-        distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=threads, processes=True, dashboard_address=":0", silence_logs=50
-        ) as cluster,
-    ):
+    # else a worker that starts slowly is given up; not as a context, which a fixture would leave in another order
+    import_module("dask.config").set({"distributed.deploy.lost-worker-timeout": "1 h"})
+    with distributed.LocalCluster(
+        n_workers=workers, threads_per_worker=threads, processes=True, dashboard_address=":0", silence_logs=50
+    ) as cluster:
         yield cluster
 
 

@@ -10,9 +10,9 @@ from time import monotonic, sleep
 import pytest
 
 from southwell.cases.verify.executors import executor
+from southwell.tests.support.studies import lines, solved, study, text
 
 from ...support import clusters
-from ...support.studies import lines, solved, study, text
 
 pytestmark = pytest.mark.slow
 
@@ -49,6 +49,7 @@ def until(path: Path, count: int, child: subprocess.Popen[str]) -> None:
         sleep(0.002)
 
 
+@pytest.mark.nightly
 def test_a_driver_that_is_killed_again_and_again(tmp_path: Path) -> None:
     seed = random.randrange(10**6)
     print(f"seed of the moments: {seed}")
@@ -71,6 +72,7 @@ def test_a_driver_that_is_killed_again_and_again(tmp_path: Path) -> None:
     assert lines(path) == serial
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("where", ["processes", "cluster"])
 def test_an_interrupted_study_has_status_130_and_continues(where: str, tmp_path: Path) -> None:
     one, path = study(tmp_path, samples=SAMPLES), tmp_path / "out.jsonl"
@@ -92,6 +94,7 @@ def test_an_interrupted_study_has_status_130_and_continues(where: str, tmp_path:
     assert lines(path) == serial
 
 
+@pytest.mark.nightly
 def test_a_scheduler_that_is_lost_leaves_the_answers_and_status_3(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(text(samples=SAMPLES))
     path = tmp_path / "out.jsonl"

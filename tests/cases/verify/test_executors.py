@@ -16,9 +16,9 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.verify.executors import executor
 from southwell.cases.verify.pool import Pool
 from southwell.cases.verify.software import Software, installed
+from southwell.tests.support.studies import deadly, sleeping, solved, stub, study, tasks_of
 
 from ...support import clusters, killing
-from ...support.studies import deadly, sleeping, solved, stub, study, tasks_of
 
 
 def test_processes_of_this_machine_by_default() -> None:
