@@ -35,6 +35,7 @@ def compact(svg: str) -> str:
 
     svg = TAG.sub(shorter, svg)
     rules = "".join(f".{name}{{{look}}}" for look, name in looks.items()).replace("; ", ";").replace(": ", ":")
-    svg = svg.replace("</style>", f"{rules.replace(FONT, FONTS)}</style>", 1)
+    rules = f"text{{white-space:pre}}{rules.replace(FONT, FONTS)}"  # two spaces are two
+    svg = svg.replace("</style>", f"{rules}</style>", 1)
     svg = re.sub(r">\s+<", "><", svg)
     return ALONE.sub(r"\1", svg).strip() + "\n"
