@@ -51,29 +51,14 @@ def sweep(
     allow_large_strain: bool = False,
     method: Method = "chain",
     at: Callable[[float], str] = rad_s,
-) -> list[Named]:
-    """The ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
+) -> Iterator[list[Named]]:
+    """Yield the ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
 
     ``at`` names a speed in an error, in the unit in which it was given.
 
     Raises:
         CaseError: if a speed has no stable steady state, or one of large strain.
     """
-    found = at_each(blade, speeds, elements, count, accuracy, allow_large_strain, method, at)
-    return [row for rows in found for row in rows]
-
-
-def at_each(
-    blade: Blade,
-    speeds: Sequence[float],
-    elements: int | None,
-    count: int,
-    accuracy: float = 1e-6,
-    allow_large_strain: bool = False,
-    method: Method = "chain",
-    at: Callable[[float], str] = rad_s,
-) -> Iterator[list[Named]]:
-    """The modes at one speed after another; arguments and errors as for ``sweep``."""
     weight = weights(blade)
     if method == "velocity-transformation":
         found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)

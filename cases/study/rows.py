@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from ...core.blade import Blade
 from ...references.protocol.process import raised
-from ..campbell.sweep import Named, at_each
+from ..campbell.sweep import Named, sweep
 from ..input.changes import Change, apply
 from ..input.errors import CaseError
 
@@ -110,15 +110,13 @@ def _answers(task: Task) -> Iterator[tuple[float, list[Named] | str]]:
     except Exception as error:
         yield from ((omega, _reason(error, task)) for omega in task.speeds)
         return
-    sweep = None
+    rest = None
     for k, omega in enumerate(task.speeds):
-        sweep = sweep or at_each(
-            blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain
-        )
+        rest = rest or sweep(blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain)
         try:
-            answer = next(sweep)
+            answer = next(rest)
         except Exception as error:
-            sweep, answer = None, _reason(error, task)
+            rest, answer = None, _reason(error, task)
         yield omega, answer
 
 

@@ -32,7 +32,7 @@ TYPES: dict[str, type] = {
     "Converged": Converged,
     "Reference": Reference,
     "MechanismReference": mechanism_columns.Reference,
-    "ConvergedMode": RefinedMode,
+    "RefinedMode": RefinedMode,
     "Wanted": Wanted,
 }
 """Name in the file → dataclass."""

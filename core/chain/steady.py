@@ -101,9 +101,8 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
         energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
-        following = (
-            energy * (energy / before) ** 2
-        )  # predicted energy of the next step: √e of a step is as e of the last
+        ratio = energy / before
+        following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
         settled = energy <= rounding and following <= _CONVERGED_FACTOR * rounding
         stalled = energy <= _STALL_FACTOR * rounding and energy > _MIN_REDUCTION * before
         if energy <= _CONVERGED_FACTOR * rounding or settled or stalled:

@@ -91,7 +91,9 @@ def modes(
             raise UsageError(f"--rpm: missing: {case} does not define rotor speeds: give them, as in 0:15:5")
         blade = subject.blade
         at = subject.speeds if speeds is None else speeds
-        found = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method, (units or subject.units).at)
+        named = (units or subject.units).at
+        swept = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method, named)
+        found = [one for at_speed in swept for one in at_speed]
         rows += [_tidy(blade.name, row) for row in found]
         console = Console(stderr=True, highlight=False) if json else output()
         for note in subject.notes:

@@ -2,58 +2,42 @@
 
 import os
 import shlex
-import shutil
 import sys
-import time
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-from msgspec.structs import replace as replaced
 
 from ...cases.faults import table
-from ...cases.input import atomic, library, mechanisms
-from ...cases.input import changes as blade_changes
-from ...cases.input.changes import Change, parse
-from ...cases.input.default_case import default_case
+from ...cases.input import atomic
+from ...cases.input.changes import parse
 from ...cases.input.library import is_blade_file
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
-from ...cases.judge import results
-from ...cases.judge.results import Control, Level, Planned, Run, Setting
-from ...cases.verify import bisection, journal, lumping, matrix, mechanism_case, user_results
+from ...cases.judge.results import Run, Setting
+from ...cases.verify import matrix, user_results
 from ...cases.verify import names as names_of
-from ...cases.verify.cached import Cached
 from ...cases.verify.executors import executor
-from ...cases.verify.journal import Journal, Remembering
-from ...cases.verify.mechanism_case import MechanismCase
+from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.software import Software
-from ...cases.verify.user_results import UserResults
 from ...references.protocol import registry, store
-from ...references.protocol.description import Description, describe
+from ...references.protocol.description import describe
 from ...references.protocol.process import Limits
 from ...references.protocol.store import Store
 from ..ci import junit as xml
-from ..shared import console, summary
-from ..shared.statuses import INCOMPLETE, INTERRUPTED
-from ..shared.units import RPM, Units
+from ..shared import summary
+from ..shared.statuses import INCOMPLETE
 from . import campbell_options, measured, versions
-from .arguments import CONTINUE, RESULTS, Changes, Count, Positive, Workers, cluster_workers, writing
+from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
 from .mounting import Mounting
 from .report import show
-from .subjects import subjects
+from .verify_cases import Decks, case_of, changed, everything
+from .verify_run import SCRATCH, Stopped, said, solve
 
 SHARES = 8
 """Largest number of tasks for the seeded faults on a cluster, whose number of workers may change."""
-
-SCRATCH = "results.partial.tmp"
-"""Folder in ``--out`` for temporary files of this run and of the codes it runs."""
 
 
 def command(
@@ -136,9 +120,9 @@ def command(
         raise UsageError(
             f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
         )
-    decks = _Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
+    decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
-    chosen = [_changed(_chosen(name, decks), given) for name in dict.fromkeys(case or everything())]
+    chosen = [changed(case_of(name, decks), given) for name in dict.fromkeys(case or everything())]
     if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
         raise UsageError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
@@ -177,7 +161,7 @@ def command(
     with writing(out), ExitStack() as started:
         pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _tell))
         with _journal(out) as kept:
-            run, stopped = _solve(
+            run, stopped = solve(
                 chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
             )
             try:
@@ -186,21 +170,13 @@ def command(
                     if junit:
                         _junit(run, junit)
             except OSError as error:
-                stopped = stopped or Stopped(_said(error), INCOMPLETE)
+                stopped = stopped or Stopped(said(error), INCOMPLETE)
             if not stopped:
                 kept.remove()
                 return summary.status(run)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
-
-
-@dataclass(frozen=True)
-class Stopped:
-    """Why a run stopped before its end, and the exit status."""
-
-    what: str
-    status: int
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
@@ -210,75 +186,6 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
     return replace(setting, groups=witnesses or 0, lacking="")
 
 
-def _solve(
-    chosen: Sequence[Case | MechanismCase],
-    codes: Sequence[Description],
-    files: Sequence[UserResults],
-    about: Run,
-    kept: Journal,
-    out: Path,
-    pool: Executor,
-    stop: Callable[[], None],
-    seeded: Sequence[Sequence[str]],
-    limits: Mapping[str, Any],
-    kept_before: Store | None,
-) -> tuple[Run, Stopped | None]:
-    """The complete run, written to ``out``; or the part that was computed, and why it stopped.
-
-    Answers go to the journal at once. Seeded faults are executed in every run, because they show that this run would
-    detect a fault; only what codes answered to the same questions is reused. ``stop`` ends the workers of ``pool``;
-    ``seeded`` are the faults of each task.
-    """
-    scratch = out / SCRATCH
-    shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
-    watch = console.Watch()
-    fresh = Remembering(pool, kept)
-    cached = Cached(pool, kept_before) if kept_before else None
-    executor = Remembering(cached, kept) if cached else fresh
-    lumped: list[Future[tuple[Level, ...]]] = []
-    tried: list[Future[list[Control]]] = []
-
-    def begin(plan: tuple[Planned, ...]) -> None:
-        kept.begin(replace(about, plan=plan))
-        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
-        lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
-        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in seeded)
-
-    try:
-        scratch.mkdir()
-        with watch:
-            done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
-            moved = bisection.bisections(
-                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.tell
-            )
-            levels = done.levels + tuple(level for future in lumped for level in future.result())
-            found = {control.control: control for future in tried for control in future.result()}
-        controls = tuple(found[name] for part in seeded for name in part)
-        run = replace(done, levels=levels, controls=controls, bisections=moved)
-        run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
-        if missing := results.gaps(run):
-            return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
-        results.write(out / RESULTS, run)
-        if cached and cached.taken:
-            print(f"southwell: {_taken(cached)}", file=sys.stderr)
-        return run, None
-    except KeyboardInterrupt:
-        stopped = Stopped("interrupted", INTERRUPTED)
-    except BrokenProcessPool:
-        why = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
-        stopped = Stopped(why, INCOMPLETE)
-    except BrokenExecutor as error:
-        stopped = Stopped(str(error), INCOMPLETE)
-    except OSError as error:
-        stopped = Stopped(_said(error), INCOMPLETE)
-    finally:
-        stop()
-        if kept_before:
-            kept_before.close()
-        shutil.rmtree(scratch, ignore_errors=True)
-    return replace(journal.read(kept.path), unfinished=stopped.what), stopped
-
-
 def _store(fresh: bool) -> Store | None:
     """Open the store of answers; None if it is not wanted or cannot be used."""
     if fresh or os.environ.get(store.FRESH):
@@ -286,20 +193,8 @@ def _store(fresh: bool) -> Store | None:
     try:
         return Store(store.path())
     except OSError as error:
-        print(f"southwell: the store of answers is not used: {_said(error)}", file=sys.stderr)
+        print(f"southwell: the store of answers is not used: {said(error)}", file=sys.stderr)
         return None
-
-
-def _taken(cached: Cached) -> str:
-    first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(cached.taken))) for when in (min, max))
-    return (
-        f"{len(cached.taken)} of {cached.asked} answers are from the store, computed between {first} and {last}; "
-        "--fresh computes them again"
-    )
-
-
-def _said(error: OSError) -> str:
-    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
 def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
@@ -310,54 +205,6 @@ def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
 
 def _tell(line: str) -> None:
     print(f"southwell: {line}", file=sys.stderr)
-
-
-@dataclass(frozen=True)
-class _Decks:
-    """What the command line gives for blade files: rotor speeds and their unit, and how they are mounted."""
-
-    speeds: tuple[tuple[float, ...], Units] | None
-    mount: Mount
-
-
-def _chosen(name: str, decks: _Decks) -> Case | MechanismCase:
-    """A case of blades or of a mechanism, by name or file; or the default case of a blade file."""
-    if is_blade_file(name):
-        (subject,) = subjects(name, decks.mount)
-        speeds, units = decks.speeds or (subject.speeds, subject.units)
-        if not speeds:
-            raise UsageError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
-        return default_case(
-            subject.blade, speeds, rpm=units is RPM, source="; ".join(subject.about), unused=subject.unused
-        )
-    if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
-        return mechanism_case.case(library.mechanism(name))
-    return library.select(name)
-
-
-def _changed(case: Case | MechanismCase, given: Sequence[Change]) -> Case | MechanismCase:
-    """The case with changed blade properties and without printed tables, which no longer apply."""
-    if not given:
-        return case
-    if not isinstance(case, Case):
-        raise UsageError(f"--set {given[0]}: {case.name} is a mechanism, not a blade: leave it out")
-    what = "changed: " + ", ".join(str(change) for change in given)
-    text = replaced(
-        case.text,
-        title=f"{case.text.title}; {what}",
-        compare=replaced(case.text.compare, tables=()),
-        discretisation=None,
-    )
-    variants = tuple(replace(v, blade=blade_changes.apply(v.blade, given)) for v in case.variants)
-    return replace(case, text=text, variants=variants)
-
-
-def everything() -> tuple[str, ...]:
-    """Every case and mechanism whose files are present; the others are reported as not run."""
-    absent = library.absent()
-    for name, why in absent.items():
-        print(f"southwell: {name}: not run: {why}", file=sys.stderr)
-    return (*(name for name in library.names() if name not in absent), *library.mechanisms())
 
 
 def _journal(out: Path) -> Journal:

@@ -3,12 +3,14 @@
 import time
 from datetime import timedelta
 from types import TracebackType
+from typing import Self
 
 from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     SpinnerColumn,
     TextColumn,
     TimeElapsedColumn,
@@ -30,25 +32,23 @@ def output() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=WIDE)
 
 
-class Watch:
-    """Progress of a run on standard error: a bar on a terminal, otherwise a line from time to time."""
+class _Display:
+    """A progress bar on standard error; without a terminal, a line from time to time."""
 
-    def __init__(self) -> None:
+    def __init__(self, *columns: ProgressColumn) -> None:
         self.console = Console(stderr=True, highlight=False)
         self.bar = Progress(
             SpinnerColumn(),
             BarColumn(bar_width=30),
             MofNCompleteColumn(),
-            TimeElapsedColumn(),
-            TextColumn("{task.description}", markup=False),
+            *columns,
             console=self.console,
             transient=True,
             disable=not self.console.is_terminal,
         )
-        self.task = self.bar.add_task("starting")
         self.spoke = time.monotonic()
 
-    def __enter__(self) -> "Watch":
+    def __enter__(self) -> Self:
         self.bar.start()
         return self
 
@@ -61,18 +61,32 @@ class Watch:
         """Print a line above the bar."""
         self.console.print(f"southwell: {line}", markup=False, soft_wrap=True)
 
+    def due(self, now: float) -> bool:
+        """Whether a line of progress should be printed at the time ``now``, s."""
+        if not self.bar.disable or now - self.spoke <= SILENCE:
+            return False
+        self.spoke = now
+        return True
+
+
+class Watch(_Display):
+    """Progress of a run."""
+
+    def __init__(self) -> None:
+        super().__init__(TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+        self.task = self.bar.add_task("starting")
+
     def show(self, step: Step) -> None:
         """Update the progress."""
         running = ", ".join(step.running)
         self.bar.update(self.task, completed=step.done, total=step.total, description=running)
-        if self.bar.disable and time.monotonic() - self.spoke > SILENCE:
-            self.spoke = time.monotonic()
+        if self.due(time.monotonic()):
             shown = f"; running: {running}" if running else ""  # unknown on a cluster
             self.console.print(f"{step.done} of {step.total} done{shown}", markup=False, soft_wrap=True)
 
 
-class Counter:
-    """Progress of many equal tasks on standard error, with the remaining time: a bar, or a line from time to time.
+class Counter(_Display):
+    """Progress of many equal tasks, with the remaining time.
 
     Args:
         what: name of the tasks, in the plural.
@@ -80,36 +94,11 @@ class Counter:
     """
 
     def __init__(self, what: str, total: int) -> None:
+        remaining = (TextColumn("remaining:"), TimeRemainingColumn())
+        super().__init__(TextColumn(what), TimeElapsedColumn(), *remaining)
         self.what, self.total = what, total
-        self.console = Console(stderr=True, highlight=False)
-        self.bar = Progress(
-            SpinnerColumn(),
-            BarColumn(bar_width=30),
-            MofNCompleteColumn(),
-            TextColumn(what),
-            TimeElapsedColumn(),
-            TextColumn("remaining:"),
-            TimeRemainingColumn(),
-            console=self.console,
-            transient=True,
-            disable=not self.console.is_terminal,
-        )
         self.task = self.bar.add_task("", total=total)
         self.first: tuple[int, float] | None = None
-        self.spoke = time.monotonic()
-
-    def __enter__(self) -> "Counter":
-        self.bar.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.bar.stop()
-
-    def tell(self, line: str) -> None:
-        """Print a line above the bar."""
-        self.console.print(f"southwell: {line}", markup=False, soft_wrap=True)
 
     def show(self, done: int) -> None:
         """Update the progress. The first call has the number of tasks finished by earlier runs."""
@@ -119,7 +108,6 @@ class Counter:
             self.bar.reset(self.task, completed=done, total=self.total)
         self.bar.update(self.task, completed=done)
         before, begun = self.first
-        if self.bar.disable and done > before and now - self.spoke > SILENCE:
-            self.spoke = now
+        if done > before and self.due(now):
             left = timedelta(seconds=round((now - begun) / (done - before) * (self.total - done)))
             self.console.print(f"{done} of {self.total} {self.what}; remaining: {left}", markup=False, soft_wrap=True)

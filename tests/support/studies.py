@@ -3,8 +3,7 @@
 import os
 import signal
 import time
-from collections.abc import Callable
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from southwell.cases.study.plan import header, tasks
 from southwell.cases.study.rows import Row, Task, encoded
 from southwell.cases.study.run import run
 from southwell.cases.study.schema import Study, read
+from southwell.cases.verify.pool import Serial
 
 TEXT = """
 name = "small"
@@ -45,22 +45,10 @@ def study(folder: Path, given: str | None = None, **options: Any) -> Study:
     return read(path)[0]
 
 
-class Inline(Executor):
-    """Runs each task when it is submitted."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-
 def solved(one: Study, path: Path, executor: Executor | None = None, **options: Any) -> list[bytes]:
     """The lines of a study's file after a run, the header and sorted rows."""
     with StudyJournal(path, header(one)) as journal:
-        run(one, executor or Inline(), journal, **options)
+        run(one, executor or Serial(), journal, **options)
     return lines(path)
 
 

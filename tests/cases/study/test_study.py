@@ -18,9 +18,10 @@ from southwell.cases.study.plan import header
 from southwell.cases.study.rows import Row, Task
 from southwell.cases.study.run import run
 from southwell.cases.study.statistics import outcome, spreads
+from southwell.cases.verify.pool import Serial
 from southwell.references.protocol import sources
 
-from ...support.studies import Inline, solved, stub, study, text
+from ...support.studies import solved, stub, study, text
 
 STIFFER = """
 name = "stiffer"
@@ -41,7 +42,9 @@ def rows(path: Path) -> list[Row]:
 def test_four_times_the_flapwise_stiffness_doubles_the_flapwise_frequencies_at_rest(tmp_path: Path) -> None:
     """ω ∝ √EI of a uniform beam at rest; edgewise frequencies do not change."""
     solved(study(tmp_path, STIFFER), tmp_path / "out.jsonl")
-    nominal = {r.name: r.frequency for r in sweep(library.load("park-cantilever").variants[0].blade, [0.0], None, 4)}
+    nominal = {
+        r.name: r.frequency for r in next(sweep(library.load("park-cantilever").variants[0].blade, [0.0], None, 4))
+    }
     found = {r.name: r.frequency_rad_s for r in rows(tmp_path / "out.jsonl")}
     for name, ratio in (("flapwise 1", 2.0), ("edgewise 1", 1.0)):
         assert found[name] == pytest.approx(ratio * nominal[name], rel=2e-6)  # both solved to 1e-6
@@ -91,12 +94,12 @@ def test_a_defect_of_the_solver_costs_rows_and_is_counted(tmp_path: Path, monkey
         raise IndexError("out of range")
         yield
 
-    monkeypatch.setattr("southwell.cases.study.rows.at_each", broken)
+    monkeypatch.setattr("southwell.cases.study.rows.sweep", broken)
     solved(study(tmp_path, samples=2), tmp_path / "out.jsonl")
     assert outcome(rows(tmp_path / "out.jsonl")).internal == 4
 
 
-class Stopping(Inline):
+class Stopping(Serial):
     """Breaks at one of its tasks."""
 
     def __init__(self, at: int) -> None:
@@ -125,7 +128,7 @@ def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: P
     assert sorted(asked) == list(range(6))
 
 
-class BrokenFirst(Inline):
+class BrokenFirst(Serial):
     """Loses the first task, and no other."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -226,7 +229,7 @@ def test_two_processes_cannot_write_to_one_file(tmp_path: Path) -> None:
         pass
 
 
-class Counting(Inline):
+class Counting(Serial):
     """Counts the tasks."""
 
     submitted = 0
@@ -253,7 +256,7 @@ def peak(folder: Path, samples: int) -> int:
     try:
         for _ in range(2):
             with StudyJournal(folder / "out.jsonl", header(one)) as journal:
-                run(one, Inline(), journal, answer=stub, window=16)
+                run(one, Serial(), journal, answer=stub, window=16)
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

@@ -5,7 +5,6 @@ import platform
 import sqlite3
 import subprocess
 import sys
-from concurrent.futures import Executor, Future
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -19,6 +18,7 @@ from southwell.cases.verify import cached
 from southwell.cases.verify.cached import Cached
 from southwell.cases.verify.cells import Head, failed
 from southwell.cases.verify.columns import Column
+from southwell.cases.verify.pool import Serial
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import sources, store
@@ -26,16 +26,6 @@ from southwell.references.protocol.process import Failure
 from southwell.references.protocol.store import Store
 
 from ...support import killing
-
-
-class Inline(Executor):
-    """Runs every task at once, in this thread."""
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        done: Future[Any] = Future()
-        done.set_result(fn(*args, **kwargs))
-        return done
-
 
 CALLS: list[Any] = []
 
@@ -57,10 +47,10 @@ def kept(tmp_path: Path) -> Store:
 
 
 def test_an_answer_is_computed_once(kept: Store) -> None:
-    first = Cached(Inline(), kept)
+    first = Cached(Serial(), kept)
     assert [first.submit(double, x).result() for x in (1.0, 2.0, 1.0)] == [2.0, 4.0, 2.0]
     assert CALLS == [1.0, 2.0]
-    again = Cached(Inline(), kept)
+    again = Cached(Serial(), kept)
     assert again.submit(double, 2.0).result() == 4.0
     assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
 
@@ -104,16 +94,16 @@ def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
 
 def test_failures_are_not_kept(kept: Store) -> None:
     for _ in range(2):
-        Cached(Inline(), kept).submit(column(), [], []).result()
+        Cached(Serial(), kept).submit(column(), [], []).result()
     assert CALLS == ["code", "code"]
     assert kept.kept() == []
 
 
 def test_a_damaged_answer_is_computed_again(kept: Store, tmp_path: Path) -> None:
-    Cached(Inline(), kept).submit(double, 1.0).result()
+    Cached(Serial(), kept).submit(double, 1.0).result()
     sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None).execute("update answers set value = '3.0'")
     assert len(kept.damaged()) == 1
-    assert Cached(Inline(), kept).submit(double, 1.0).result() == 2.0
+    assert Cached(Serial(), kept).submit(double, 1.0).result() == 2.0
     assert CALLS == [1.0, 1.0]
     assert kept.damaged() == []
 

@@ -1,0 +1,119 @@
+"""A run of ``southwell verify``: every answer goes to the journal, and what was computed is kept if the run stops."""
+
+import shutil
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ...cases.faults import table
+from ...cases.input.schema import Case
+from ...cases.judge import results
+from ...cases.judge.results import Control, Level, Planned, Run
+from ...cases.verify import bisection, journal, lumping, matrix
+from ...cases.verify.cached import Cached
+from ...cases.verify.journal import Journal, Remembering
+from ...cases.verify.mechanism_case import MechanismCase
+from ...cases.verify.user_results import UserResults
+from ...references.protocol.description import Description
+from ...references.protocol.store import Store
+from ..shared import console
+from ..shared.statuses import INCOMPLETE, INTERRUPTED
+from .arguments import RESULTS
+
+SCRATCH = "results.partial.tmp"
+"""Folder in ``--out`` for temporary files of this run and of the codes it runs."""
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """Why a run stopped before its end, and the exit status."""
+
+    what: str
+    status: int
+
+
+def solve(
+    chosen: Sequence[Case | MechanismCase],
+    codes: Sequence[Description],
+    files: Sequence[UserResults],
+    about: Run,
+    kept: Journal,
+    out: Path,
+    pool: Executor,
+    stop: Callable[[], None],
+    seeded: Sequence[Sequence[str]],
+    limits: Mapping[str, Any],
+    kept_before: Store | None,
+) -> tuple[Run, Stopped | None]:
+    """The complete run, written to ``out``; or the part that was computed, and why it stopped.
+
+    Answers go to the journal at once. Seeded faults are executed in every run, because they show that this run would
+    detect a fault; only what codes answered to the same questions is reused. ``stop`` ends the workers of ``pool``;
+    ``seeded`` are the faults of each task.
+    """
+    scratch = out / SCRATCH
+    shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
+    watch = console.Watch()
+    fresh = Remembering(pool, kept)
+    cached = Cached(pool, kept_before) if kept_before else None
+    executor = Remembering(cached, kept) if cached else fresh
+    lumped: list[Future[tuple[Level, ...]]] = []
+    tried: list[Future[list[Control]]] = []
+
+    def begin(plan: tuple[Planned, ...]) -> None:
+        kept.begin(replace(about, plan=plan))
+        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+        lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
+        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in seeded)
+
+    try:
+        scratch.mkdir()
+        with watch:
+            done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
+            moved = bisection.bisections(
+                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.tell
+            )
+            levels = done.levels + tuple(level for future in lumped for level in future.result())
+            found = {control.control: control for future in tried for control in future.result()}
+        controls = tuple(found[name] for part in seeded for name in part)
+        run = replace(done, levels=levels, controls=controls, bisections=moved)
+        run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
+        if missing := results.gaps(run):
+            return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
+        results.write(out / RESULTS, run)
+        if cached and cached.taken:
+            print(f"southwell: {_taken(cached)}", file=sys.stderr)
+        return run, None
+    except KeyboardInterrupt:
+        stopped = Stopped("interrupted", INTERRUPTED)
+    except BrokenProcessPool:
+        why = "a worker process was killed, probably out of memory: use fewer --workers or fewer cases at once"
+        stopped = Stopped(why, INCOMPLETE)
+    except BrokenExecutor as error:
+        stopped = Stopped(str(error), INCOMPLETE)
+    except OSError as error:
+        stopped = Stopped(said(error), INCOMPLETE)
+    finally:
+        stop()
+        if kept_before:
+            kept_before.close()
+        shutil.rmtree(scratch, ignore_errors=True)
+    return replace(journal.read(kept.path), unfinished=stopped.what), stopped
+
+
+def _taken(cached: Cached) -> str:
+    first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(cached.taken))) for when in (min, max))
+    return (
+        f"{len(cached.taken)} of {cached.asked} answers are from the store, computed between {first} and {last}; "
+        "--fresh computes them again"
+    )
+
+
+def said(error: OSError) -> str:
+    """An error of the file system in one line."""
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
