@@ -14,7 +14,7 @@ import msgspec
 
 from ...references.protocol.process import Failure
 from ...references.protocol.store import Store, machine, opened
-from ..judge.results import Cell
+from ..judge.results import Cell, Control
 from . import stored
 from .columns import Column
 from .identity import digest
@@ -25,12 +25,13 @@ class Cached(Executor):
     """An executor that reuses stored answers and stores new ones.
 
     Attributes:
+        also: what all answers depend on besides the question.
         taken: times at which the answers taken from the store were computed, s since 1970.
         asked: number of tasks submitted.
     """
 
-    def __init__(self, executor: Executor, store: Store) -> None:
-        self.executor, self.store = executor, store
+    def __init__(self, executor: Executor, store: Store, also: tuple[str, ...] = ()) -> None:
+        self.executor, self.store, self.also = executor, store, also
         self.taken: list[float] = []
         self.asked = 0
 
@@ -39,7 +40,7 @@ class Cached(Executor):
         self.asked += 1
         if not storable(fn):
             return self.executor.submit(fn, *args, **kwargs)
-        key = question(fn, args, kwargs)
+        key = question(fn, args, kwargs, *self.also)
         try:
             value, computed = self._get(key)
         except KeyError:
@@ -87,9 +88,11 @@ def _label(fn: Callable[..., Any]) -> str:
 
 
 def _failing(value: Any) -> bool:
-    """Whether an answer contains a failure or a miss."""
+    """Whether an answer contains a failure, a miss, or a fault that was not detected."""
     if isinstance(value, Failure):
         return True
+    if isinstance(value, Control):
+        return not value.caught
     if isinstance(value, Cell):
         return value.verdict == "fail" or (value.frequency is None and value.verdict != "not applicable")
     if isinstance(value, dict):

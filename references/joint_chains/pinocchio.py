@@ -52,7 +52,22 @@ class PinocchioTree:
 def tree(chain: Chain) -> PinocchioTree:
     """Build the chain in Pinocchio."""
     model = plant(chain)
-    return PinocchioTree(model, model.createData(), chain.elements)
+    return PinocchioTree(model, _workspace(model), chain.elements)
+
+
+_LAST: dict[int, Any] = {}
+"""The last workspace, by the number of joints."""
+
+
+def _workspace(model: Any) -> Any:
+    """Pinocchio's workspace for a model. Models with the same joints share it, since every computation fills it anew.
+
+    It has four arrays of (6·elements)³ numbers: with 40 elements, making it takes longer than all computations in it.
+    """
+    if model.njoints not in _LAST:
+        _LAST.clear()
+        _LAST[model.njoints] = model.createData()
+    return _LAST[model.njoints]
 
 
 def _pinocchio() -> Any:

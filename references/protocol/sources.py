@@ -33,8 +33,12 @@ def digest(modules: frozenset[str]) -> str:
     Args:
         modules: full names; those of other packages do not count.
     """
+    return _digest(files(modules))
+
+
+def _digest(paths: Iterable[Path]) -> str:
     made = sha256(repr([python_version(), *((name, version(name)) for name in LIBRARIES)]).encode())
-    for path in files(modules):
+    for path in paths:
         made.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + _content(path))
     return made.hexdigest()
 
@@ -52,8 +56,13 @@ def files(modules: Iterable[str]) -> list[Path]:
         found |= todo
         todo = {other for name in todo for other in imported(name)} - found
     paths = {path for name in found if (path := _file(name))}
-    beside = {other for path in paths for other in path.parent.iterdir() if other.is_file() and other.suffix != ".py"}
-    return sorted(paths | beside)
+    return sorted(paths.union(*map(_data, {path.parent for path in paths})))
+
+
+@cache
+def _data(folder: Path) -> frozenset[Path]:
+    """Files in a folder that are not modules."""
+    return frozenset(path for path in folder.iterdir() if path.is_file() and path.suffix != ".py")
 
 
 @cache
@@ -63,9 +72,21 @@ def imported(name: str) -> frozenset[str]:
     if path is None:
         return frozenset()
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
-    found = {other for node in ast.walk(ast.parse(path.read_bytes())) for other in _named(node, package)}
+    found = {other for node in _statements(ast.parse(path.read_bytes())) for other in _named(node, package)}
     found.add(name)
     return frozenset(o for full in found for o in _upwards(full) if _file(o)) - {name}
+
+
+BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
+"""Fields of statements that contain statements."""
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """All statements of a module, those within others too."""
+    for block in BLOCKS:
+        for child in getattr(node, block, ()):
+            yield child
+            yield from _statements(child)
 
 
 def _named(node: ast.AST, package: list[str]) -> Iterator[str]:
@@ -101,8 +122,8 @@ FLOORS = ("core", "references", "cases")
 
 def package() -> str:
     """Digest of all sources that compute answers, and of the versions of Python and the libraries they use."""
-    paths = (path.relative_to(ROOT).with_suffix("") for floor in FLOORS for path in (ROOT / floor).rglob("*.py"))
-    return digest(frozenset(".".join((PACKAGE, *path.parts)).removesuffix(".__init__") for path in paths))
+    paths = (path for floor in FLOORS for path in (ROOT / floor).rglob("*") if "__pycache__" not in path.parts)
+    return _digest(sorted(path for path in paths if path.is_file()))
 
 
 def bundled(code: str) -> bool:

@@ -7,10 +7,16 @@ are not part of this package, or of unknown version, are not stored, and failure
 """
 
 import json
+from collections.abc import Callable
 from hashlib import sha256
+
+import numpy as np
+from numpy.typing import NDArray
 
 from . import sources, store
 from .process import Limits
+
+Array = NDArray[np.float64]
 
 
 def key(module: str, request: bytes, code: str, version: str) -> str:
@@ -40,5 +46,27 @@ def get(opened: store.Store, key: str) -> object:
 
 
 def put(opened: store.Store, key: str, code: str, answer: object) -> None:
-    """Store an answer, which is plain data."""
+    """Store an answer, which is plain data, of a code."""
     opened.put(key, f"{code}, answers", json.dumps(answer).encode())  # unlike msgspec, json keeps nan
+
+
+def array(label: str, module: str, question: tuple[object, ...], make: Callable[[], Array]) -> Array:
+    """An array that codes need for many answers: taken from the store if it is there, made and stored otherwise.
+
+    Args:
+        label: for the list of the store's contents.
+        module: the module that makes it; all that it depends on is part of the key.
+        question: what the array is made of, with the version of any other package that makes it; plain data or frozen
+            dataclasses of it, which ``repr`` identifies.
+        make: makes the array.
+    """
+    kept = store.opened()
+    if kept is None:
+        return make()
+    parts = (label, sources.digest(frozenset({module})), repr(question), *store.machine())
+    name = sha256(json.dumps(parts).encode()).hexdigest()
+    if (known := get(kept, name)) is not None:
+        return np.array(known)
+    made = make()
+    kept.put(name, label, json.dumps(made.tolist()).encode())
+    return made

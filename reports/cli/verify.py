@@ -187,8 +187,10 @@ def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
 
 
 def _store(fresh: bool) -> Store | None:
-    """Open the store of answers; None if it is not wanted or cannot be used."""
-    if fresh or os.environ.get(store.FRESH):
+    """Open the store of answers; None if it is not wanted, which the processes of codes learn too, or cannot be used."""
+    if fresh:
+        os.environ[store.FRESH] = "1"
+    if os.environ.get(store.FRESH):
         return None
     try:
         return Store(store.path())

@@ -19,6 +19,7 @@ from ...cases.verify.cached import Cached
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.user_results import UserResults
+from ...references.protocol import sources
 from ...references.protocol.description import Description
 from ...references.protocol.store import Store
 from ..shared import console
@@ -52,16 +53,16 @@ def solve(
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
-    Answers go to the journal at once. Seeded faults are executed in every run, because they show that this run would
-    detect a fault; only what codes answered to the same questions is reused. ``stop`` ends the workers of ``pool``;
-    ``seeded`` are the faults of each task.
+    Answers go to the journal at once. ``stop`` ends the workers of ``pool``; ``seeded`` are the faults of each task. That a
+    fault is detected is taken from the store only if no source of this package and no version of a code has changed.
     """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
     watch = console.Watch()
     fresh = Remembering(pool, kept)
-    cached = Cached(pool, kept_before) if kept_before else None
-    executor = Remembering(cached, kept) if cached else fresh
+    state = (sources.package(), *(f"{name} {version}" for name, version in sorted(about.versions.items())))
+    cached = [Cached(pool, kept_before, also) for also in ((), state)] if kept_before else []
+    executor, trials = (Remembering(one, kept) for one in cached) if cached else (fresh, fresh)
     lumped: list[Future[tuple[Level, ...]]] = []
     tried: list[Future[list[Control]]] = []
 
@@ -69,7 +70,7 @@ def solve(
         kept.begin(replace(about, plan=plan))
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
-        tried.extend(fresh.submit(table.run, part, kept_before is not None) for part in seeded)
+        tried.extend(trials.submit(table.run, part, kept_before is not None) for part in seeded)
 
     try:
         scratch.mkdir()
@@ -86,7 +87,7 @@ def solve(
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
         results.write(out / RESULTS, run)
-        if cached and cached.taken:
+        if any(one.taken for one in cached):
             print(f"southwell: {_taken(cached)}", file=sys.stderr)
         return run, None
     except KeyboardInterrupt:
@@ -106,10 +107,11 @@ def solve(
     return replace(journal.read(kept.path), unfinished=stopped.what), stopped
 
 
-def _taken(cached: Cached) -> str:
-    first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(cached.taken))) for when in (min, max))
+def _taken(cached: Sequence[Cached]) -> str:
+    times = [when for one in cached for when in one.taken]
+    first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(times))) for when in (min, max))
     return (
-        f"{len(cached.taken)} of {cached.asked} answers are from the store, computed between {first} and {last}; "
+        f"{len(times)} of {sum(one.asked for one in cached)} answers are from the store, computed between {first} and {last}; "
         "--fresh computes them again"
     )
 

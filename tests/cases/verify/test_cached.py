@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from southwell.cases.judge.results import Cell
+from southwell.cases.judge.results import Cell, Control
 from southwell.cases.verify import cached
 from southwell.cases.verify.cached import Cached
 from southwell.cases.verify.cells import Head, failed
@@ -53,6 +53,23 @@ def test_an_answer_is_computed_once(kept: Store) -> None:
     again = Cached(Serial(), kept)
     assert again.submit(double, 2.0).result() == 4.0
     assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
+
+
+def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: Store) -> None:
+    for also in (("code 1.0",), ("code 1.1",), ("code 1.0",)):
+        Cached(Serial(), kept, also).submit(double, 2.0)
+    assert CALLS == [2.0, 2.0]
+
+
+def trial(caught: tuple[str, ...]) -> list[Control]:
+    CALLS.append(caught)
+    return [Control("wrong sign", "core", "reverses a sign", "1 %", "beam", 1.0, caught)]
+
+
+def test_a_fault_that_was_not_detected_is_tried_again(kept: Store) -> None:
+    for caught in ((), (), ("beam: fail",), ("beam: fail",)):
+        assert Cached(Serial(), kept).submit(trial, caught).result()[0].caught == caught
+    assert CALLS == [(), (), ("beam: fail",)]
 
 
 def column(**changed: Any) -> Column:

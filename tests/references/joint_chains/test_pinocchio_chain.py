@@ -192,3 +192,15 @@ def test_the_blades_of_these_tests_are_accepted() -> None:
     assert [CODE.unsupported(b) for b in (PARK, tapered(), curved(), replace(curved(), tip_mass=TIP_MASS))] == [
         None
     ] * 4
+
+
+def test_blades_with_as_many_elements_share_the_workspace_and_not_the_results() -> None:
+    def frequencies() -> list[Array]:
+        return [CODE.solve(blade, 3.0, 6, 6).frequencies for blade in (PARK, curved(), PARK)]
+
+    shared = frequencies()
+    alone = []
+    for blade in (PARK, curved(), PARK):
+        pinocchio_chain._LAST.clear()
+        alone.append(CODE.solve(blade, 3.0, 6, 6).frequencies)
+    np.testing.assert_array_equal(shared, alone)

@@ -33,7 +33,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def _forget() -> None:
-    for function in (sources.digest, sources.imported, sources._file, sources._content, sources._folder):
+    for function in (sources.digest, sources.imported, sources._file, sources._content, sources._data, sources._folder):
         function.cache_clear()
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import STATIONS, Modes
-from southwell.references.protocol import sources, store, worker
+from southwell.references.protocol import sources, store, stored_answers, worker
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.wire import encode
 from southwell.references.protocol.worker import Answer, answers
@@ -134,3 +134,19 @@ def test_a_damaged_answer_is_computed_again(asked: Asked, tmp_path: Path) -> Non
         assert isinstance(a, Modes)
         assert isinstance(b, Modes)
         np.testing.assert_array_equal(a.frequencies, b.frequencies)
+
+
+def test_an_array_is_made_once_for_each_question(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[float] = []
+
+    def array(x: float, module: str = stored_answers.__name__) -> Any:
+        return stored_answers.array("array", module, (x,), lambda: made.append(x) or np.array([[x, 1.0 / 3.0]]))
+
+    for _ in range(2):
+        np.testing.assert_array_equal(array(2.0), [[2.0, 1.0 / 3.0]])
+    array(np.nextafter(2.0, 3.0))
+    array(2.0, worker.__name__)
+    assert made == [2.0, np.nextafter(2.0, 3.0), 2.0]
+    monkeypatch.setenv(store.FRESH, "1")
+    array(2.0)
+    assert len(made) == 4

@@ -16,6 +16,7 @@ import yaml
 
 from southwell.cases.judge import results
 from southwell.cases.regression import history
+from southwell.references.protocol import store
 from southwell.reports.cli import app as cli
 from southwell.reports.shared import statuses
 
@@ -88,7 +89,7 @@ def test_every_action_is_pinned_by_commit() -> None:
     used = [s["uses"] for path in (ACTION, *WORKFLOWS) for s in steps(path) if "uses" in s]
     foreign = [name for name in used if name != "./"]
     assert len(foreign) > 10
-    assert all(re.fullmatch(r"[\w-]+/[\w-]+@[0-9a-f]{40}", name) for name in foreign)
+    assert all(re.fullmatch(r"[\w-]+(/[\w-]+)+@[0-9a-f]{40}", name) for name in foreign)
 
 
 def test_the_lowest_versions_are_those_declared() -> None:
@@ -105,6 +106,20 @@ def test_the_workflow_uses_the_action_with_inputs_that_it_has() -> None:
     used = [s["with"] for path in WORKFLOWS for s in steps(path) if s.get("uses") == "./"]
     assert used
     assert all(set(w) <= set(load(ACTION)["inputs"]) for w in used)
+
+
+def test_the_action_keeps_the_store_of_answers_where_southwell_writes_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("SOUTHWELL_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(variable, raising=False)
+    kept = [
+        s["with"]
+        for s in steps(ACTION)
+        if s.get("uses", "").startswith(("actions/cache/restore", "actions/cache/save"))
+    ]
+    assert {Path(one["path"]).expanduser() for one in kept} == {store.path()}
+    restored, saved = kept
+    assert restored["key"] == saved["key"]
+    assert saved["key"].startswith(restored["restore-keys"])
 
 
 def action(tmp_path: Path, **inputs: str) -> tuple[int, str]:
