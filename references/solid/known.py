@@ -93,9 +93,9 @@ def _other_mount(blade: Blade) -> str:
 
 
 def _off(given: Array, expected: Array, allowed: float) -> str:
-    """The largest difference of section matrices (k, 6, 6), relative to their diagonals, in words, if above ``allowed``."""
+    """The largest difference of symmetric matrices (k, 6, 6), relative to their diagonals, in words, if above ``allowed``."""
     size = np.sqrt(np.diagonal(expected, axis1=1, axis2=2))
-    off = np.abs(given - expected) / (size[:, :, None] * size[:, None])
+    off = np.triu(np.abs(given - expected) / (size[:, :, None] * size[:, None]))  # below, the same but for rounding
     if np.nan_to_num(off, nan=np.inf).max() <= allowed:
         return ""
     k, i, j = np.unravel_index(int(np.nan_to_num(off, nan=np.inf).argmax()), off.shape)

@@ -12,7 +12,7 @@ NUMBER = re.compile(r"-?\d+\.\d{3,}(?![\d.e])")
 STYLE = re.compile(r' style="([^"]*)"')
 NAME = re.compile(r' id="([^"]*)"')
 REFERENCE = re.compile(r'(href="#|url\(#)([\w-]+)')
-ALONE = re.compile(r"<g>(<(?:use|path) [^<>]*/>)</g>")
+GROUP = re.compile(r"</?g\b[^<>]*>")
 
 FONT = "'DejaVu Sans'"
 FONTS = f"{FONT},Verdana,sans-serif"
@@ -37,5 +37,19 @@ def compact(svg: str) -> str:
     rules = "".join(f".{name}{{{look}}}" for look, name in looks.items()).replace("; ", ";").replace(": ", ":")
     rules = f"text{{white-space:pre}}{rules.replace(FONT, FONTS)}"  # two spaces are two
     svg = svg.replace("</style>", f"{rules}</style>", 1)
-    svg = re.sub(r">\s+<", "><", svg)
-    return ALONE.sub(r"\1", svg).strip() + "\n"
+    return _ungrouped(re.sub(r">\s+<", "><", svg)).strip() + "\n"
+
+
+def _ungrouped(svg: str) -> str:
+    """Without the groups that have no attribute: their members are drawn as if they were not in one."""
+    inside: list[bool] = []
+
+    def kept(tag: re.Match[str]) -> str:
+        if tag[0].endswith("/>"):
+            return tag[0].removeprefix("<g/>")
+        if tag[0] != "</g>":
+            inside.append(tag[0] != "<g>")
+            return tag[0] if inside[-1] else ""
+        return tag[0] if inside.pop() else ""
+
+    return GROUP.sub(kept, svg)

@@ -173,6 +173,7 @@ def test_the_papers_rises_at_20_and_30_rpm(stand_ins: tuple[Variation, ...]) -> 
     assert rises(stand_ins[0].diagram, 10.0)[0] != rises(stand_ins[0].diagram, 10.0)[0]  # beyond 30 rpm: not a number
 
 
+@pytest.mark.slow
 def test_the_papers_figure_and_table_label_stand_ins_as_such(stand_ins: tuple[Variation, ...]) -> None:
     table = variation.sheet(stand_ins)
     assert table.rows[-1] == ("Park et al. (2010)", "largest", "+8.0 %", "+16.5 %")

@@ -88,6 +88,7 @@ def test_a_fault_in_sections_is_detected(name: str) -> None:
     assert control.caught
 
 
+@pytest.mark.slow
 def test_a_fault_that_does_nothing_is_missed() -> None:
     harmless = replace(BY_NAME["no hub radius"], seams=())
     assert seeding.execute(harmless, BY_NAME.__getitem__, canaries).missed

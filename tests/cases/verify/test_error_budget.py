@@ -126,6 +126,7 @@ def test_rounding_is_that_of_the_printed_digits() -> None:
     assert bound.change == pytest.approx(datum.half_unit / datum.value, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
     rows = [s for s in run().error_budget if not s.bound]
     assert "codes, refined" not in {s.part for s in run().error_budget}  # series bracket their own answers

@@ -91,6 +91,7 @@ def test_many_elements_lose_no_digits() -> None:
     np.testing.assert_allclose(many, few, rtol=5e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [10, 40, 80])
 def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
     """A basis of hundreds of vectors in a semi-definite product must not drift: Lanczos against LAPACK."""

@@ -41,6 +41,7 @@ def test_a_folded_element_has_no_strain_and_is_out_of_range() -> None:
     assert not measures.out_of_range(replace(ARC.law, measure="body_fixed"), x).any()
 
 
+@pytest.mark.slow
 def test_a_guess_that_folds_a_beam_is_refused_and_the_state_named() -> None:
     """Before, the state found had frequencies several percent off."""
     tree = compile_tree(ring(0.0, 12))

@@ -46,6 +46,7 @@ def project(pytester: pytest.Pytester) -> pytest.Pytester:
     return pytester
 
 
+@pytest.mark.slow
 def test_the_example_s_solver_passes_where_it_can_and_says_where_it_cannot(project: pytest.Pytester) -> None:
     done = project.runpytest("--southwell-cases", "wright-flapwise,tip-mass", "-rs")
     done.assert_outcomes(passed=21, skipped=10)  # 7 speeds × 3 modes; 5 × 2
@@ -101,6 +102,7 @@ def test_the_report_from_several_processes(project: pytest.Pytester) -> None:
     assert len([c for c in results.read(out / "results.jsonl").cells if c.code == "beamfreq"]) == 7
 
 
+@pytest.mark.slow
 def test_a_tighter_target(project: pytest.Pytester) -> None:
     done = project.runpytest("--southwell-cases", "wright-flapwise", "--southwell-target", "1e-9")
     assert done.parseoutcomes()["failed"] > 10
@@ -151,6 +153,7 @@ def test_a_function_of_blade_and_speed_alone() -> None:
     assert max(abs(c.difference or 1.0) for c in mine) < 1e-6
 
 
+@pytest.mark.slow
 def test_printed_numbers_are_held_against_it_too() -> None:
     (variant,) = library.load("wright-flapwise").variants
     case = library.load("wright-flapwise")

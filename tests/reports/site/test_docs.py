@@ -189,12 +189,14 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_it_builds_without_a_warning_with_every_page(built: Path) -> None:
     assert {Path(page).stem for page in PAGES} <= {path.stem for path in built.glob("*.html")}
     names = [registry.code(name).name for name in registry.names()]
     assert all((built / "codes" / f"{name}.html").exists() for name in names)
 
 
+@pytest.mark.slow
 def test_nothing_is_fetched_to_read_it(built: Path) -> None:
     for path in built.rglob("*.html"):
         away = [url for url in Page(path.read_text(encoding="utf-8")).loaded if re.match(r"(https?:)?//", url)]
@@ -215,6 +217,7 @@ def test_search_works_from_the_file_system(built: Path) -> None:
         assert "precone" in page.inner_text(".md-content").lower()
 
 
+@pytest.mark.slow
 def test_formulas_are_there_without_a_script(built: Path) -> None:
     text = (DOCS / "theory.md").read_text(encoding="utf-8")
     inline = re.sub(r"\$\$.*?\$\$", "", text, flags=re.S)
@@ -224,6 +227,7 @@ def test_formulas_are_there_without_a_script(built: Path) -> None:
     assert not re.findall(r"\\[a-z]{3,}", re.sub(r"<script.*?</script>", "", html, flags=re.S))
 
 
+@pytest.mark.slow
 def test_the_api_is_filled_from_docstrings_without_internals(built: Path) -> None:
     pages = {path.stem: path.read_text(encoding="utf-8") for path in (built / "api").glob("*.html")}
     assert "A rotating blade on its hub; properties vary linearly between stations." in pages["core"]

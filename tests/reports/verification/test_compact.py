@@ -69,3 +69,9 @@ def test_shapes_and_looks_are_kept(monkeypatch) -> None:
     for (a, _), (b, _) in zip(before, after, strict=True):
         assert len(a) == len(b)
         assert max(abs(p - q) for p, q in zip(a, b, strict=True)) <= 0.005 + 1e-9
+
+
+def test_only_groups_without_attributes_are_opened() -> None:
+    drawn = '<g id="none"> <g clip-path="url(#c)"><g><path d="M0 0"/></g><g/></g><g><g class="x"/></g></g>'
+    text = f'<svg><defs><clipPath id="c"/><style></style></defs>{drawn}</svg>'
+    assert compact(text).partition("</defs>")[2] == '<g clip-path="url(#i0)"><path d="M0 0"/></g><g class="x"/></svg>\n'
