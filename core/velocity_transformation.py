@@ -25,6 +25,7 @@ from .modes import Modes
 from .multibody import equilibrium
 from .multibody import linear as lz
 from .multibody.dynamics import unbalanced
+from .multibody.loops import size_of
 from .multibody.lowest import Definite, definite, lowest
 from .multibody.mechanism import MechanismError, at_rate
 from .multibody.state import State, state_at
@@ -35,7 +36,7 @@ from .space import spatial as sp
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
-_CONVERGED = 1e-13  # largest last correction of a steady state, m or rad
+_CONVERGED = 1e-13  # largest last correction of a steady state, as a fraction of the blade's length (or a radian)
 _BALANCED = 1e-8  # largest distance from the steady state, as a fraction of the blade's length (or a radian)
 
 
@@ -166,8 +167,10 @@ def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
     last = np.inf
     while True:
         found = _linear(tree, state_at(tree, q), effects)
-        size = float(np.abs(found.correction).max(initial=0.0))
-        if not size <= 0.5 * last or out_of_range(tree, found.about.state.kinematics.poses):
+        k, free = found.about.state.kinematics, found.about.partition.free
+        unit = np.where(tree.screw[free, 3:].any(1), 1.0, size_of(k.poses))
+        size = float(np.abs(found.correction / unit).max(initial=0.0))
+        if not size <= 0.5 * last or out_of_range(tree, k.poses):
             return None
         if size < _CONVERGED:
             return found
