@@ -6,7 +6,7 @@ mechanism in relative coordinates with dense matrices: the same result by the pa
 
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import prod
 
 import numpy as np
@@ -25,15 +25,18 @@ from .modes import Modes
 from .multibody import equilibrium
 from .multibody import linear as lz
 from .multibody.dynamics import unbalanced
-from .multibody.lowest import definite, lowest
+from .multibody.loops import size_of
+from .multibody.lowest import Definite, definite, lowest
 from .multibody.mechanism import MechanismError, at_rate
-from .multibody.newton import newton
+from .multibody.state import State, state_at
+from .multibody.strained import out_of_range
 from .multibody.tree import Tree, compile_tree
 from .space import spatial as sp
 
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
+_CONVERGED = 1e-13  # largest last correction of a steady state, as a fraction of the blade's length (or a radian)
 _BALANCED = 1e-8  # largest distance from the steady state, as a fraction of the blade's length (or a radian)
 
 
@@ -96,65 +99,89 @@ def sweep(
     x, y, z = np.zeros(3).tolist() if gravity is None else gravity.tolist()
     tree = compile_tree(as_mechanism.mechanism(body, 0.0, (x, y, z)))
     known: dict[float, Array] = {}  # coordinates at Ω² of the last few speeds
+    found: eigen.Eigen | None = None
     for omega in omegas:
         if not np.isfinite(omega):
             raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
         begun = time.perf_counter()
         try:
-            linear, found = _solved(tree, body, omega, count, effects, known)
+            linear = _about_steady_state(tree, body, omega, effects, known)
         except (SteadyStateError, eigen.UnstableError):
             if not known:
                 raise
-            linear, found = _solved(tree, body, omega, count, effects, {})  # without extrapolation from other speeds
-        known = dict([*known.items(), (omega**2, linear.state.q)][-ORDER - 1 :])
-        shapes = _shapes(body, linear, found.vectors)
+            linear = _about_steady_state(tree, body, omega, effects, {})  # without extrapolation from other speeds
+        found = lowest(linear.pencil, count, found)
+        known = dict([*known.items(), (omega**2, linear.corrected)][-ORDER - 1 :])
+        shapes = _shapes(body, linear.about, found.vectors)
         yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 
 
-def _solved(
-    tree: Tree, body: Chain, omega: float, count: int, effects: Effects, known: dict[float, Array]
-) -> tuple[lz.Linearization, eigen.Eigen]:
-    linear = _about_steady_state(tree, omega, known)
-    return linear, _lowest(linear, body, omega, count, effects)
+@dataclass(frozen=True)
+class _Linear:
+    """M̂, Ĉ, K̂ about a state, factored, and Newton's correction of the state, −K̂⁻¹ Q̂ over the free coordinates."""
+
+    about: lz.Linearization
+    pencil: Definite
+    correction: Array
+
+    @property
+    def corrected(self) -> Array:
+        """The coordinates (n,) after the correction."""
+        q = self.about.state.q.copy()
+        q[self.about.partition.free] += self.correction
+        return q
 
 
-def _about_steady_state(tree: Tree, omega: float, known: dict[float, Array]) -> lz.Linearization:
-    """M̂, Ĉ, K̂ about the steady state at ``omega`` (rad/s); Newton starts from a polynomial in Ω² through the known ones.
+def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects, known: dict[float, Array]) -> _Linear:
+    """The linearisation about the steady state at ``omega`` (rad/s), extrapolated from the known ones if there are any.
 
     Raises:
         SteadyStateError: no steady state at this speed.
+        UnstableError: the steady state is not stable.
     """
     here = replace(tree, mechanism=at_rate(tree.mechanism, "hub.rz", omega))
-    guess = np.zeros(len(tree.coordinates))
-    for x, q in known.items():
-        guess += prod((omega**2 - other) / (x - other) for other in known if other != x) * q
     try:
-        near = newton(here, guess) if known else None
-        return lz.about(here, near.state if near else equilibrium.steady(here))
+        near = _corrected(here, _extrapolated(known, omega), effects) if known else None
+        found = near or _linear(here, equilibrium.steady(here), effects)
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
-
-
-def _lowest(linear: lz.Linearization, body: Chain, omega: float, count: int, effects: Effects) -> eigen.Eigen:
-    M, C, K = (0.5 * (linear.M + linear.M.T), 0.5 * (linear.C - linear.C.T), 0.5 * (linear.K + linear.K.T))
-    try:
-        pencil = definite(M, C if effects.coriolis else np.zeros_like(C), K)
     except eigen.UnstableError as error:
         hinge = "; or a free hinge has no stiffness (at rest; lead–lag without offset)" if body.clamped.size else ""
         raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{hinge}") from error
-    state = linear.state
-    left = unbalanced(linear.tree, state.kinematics, state.cartesian, state.q, state.v)[linear.partition.free]
-    _check_balance(pencil.solve(left), omega, body.scale)
-    return lowest(pencil, count)
-
-
-def _check_balance(distance: Array, omega: float, length: float) -> None:
-    """Check ``distance`` = K̂⁻¹ Q̂ from the steady state, where Q̂ vanishes."""
-    off = np.abs(distance).max(initial=0.0) / max(length, 1.0)
+    off = np.abs(found.correction).max(initial=0.0) / max(body.scale, 1.0)
     if off > _BALANCED:
         raise SteadyStateError(
             f"omega: {omega:.6g} rad/s: the state found is {off:.1e} of the blade's length from equilibrium"
         )
+    return found
+
+
+def _extrapolated(known: dict[float, Array], omega: float) -> Array:
+    """Coordinates (n,) by the polynomial in Ω² through the known ones."""
+    at = omega**2
+    return sum((prod((at - y) / (x - y) for y in known if y != x) * q for x, q in known.items()), np.zeros(()))
+
+
+def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
+    """Newton's method as long as each correction is at most half the previous one; else None."""
+    last = np.inf
+    while True:
+        found = _linear(tree, state_at(tree, q), effects)
+        k, free = found.about.state.kinematics, found.about.partition.free
+        unit = np.where(tree.screw[free, 3:].any(1), 1.0, size_of(k.poses))
+        size = float(np.abs(found.correction / unit).max(initial=0.0))
+        if not size <= 0.5 * last or out_of_range(tree, k.poses):
+            return None
+        if size < _CONVERGED:
+            return found
+        q, last = found.corrected, size
+
+
+def _linear(tree: Tree, state: State, effects: Effects) -> _Linear:
+    of = lz.about(tree, state)
+    pencil = definite(of.M, of.C if effects.coriolis else np.zeros_like(of.C), of.K)
+    left = unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[of.partition.free]
+    return _Linear(of, pencil, -pencil.displacement(left))
 
 
 def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:

@@ -4,6 +4,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -15,11 +16,16 @@ from ...core.solve import NO_GRAVITY, sweep
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from ..judge.pairing import Array, weights
 from .encounters import Encounter, encounters
-from .margins import Margin, Range, Resonance, Southwell, line_of, margins, resonances, southwell
+from .lines import line_of
+from .margins import Margin, Southwell, margins, southwell
+from .resonances import Range, Resonance, Unlisted, dips, resonances, unlisted
 from .tracking import Solver, Tracks, track
 
 SPARE = 4
 """Number of modes solved above those requested, so that each finds its successor."""
+
+
+_ROUNDS = 8  # of inserting speeds between which a mode may meet n per revolution twice
 
 
 @dataclass(frozen=True)
@@ -66,6 +72,7 @@ class Campbell:
         southwell: fit of each track; None with fewer than three speeds.
         encounters: crossings and veerings.
         resonances: all resonances within the speeds, by speed.
+        unlisted: steps of speed over which more modes pass n per revolution than ``resonances`` has.
         margins: margin of every track from every n; empty without an operating range.
     """
 
@@ -79,6 +86,7 @@ class Campbell:
     southwell: tuple[Southwell | None, ...]
     encounters: tuple[Encounter, ...]
     resonances: tuple[Resonance, ...]
+    unlisted: tuple[Unlisted, ...]
     margins: tuple[Margin, ...]
 
     def label(self, t: int) -> str:
@@ -144,7 +152,8 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
     """
     _check(wanted)
     weight = weights(blade)
-    tracks = track(solve or solver(blade, wanted), wanted.speeds, weight, wanted.modes)
+    solve = cache(solve or solver(blade, wanted))
+    tracks = _tracks(solve, wanted, weight)
     energy_fractions = np.full((*tracks.place.shape, 4), np.nan)
     local: list[tuple[str, ...]] = []
     for k, found in enumerate(tracks.solved):
@@ -155,6 +164,7 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
         local.append(tuple(named[p] if p >= 0 else "" for p in tracks.place[k]))
     exists = [np.flatnonzero(tracks.place[:, t] >= 0) for t in range(tracks.count)]
     lines = [line_of(tracks, t) for t in range(tracks.count)]
+    met = resonances(solve, tracks, lines, weight, wanted.per_rev, wanted.operating)
     return Campbell(
         blade=blade,
         wanted=wanted,
@@ -165,9 +175,21 @@ def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campb
         local=tuple(local),
         southwell=tuple(southwell(tracks, t) for t in range(tracks.count)),
         encounters=encounters(tracks, energy_fractions, weight),
-        resonances=resonances(lines, wanted.per_rev, wanted.operating),
-        margins=margins(lines, wanted.per_rev, wanted.operating, wanted.margin),
+        resonances=met,
+        unlisted=unlisted(tracks, wanted.per_rev),
+        margins=margins(lines, met, wanted.per_rev, wanted.operating, wanted.margin),
     )
+
+
+def _tracks(solve: Solver, wanted: Wanted, weight: Array) -> Tracks:
+    """The tracks, with speeds inserted where a mode may meet n per revolution twice between two solved speeds."""
+    tracks = track(solve, wanted.speeds, weight, wanted.modes)
+    for _ in range(_ROUNDS):
+        more = dips([line_of(tracks, t) for t in range(tracks.count)], wanted.per_rev)
+        if not more:
+            break
+        tracks = track(solve, wanted.speeds, weight, wanted.modes, (*tracks.omega.tolist(), *more))
+    return tracks
 
 
 def rises(diagram: Campbell, omega: float) -> Array:

@@ -101,8 +101,10 @@ class _Link:
     bounds: dict[tuple[int, int], float]
 
 
-def track(solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: int) -> Tracks:
-    """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending).
+def track(
+    solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: int, more: Sequence[float] = ()
+) -> Tracks:
+    """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending) and ``more`` speeds between them.
 
     A mode that is among the ``count`` lowest at any speed is tracked over all speeds, as far as ``solve`` returns it;
     ``solve`` should therefore return a few more modes.
@@ -114,7 +116,7 @@ def track(solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: 
         raise ValueError(f"speeds: {list(speeds)}: not ascending: sort them and drop duplicates")
     smallest = SMALLEST * float(np.diff(speeds).max(initial=0.0))
     points, links = [_solved(solve, speeds[0], weight)], []
-    for omega in speeds[1:]:
+    for omega in sorted({float(v) for v in (*speeds, *more)})[1:]:
         for link, modes in _between(solve, points[-1], _solved(solve, omega, weight), weight, count, smallest):
             links.append(link)
             points.append(modes)

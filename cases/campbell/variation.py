@@ -39,7 +39,7 @@ def variations(case: str = "park-blade", elements: int | None = None) -> tuple[V
     known = library.load(case)
     lumping = known.text.discretisation
     assert lumping is not None
-    wanted = Wanted(tuple(np.arange(0.0, 30.1, 2.5) * np.pi / 30), modes=LOWEST, elements=elements)
+    wanted = Wanted(tuple(np.arange(0.0, 30.1, 2.5) * np.pi / 30), modes=LOWEST, per_rev=(), elements=elements)
     out = []
     for variant in known.variants:
         blade = variant.blade

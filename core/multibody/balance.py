@@ -107,8 +107,7 @@ def residual_at(
 def tangent_at(tree: Tree, here: Residual) -> Tangent:
     """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): in moving loops, rates and accelerations change with q."""
     state, part, k = here.state, here.part, here.state.kinematics
-    pick, R = np.ix_(part.free, part.free), part.R
-    K = state.tangent[2][pick]
+    R, K = part.R, part.among_free(state.tangent[2])
     by_independent = K @ R if len(part.dependent) else K
     if moving(tree, state).any():
         J, J1, J2 = (partition.jacobian(tree, b)[:, part.free] for b in (k.B, k.B1, k.B2))
@@ -117,8 +116,8 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
         R1, R2 = np.zeros_like(R), np.zeros_like(R)
         R1[following] = -back.solve(J1 @ R)
         R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
-        M, C = (a[pick] for a in state.tangent[:2])
-        by_independent += C @ R1 + M @ R2
+        M, C = (part.among_free(a) for a in state.tangent[:2])
+        by_independent = by_independent + C @ R1 + M @ R2
     turns = tree.screw[part.free, 3:].any(1)
     units = np.where(turns, 1.0, size_of(k.poses))
     size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))

@@ -37,8 +37,7 @@ def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) 
     """Linearise about a given state; ``independent``: names to use as q_I, chosen numerically if not given."""
     M, C, K = state.tangent
     p = partition(tree, state.kinematics, independent)
-    pick = np.ix_(p.free, p.free)
-    M, C, K = M[pick], C[pick], K[pick]
+    M, C, K = (p.among_free(a) for a in (M, C, K))
     if not len(p.dependent):  # R is the unit matrix
         return Linearization(tree, state, p, M, C, K)
     return Linearization(

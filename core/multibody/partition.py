@@ -57,6 +57,12 @@ class Partition:
     R2: Array
     redundant: tuple[str, ...]
 
+    def among_free(self, a: Array) -> Array:
+        """Rows and columns (f, f) of the free coordinates of a matrix (n, n); a view if they are contiguous."""
+        first, f = (int(self.free[0]), len(self.free)) if len(self.free) else (0, 0)
+        at = slice(first, first + f)
+        return a[at, at] if f and self.free[-1] == first + f - 1 else a[np.ix_(self.free, self.free)]
+
     def onto(self, forces: Array) -> Array:
         """Rᵀ f (i,) or (i, k) of forces on the free coordinates."""
         return self.R.T @ forces if len(self.dependent) else forces

@@ -50,12 +50,14 @@ class Groups:
         members: (g, k) coordinates of each group, padded with −1.
         row: (b + m,) the outermost group that moves each row of B, −1 for none.
         place: (n,) position of each coordinate in the flattened ``members``.
+        of: (n,) group of each coordinate.
     """
 
     before: NDArray[np.intp]
     members: NDArray[np.intp]
     row: NDArray[np.intp]
     place: NDArray[np.intp]
+    of: NDArray[np.intp]
 
 
 def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.intp]) -> Groups:
@@ -79,7 +81,7 @@ def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.
     padded = np.array([m + [-1] * (most - len(m)) for m in members], np.intp).reshape(len(first), most)
     place = np.empty(n, np.intp)
     place[padded[padded >= 0]] = np.flatnonzero(padded >= 0)
-    return Groups(np.array(first, np.intp), padded, np.append(group, -1)[link], place)
+    return Groups(np.array(first, np.intp), padded, np.append(group, -1)[link], place, group)
 
 
 @dataclass(frozen=True)

@@ -52,6 +52,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             r.frequency,
             f"{r.uncertainty:.6g}",
             "" if r.apart is None else r.apart,
+            int(r.touches),
         )
         for r in diagram.resonances
     ]
@@ -82,7 +83,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
     files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
         "campbell.csv": (columns, lines),
         "resonances.csv": (
-            ("name", "per_rev", "omega_rad_s", "frequency_rad_s", sure, "from_operating_range"),
+            ("name", "per_rev", "omega_rad_s", "frequency_rad_s", sure, "from_operating_range", "touches"),
             resonances,
         ),
         "margins.csv": (

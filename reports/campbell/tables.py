@@ -130,18 +130,19 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
     for r in diagram.resonances:
         row = [
             diagram.label_at(r.track, r.omega),
-            f"{r.per_rev}P",
+            f"{r.per_rev}P{' (may only touch it)' if r.touches else ''}",
             certain(r.omega * units.speeds, r.uncertainty),
             certain(r.frequency * units.frequencies, r.uncertainty),
+            relative(r.uncertainty),
         ]
         if r.apart is not None:
             row.append(f"{TOO_NEAR} inside" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
         rows.append(tuple(row))
-    head = ["mode", "crosses", units.speed_label, units.frequency_label]
-    note = ""
+    head = ["mode", "crosses", units.speed_label, units.frequency_label, "± relative"]
+    note = "± relative: uncertainty of the speed and of the frequency; modes are solved at each crossing."
     if diagram.wanted.operating:
         head.append("from the operating range")
-        note = "Last column: distance of the speed from the nearer end of the operating range, relative to that end."
+        note += " Last column: distance of the speed from the nearer end of the operating range, relative to that end."
     return Sheet("Crossings of n per revolution", tuple(head), tuple(rows), note)
 
 
@@ -236,7 +237,7 @@ def markdown(sheet: Sheet) -> str:
 
 
 def notes(diagram: Campbell, units: Units) -> list[str]:
-    """Remarks on large steady strains and on an accuracy that was not reached."""
+    """Remarks on large steady strains, an accuracy that was not reached, and crossings that may be missing."""
     tracks, wanted = diagram.tracks, diagram.wanted
     rows = [
         Named(
@@ -251,7 +252,12 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
         for t in range(tracks.count)
         if tracks.place[k, t] >= 0
     ]
-    return remarks(rows, wanted.accuracy if wanted.elements is None else None, units)
+    missing = [
+        f"{u.per_rev}P: from {units.at(u.omega[0])} to {units.at(u.omega[1])} the number of modes below it changes by "
+        f"{u.number:+d} more than by the crossings listed: a crossing may be missing; give closer speeds or more modes"
+        for u in diagram.unlisted
+    ]
+    return [*remarks(rows, wanted.accuracy if wanted.elements is None else None, units), *missing]
 
 
 def margins_kept(diagram: Campbell) -> bool:

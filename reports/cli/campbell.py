@@ -77,7 +77,7 @@ def command(
 
     Prints tables of the modes, of the margins to n per revolution (nP), of resonances, and of crossings and veerings. Writes
     campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds are inserted where two modes
-    come close to each other.
+    come close to each other, and the modes are solved at each crossing of nP.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campb
 
 
 class SpeedProgress:
-    """A progress bar on standard error over the requested speeds; inserted speeds are shown as they are solved."""
+    """A progress bar on standard error over the requested speeds; others are shown as they are solved."""
 
     def __init__(self, name: str, speeds: Sequence[float], units: Units) -> None:
         console = Console(stderr=True, highlight=False)
@@ -264,7 +264,7 @@ class SpeedProgress:
         if omega in self.asked:
             self.bar.update(self.task, advance=1, description=self.units.at(omega))
         else:
-            self.bar.update(self.task, description=f"modes come close: inserting {self.units.at(omega)}")
+            self.bar.update(self.task, description=f"inserting {self.units.at(omega)}")
 
 
 def _shared(

@@ -1,5 +1,6 @@
 """The measurement of cost: what it keeps, what it says; never how long anything took."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -59,13 +60,29 @@ def test_what_was_measured_is_kept(small: Bench, tmp_path: Path) -> None:
     assert not bench.beside(tmp_path / "elsewhere")
 
 
+def rows(text: str, name: str) -> list[list[str]]:
+    return [
+        [cell.strip() for cell in line.split("|")][2:-1] for line in text.splitlines() if line.startswith(f"| {name}")
+    ]
+
+
 def test_ratios_exponents_and_hints_are_what_the_numbers_say() -> None:
     text = bench.render(MADE)
-    row = next(line for line in text.splitlines() if "slow 2.0" in line)
-    assert [cell.strip() for cell in row.split("|")][2:-1] == [
-        *("500.0 ms", "25.0", "200.0 ms", "20.0", "0.1 %"),
-        *("core, 6 elements", "50.0", "50.0"),
+    assert rows(text, "slow 2.0") == [
+        ["500.0 ms", "25.0", "200.0 ms", "20.0", "0.1 %"],
+        ["0.1 %", "6 elements", "500.0 ms", "10.0 ms", "50.0", "200.0 ms", "4.0 ms", "50.0"],
     ]
     assert "○ not run: pip install absent" in text
     assert "N^1.00 from 50 to 5000 elements" in text
     assert "memory as N^1.00 from 500 on" in text
+
+
+def test_equal_accuracy_has_a_table_of_the_codes_that_ran_and_says_what_is_excluded() -> None:
+    exact = Timing("closed", "1.0", 0.01, 0.1, 1.1, 1e-12)  # no number of elements makes core as accurate
+    text = bench.render(replace(MADE, timings=(*MADE.timings, exact)))
+    assert rows(text, "closed 1.0")[1][:2] == ["1e-10 %", "○ more than 50 elements"]
+    assert len(rows(text, "core")) == 1
+    assert len(rows(text, "absent")) == 1
+    said = " ".join(text.partition("Excluded:")[2].split())
+    for excluded in ("starting the process", "importing", "compilation", "reading the blade's file", "the uncertainty"):
+        assert excluded in said
