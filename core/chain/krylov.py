@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, inner, reduction
-from . import blocks, strained
-from .blocks import Factor, Transposed
-from .strained import Strained
+from ..compiled import apply, compiled, inner, reduction
+from . import elimination, matrices
+from .elimination import Factor
 
 Array = NDArray[np.float64]
 
@@ -19,44 +18,58 @@ class Operator(NamedTuple):
     """The operator A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]].
 
     Attributes:
-        M, C, K: transposed block-tridiagonal matrices.
-        factor: LU factors of K.
-        exact: K from the element strains, for iterative refinement.
-        refinements: number of refinement steps for each solution.
+        M, C, K: matrices of the elements, see ``matrices``.
+        back: Ad⁻¹.
+        factor: factors of K.
+        massive: (n, 6, 6) projectors of the nodes' twists on directions with mass; (0, 6, 6) for a consistent mass.
+        lever: (n, 6, 6) Ad.
     """
 
-    M: Transposed
-    C: Transposed
-    K: Transposed
+    M: Array
+    C: Array
+    K: Array
+    back: Array
     factor: Factor
-    exact: Strained
-    refinements: int
+    massive: Array
+    lever: Array
+
+
+@compiled
+def keep_massive(a: Operator, y: Array) -> None:
+    """Remove the motion of nodes without inertia from vectors y (k, n).
+
+    It has no part in M y, but is amplified by every orthogonalisation, and its rounding errors are not without mass.
+    """
+    d, xi = y.shape[1] // len(a.back), np.empty((1, 6))
+    here, before = np.empty(6), np.empty(6)
+    for v in range(len(y) if len(a.massive) else 0):
+        for i in range(6):
+            xi[0, i] = before[i] = 0.0
+        for k in range(len(a.massive)):
+            matrices.outwards(a.back, k, y, v, d * k, xi, 0)
+            apply(a.massive[k], xi[0], here)
+            apply(a.lever[k], here, y[v, d * k : d * k + 6])
+            for i in range(6):
+                y[v, d * k + i] -= before[i]
+                before[i] = here[i]
 
 
 @compiled
 def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
     """w = A⁻¹S v, A w = S v, and M y (k, n), for rows v (k, 2n)."""
     k, n = len(v), v.shape[1] // 2
-    here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
-    My, both = np.empty((k, n)), np.empty((2 * k, n))
-    blocks.times(a.C, v, here)
-    blocks.times(a.M, v.reshape((2 * k, n)), both)  # x and y in turn
+    here, force, w = np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
+    My, both, y = np.empty((k, n)), np.empty((2 * k, n)), v[:, :n].copy()
+    keep_massive(a, y)
+    matrices.times(a.C, -1.0, a.back, v, here)
+    matrices.times(a.M, 1.0, a.back, v.reshape((2 * k, n)), both)  # x and y in turn
     for m in range(k):
         for i in range(n):
             My[m, i] = both[2 * m + 1, i]
             here[m, i] += My[m, i]  # C x + M y
             force[m, i], force[m, n + i] = here[m, i], -both[2 * m, i]
-            w[m, n + i] = -v[m, i]
-    blocks.solve(a.factor, here)
-    for _ in range(a.refinements):
-        strained.times(a.exact, here, more)
-        for m in range(k):
-            for i in range(n):
-                more[m, i] = force[m, i] - more[m, i]
-        blocks.solve(a.factor, more)
-        for m in range(k):
-            for i in range(n):
-                here[m, i] += more[m, i]
+            w[m, n + i] = -y[m, i]
+    elimination.solve(a.factor, here)
     for m in range(k):
         for i in range(n):
             w[m, i] = here[m, i]
@@ -68,14 +81,7 @@ def _dual(a: Operator, w: Array, My: Array) -> Array:
     """A w for rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
     out = np.empty(w.shape)
-    if a.refinements:
-        x, force = w[:, :n].copy(), np.empty((k, n))
-        strained.times(a.exact, x, force)
-        for m in range(k):
-            for i in range(n):
-                out[m, i] = force[m, i]
-    else:
-        blocks.times(a.K, w, out)
+    matrices.times(a.K, 1.0, a.back, w, out)
     for m in range(k):
         for i in range(n):
             out[m, n + i] = My[m, i]
@@ -101,9 +107,9 @@ def extend(
     """
     n = w.shape[1] // 2
     My = np.empty((len(w), n))  # M y of w
-    blocks.times(a.M, w[:, n:].copy(), My)
+    matrices.times(a.M, 1.0, a.back, w[:, n:].copy(), My)
     of_last = np.empty((size - before, n))  # M y of the last step's vectors
-    blocks.times(a.M, basis[before:size, n:].copy(), of_last)
+    matrices.times(a.M, 1.0, a.back, basis[before:size, n:].copy(), of_last)
     while True:
         gram, largest = _orthogonalise(a, w, My, basis, projected, size, before)
         value, turn = _axes(gram)
@@ -147,7 +153,7 @@ def _orthogonalise(
     n = My.shape[1]
     for turn in range(_MAX_PASSES):
         if turn > 0:
-            blocks.times(a.M, w[:, n:].copy(), My)
+            matrices.times(a.M, 1.0, a.back, w[:, n:].copy(), My)
         dual = _dual(a, w, My)
         overlap = _products(basis[:size], dual)
         _project_out(w, overlap, basis[:size])
