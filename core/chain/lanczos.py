@@ -17,7 +17,7 @@ from .. import eigen
 from ..eigen import Eigen
 from . import completeness
 from .elimination import solve
-from .krylov import Operator, extend, forward, keep_massive
+from .krylov import Operator, extend, forward, keep_massive, work
 from .matrices import product
 from .pencil import ChainPencil
 
@@ -88,7 +88,10 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
         )
     if not factor.positive:
         raise eigen.unstable()
-    w = forward(a, w)[0] if near is None else w  # smooth
+    if near is None:
+        smooth = work(len(w), n)
+        forward(a, w, smooth)
+        w = smooth.w
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
     size, before = 0, 0
