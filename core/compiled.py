@@ -183,14 +183,16 @@ def congruence(a: Array, m: Array, work: Array, out: Array) -> None:
 
 
 @compiled
-def invert(a: Array) -> int:
-    """Invert a small matrix in place by Gauss–Jordan elimination without pivoting.
+def invert(a: Array, first: int) -> int:
+    """Invert the part of a small matrix from row and column ``first`` on in place, by Gauss–Jordan elimination, no pivoting.
+
+    Of ``[[X, Y], [W, Z]]``, Z the part to invert, remains ``[[X − Y Z⁻¹ W, −Y Z⁻¹], [Z⁻¹ W, Z⁻¹]]``.
 
     Returns 2 if all pivots are positive, 1 if some are negative, and 0, with the inversion incomplete, if one is zero or not
     finite.
     """
     d, kind = len(a), 2
-    for p in range(d):
+    for p in range(first, d):
         pivot = a[p, p]
         if pivot == 0.0 or not np.isfinite(pivot):
             return 0

@@ -168,11 +168,6 @@ def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any
     return alter
 
 
-def negative(matrix: Any) -> Any:
-    """A block-tridiagonal matrix with the opposite sign."""
-    return replace(matrix, diagonal=-matrix.diagonal, upper=-matrix.upper, lower=-matrix.lower)
-
-
 def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:
     """Where core's columns get their modes, with another blade."""
     return core_solver, "mesh_modes", bladed(alter)

@@ -17,7 +17,6 @@ from .alterations import (
     core_modes,
     mirrored_tip,
     modelled,
-    negative,
     pencil,
     scaled_beyond,
     scaled_coupling,
@@ -100,7 +99,7 @@ FAULTS = (
         "Coriolis' sign",
         "the gyroscopic terms have the opposite sign: the phase between stretch and bending is reversed",
         "no frequency; MAC of mixed modes below 0.8",
-        (solution, BALANCE, pencil(lambda p: replace(p, C=negative(p.C)))),
+        (solution, BALANCE, pencil(lambda p: replace(p, C=-p.C))),
         AXIAL,
     ),
     _core(
@@ -110,11 +109,7 @@ FAULTS = (
         (
             solution,
             BALANCE,
-            pencil(
-                lambda p: replace(
-                    p, C=replace(p.C, diagonal=p.C.diagonal / 2, upper=p.C.upper / 2, lower=p.C.lower / 2)
-                )
-            ),
+            pencil(lambda p: replace(p, C=0.5 * p.C)),
         ),
         FAST,
     ),

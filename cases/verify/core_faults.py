@@ -14,7 +14,6 @@ import numpy as np
 from ...core import solve
 from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
 from ...core.chain import pencil, solution
-from ...core.chain.blocks import Tridiagonal
 from ...core.chain.lanczos import lanczos
 from ...core.chain.mode_shapes import mode_shapes
 from ...core.chain.pencil import ChainPencil, Shape
@@ -117,27 +116,23 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, effects: Eff
 
 def softened(body: Chain, state: Steady, omega: float, factor: float) -> ChainPencil:
     """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
-    parts = zip(_parts(state.pencil.remainder), _parts(spin_softening(body, state.shape, omega)), strict=True)
-    return replace(state.pencil, remainder=Tridiagonal(*(a + (factor - 1.0) * b for a, b in parts)))
+    softening = spin_softening(body, state.shape, omega)
+    return replace(state.pencil, K=state.pencil.K + (factor - 1.0) * softening)
 
 
-def spin_softening(body: Chain, shape: Shape, omega: float) -> Tridiagonal:
-    """The part of the stiffness due to the centrifugal force of the displaced mass.
+def spin_softening(body: Chain, shape: Shape, omega: float) -> np.ndarray:
+    """The part of the elements' stiffness (n, d + 6, d + 6) due to the centrifugal force of the displaced mass.
 
     It is the stiffness at speed minus that at rest, about the same shape, of a model without geometric stiffness.
     """
     bare = Effects(geometric=False)
-    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).remainder for speed in (omega, 0.0))
-    return Tridiagonal(*(a - b for a, b in zip(_parts(turning), _parts(standing), strict=True)))
-
-
-def _parts(t: Tridiagonal) -> tuple[np.ndarray, ...]:
-    return t.diagonal, t.upper, t.lower
+    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).K for speed in (omega, 0.0))
+    return turning - standing
 
 
 def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) -> Modes:
     found = lanczos(p, count)
-    return Modes(omega, found.frequencies, mode_shapes(body, shape, found.vectors), body.elements)
+    return Modes(omega, found.frequencies, mode_shapes(body, shape, pencil.on_nodes(p, found.vectors)), body.elements)
 
 
 LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")

@@ -1,4 +1,4 @@
-"""The fast solver for a blade: a chain of elements with block-tridiagonal matrices.
+"""The fast solver for a blade: a chain of elements.
 
 A ``Chain`` and a rotor speed come in. ``steady.steady`` finds the steady state, ``pencil.linearize`` the matrices about it and
 ``lanczos.lanczos`` the lowest modes, whose shapes ``mode_shapes.mode_shapes`` samples. ``as_mechanism`` converts a chain for

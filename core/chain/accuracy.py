@@ -65,7 +65,7 @@ def estimate(f: Array, order: int) -> Estimate:
 def rounding(
     body: Chain, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
 ) -> Array:
-    """(m,) relative error due to rounding: three times the change caused by rounding the relative poses.
+    """(m,) relative error of frequencies due to rounding: three times the change caused by rounding the relative poses.
 
     It includes the effect of rigid or nearly rigid strains on the tension. The vectors are unchanged: their error enters
     squared.
@@ -77,6 +77,6 @@ def rounding(
     relative = shape.relative @ sp.exp(float(np.finfo(float).eps) * size * sign)
     rounded = replace(shape, relative=relative)
     near = linearize(body, rounded, omega, gravity, effects)
-    a, b = frequencies_of(state.pencil, vectors), frequencies_of(near, vectors)
+    a, b = (frequencies_of(p, vectors) for p in (state.pencil, near))
     change = np.abs(b / a - 1.0)
     return FLOOR + 3.0 * np.maximum(change, np.median(change))

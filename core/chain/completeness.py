@@ -2,15 +2,16 @@
 
 For K positive definite, M positive semi-definite and C skew, the Hermitian matrix H(ω) = K + iωC − ω²M has as many negative
 eigenvalues as there are natural frequencies between 0 and ω: its eigenvalues are positive at ω = 0, and each one that
-crosses zero does so downwards, since x*H′x = −(x*Kx + ω²x*Mx)/ω < 0 wherever H x = 0. A block LDLᴴ factorisation gives their
-signs without computing them. (Sylvester 1852; Parlett, *The Symmetric Eigenvalue Problem*, 1998, sec. 3.3; Wittrick and
+crosses zero does so downwards, since x*H′x = −(x*Kx + ω²x*Mx)/ω < 0 wherever H x = 0. The pivots of an elimination have their
+signs, whatever the coordinates. (Sylvester 1852; Parlett, *The Symmetric Eigenvalue Problem*, 1998, sec. 3.3; Wittrick and
 Williams, Quart. J. Mech. Appl. Math. 24, 1971, 263, for the count.)
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
+from ..compiled import compiled, congruence
+from .elimination import add_beyond
 from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
@@ -60,43 +61,40 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
 
 def below(p: ChainPencil, omega: float) -> int:
     """Number of natural frequencies between 0 and ``omega`` (rad/s), which must not be one of them."""
-    K, C, M = p.K, p.C, p.M
-    return _negative(K.diagonal, K.upper, C.diagonal, C.upper, M.diagonal, M.upper, omega)
+    return _negative(p.K, p.C, p.M, p.back, p.clamped, omega)
 
 
 @compiled
-def _negative(K: Array, K_upper: Array, C: Array, C_upper: Array, M: Array, M_upper: Array, omega: float) -> int:
-    """Negative pivots of the block LDLᴴ factorisation of K + iωC − ω²M, without exchange of rows."""
-    n, d = K.shape[:2]
-    H, U = np.empty((d, d), np.complex128), np.empty((6, d), np.complex128)
-    square, count, first = omega * omega, 0, d - 6
-    pivots = np.empty(d)
-    for k in range(n):
-        for i in range(d):  # the lower half
+def _negative(K: Array, C: Array, M: Array, back: Array, clamped: Array, omega: float) -> int:
+    """Negative pivots of K + iωC − ω²M in the elimination of ``elimination``, by real and imaginary parts."""
+    n, size = K.shape[:2]
+    P, Q, re, im = np.zeros((6, 6)), np.zeros((6, 6)), np.empty((size, size)), np.empty((size, size))
+    work, of_P, of_Q = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
+    count = 0
+    for k in range(n - 1, -1, -1):
+        congruence(back[k], P, work, of_P)
+        congruence(back[k], Q, work, of_Q)
+        for i in range(size):  # the lower half
             for j in range(i + 1):
-                H[i, j] = complex(K[k, i, j] - square * M[k, i, j], omega * C[k, i, j])
-        if k > 0:  # minus Uᴴ Δ⁻¹ U of the previous block
-            for m in range(6):
-                for i in range(d):
-                    scaled = U[m, i].conjugate() / pivots[first + m]
-                    for j in range(i + 1):
-                        H[i, j] -= scaled * U[m, j]
-        for p in range(d):  # H = L Δ Lᴴ in place
-            pivot = H[p, p].real
-            pivots[p] = pivot
+                re[i, j] = 0.5 * (K[k, i, j] + K[k, j, i]) - omega * omega * M[k, i, j]
+                im[i, j] = omega * C[k, i, j]
+        add_beyond(of_P, re)
+        add_beyond(of_Q, im)
+        if k == 0 and len(clamped):
+            for i in range(6):
+                for j in range(6):
+                    re[6 + i, 6 + j] += clamped[i, j]  # as in ``elimination``
+        for p in range(size - 1, 5, -1):
+            pivot = re[p, p]
             if pivot < 0.0:
                 count += 1
-            for i in range(p + 1, d):
-                entry = H[i, p]
-                H[i, p] = entry / pivot
-                for j in range(p + 1, i + 1):
-                    H[i, j] -= entry * H[j, p].conjugate()
-        if k < n - 1:  # U = L⁻¹ (block above), of the last six
-            for i in range(6):
-                for j in range(d):
-                    U[i, j] = complex(K_upper[k, i, j] - square * M_upper[k, i, j], omega * C_upper[k, i, j])
-                for m in range(i):
-                    factor = H[first + i, first + m]
-                    for j in range(d):
-                        U[i, j] -= factor * U[m, j]
+            for i in range(p):
+                a, b = re[p, i] / pivot, -im[p, i] / pivot
+                for j in range(i + 1):
+                    re[i, j] -= a * re[p, j] - b * im[p, j]
+                    im[i, j] -= a * im[p, j] + b * re[p, j]
+        for i in range(6):
+            for j in range(i + 1):
+                P[i, j] = P[j, i] = re[i, j]
+                Q[i, j], Q[j, i] = im[i, j], -im[i, j]
     return count

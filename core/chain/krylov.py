@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, inner, reduction
-from . import blocks, strained
-from .blocks import Factor, Transposed
-from .strained import Strained
+from ..compiled import apply, compiled, inner, reduction
+from . import elimination, matrices
+from .elimination import Factor
 
 Array = NDArray[np.float64]
 
@@ -19,67 +18,98 @@ class Operator(NamedTuple):
     """The operator A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]].
 
     Attributes:
-        M, C, K: transposed block-tridiagonal matrices.
-        factor: LU factors of K.
-        exact: K from the element strains, for iterative refinement.
-        refinements: number of refinement steps for each solution.
+        M, C, K: matrices of the elements, see ``matrices``.
+        back: Ad⁻¹.
+        factor: factors of K.
+        massive: (n, 6, 6) projectors of the nodes' twists on directions with mass; (0, 6, 6) for a consistent mass.
+        lever: (n, 6, 6) Ad.
     """
 
-    M: Transposed
-    C: Transposed
-    K: Transposed
+    M: Array
+    C: Array
+    K: Array
+    back: Array
     factor: Factor
-    exact: Strained
-    refinements: int
+    massive: Array
+    lever: Array
 
 
 @compiled
-def forward(a: Operator, v: Array) -> tuple[Array, Array, Array]:
-    """w = A⁻¹S v, A w = S v, and M y (k, n), for rows v (k, 2n)."""
+def keep_massive(a: Operator, y: Array) -> None:
+    """Remove the motion of nodes without inertia from vectors y (k, n).
+
+    It has no part in M y, but is amplified by every orthogonalisation, and its rounding errors are not without mass.
+    """
+    d, xi = y.shape[1] // len(a.back), np.empty((1, 6))
+    here, before = np.empty(6), np.empty(6)
+    for v in range(len(y) if len(a.massive) else 0):
+        for i in range(6):
+            xi[0, i] = before[i] = 0.0
+        for k in range(len(a.massive)):
+            matrices.outwards(a.back, k, y, v, d * k, xi, 0)
+            apply(a.massive[k], xi[0], here)
+            apply(a.lever[k], here, y[v, d * k : d * k + 6])
+            for i in range(6):
+                y[v, d * k + i] -= before[i]
+                before[i] = here[i]
+
+
+class Work(NamedTuple):
+    """Results and intermediate arrays of a step, allocated once: large new ones cost the system as much as the step itself.
+
+    Attributes:
+        w, force: (k, 2n) A⁻¹S v and S v.
+        My: (k, n) M y.
+        both: (2k, n) M x and M y.
+        x: (k, n).
+    """
+
+    w: Array
+    force: Array
+    My: Array
+    both: Array
+    x: Array
+
+
+@compiled
+def work(k: int, n: int) -> Work:
+    """Arrays for steps with k vectors (2n,)."""
+    return Work(np.empty((k, 2 * n)), np.empty((k, 2 * n)), np.empty((k, n)), np.empty((2 * k, n)), np.empty((k, n)))
+
+
+@compiled
+def forward(a: Operator, v: Array, out: Work) -> None:
+    """w = A⁻¹S v, A w = S v, and M y, for rows v (k, 2n), into the first rows of ``out``."""
     k, n = len(v), v.shape[1] // 2
-    here, more, force, w = np.empty((k, n)), np.empty((k, n)), np.empty((k, 2 * n)), np.empty((k, 2 * n))
-    My, both = np.empty((k, n)), np.empty((2 * k, n))
-    blocks.times(a.C, v, here)
-    blocks.times(a.M, v.reshape((2 * k, n)), both)  # x and y in turn
+    x, w, force = out.x[:k], out.w, out.force
     for m in range(k):
         for i in range(n):
-            My[m, i] = both[2 * m + 1, i]
-            here[m, i] += My[m, i]  # C x + M y
-            force[m, i], force[m, n + i] = here[m, i], -both[2 * m, i]
-            w[m, n + i] = -v[m, i]
-    blocks.solve(a.factor, here)
-    for _ in range(a.refinements):
-        strained.times(a.exact, here, more)
-        for m in range(k):
-            for i in range(n):
-                more[m, i] = force[m, i] - more[m, i]
-        blocks.solve(a.factor, more)
-        for m in range(k):
-            for i in range(n):
-                here[m, i] += more[m, i]
+            x[m, i] = v[m, i]
+    keep_massive(a, x)
     for m in range(k):
         for i in range(n):
-            w[m, i] = here[m, i]
-    return w, force, My
+            w[m, n + i] = -x[m, i]
+    matrices.times(a.C, -1.0, a.back, v, x)
+    matrices.times(a.M, 1.0, a.back, v.reshape((2 * k, n)), out.both)  # x and y in turn
+    for m in range(k):
+        for i in range(n):
+            out.My[m, i] = out.both[2 * m + 1, i]
+            x[m, i] += out.My[m, i]  # C x + M y
+            force[m, i], force[m, n + i] = x[m, i], -out.both[2 * m, i]
+    elimination.solve(a.factor, x)
+    for m in range(k):
+        for i in range(n):
+            w[m, i] = x[m, i]
 
 
 @inner
-def _dual(a: Operator, w: Array, My: Array) -> Array:
-    """A w for rows w (k, 2n) with M y (k, n)."""
+def _dual(a: Operator, w: Array, My: Array, out: Array) -> None:
+    """out = A w for rows w (k, 2n) with M y (k, n)."""
     k, n = len(w), w.shape[1] // 2
-    out = np.empty(w.shape)
-    if a.refinements:
-        x, force = w[:, :n].copy(), np.empty((k, n))
-        strained.times(a.exact, x, force)
-        for m in range(k):
-            for i in range(n):
-                out[m, i] = force[m, i]
-    else:
-        blocks.times(a.K, w, out)
+    matrices.times(a.K, 1.0, a.back, w, out)
     for m in range(k):
         for i in range(n):
             out[m, n + i] = My[m, i]
-    return out
 
 
 @compiled
@@ -99,13 +129,14 @@ def extend(
     Returns:
         w orthogonal to the basis, its Gram matrix (k, k), the new size and before, and whether the basis is exhausted.
     """
-    n = w.shape[1] // 2
-    My = np.empty((len(w), n))  # M y of w
-    blocks.times(a.M, w[:, n:].copy(), My)
-    of_last = np.empty((size - before, n))  # M y of the last step's vectors
-    blocks.times(a.M, basis[before:size, n:].copy(), of_last)
+    k, n = len(w), w.shape[1] // 2
+    room, own, last = work(k, n), np.empty((k, n)), np.empty((k, n))
+    My = own[:k]  # M y of w
+    matrices.times(a.M, 1.0, a.back, w[:, n:].copy(), My)
+    of_last = last[: size - before]  # M y of the last step's vectors
+    matrices.times(a.M, 1.0, a.back, basis[before:size, n:].copy(), of_last)
     while True:
-        gram, largest = _orthogonalise(a, w, My, basis, projected, size, before)
+        gram, largest = _orthogonalise(a, w, My, basis, projected, size, before, room.force[: len(w)])
         value, turn = _axes(gram)
         least = 1e-20 * max(value[-1], largest**2, 1e-300)
         kept = 0
@@ -122,33 +153,40 @@ def extend(
             first, other = scale * turn[0, column], scale * turn[-1, column] if len(w) > 1 else 0.0
             for j in range(w.shape[1]):
                 basis[size + m, j] = first * w[0, j] + other * w[-1, j]
-        w, force, of_these = forward(a, basis[size:end])
+        forward(a, basis[size:end], room)
+        w, force, of_these = room.w[:kept], room.force[:kept], room.My[:kept]
         overlap = _products(basis[before:end], force)
         for i in range(len(overlap)):
             for j in range(kept):
                 projected[before + i, size + j] = overlap[i, j]
         _project_out(w, overlap, basis[before:end])
-        My = force[:, n:].copy()  # M y = −M x is known
+        My = own[:kept]
+        for m in range(kept):
+            for i in range(n):
+                My[m, i] = force[m, n + i]  # M y = −M x is known
         _project_out(My, overlap[: size - before], of_last)
         _project_out(My, overlap[size - before :], of_these)
-        of_last = of_these
+        of_last = last[:kept]
+        for m in range(kept):
+            for i in range(n):
+                of_last[m, i] = of_these[m, i]
         before, size = size, end
 
 
 @inner
 def _orthogonalise(
-    a: Operator, w: Array, My: Array, basis: Array, projected: Array, size: int, before: int
+    a: Operator, w: Array, My: Array, basis: Array, projected: Array, size: int, before: int, dual: Array
 ) -> tuple[Array, float]:
     """Orthogonalise w, with M y = ``My``, against the basis in the A product; the overlaps are added to ``projected``.
 
-    Returns the Gram matrix (k, k) of w and the largest overlap of the last pass.
+    ``dual`` (k, 2n) is overwritten. Returns the Gram matrix (k, k) of w and the largest overlap of the last pass.
     """
     gram, largest = np.zeros((len(w), len(w))), 0.0
     n = My.shape[1]
     for turn in range(_MAX_PASSES):
         if turn > 0:
-            blocks.times(a.M, w[:, n:].copy(), My)
-        dual = _dual(a, w, My)
+            matrices.times(a.M, 1.0, a.back, w[:, n:].copy(), My)
+        _dual(a, w, My, dual)
         overlap = _products(basis[:size], dual)
         _project_out(w, overlap, basis[:size])
         largest = 0.0

@@ -15,18 +15,16 @@ from scipy.linalg import eigh
 
 from .. import eigen
 from ..eigen import Eigen
-from . import blocks, completeness, strained
-from .blocks import Factor, Transposed
-from .krylov import Operator, extend, forward
+from . import completeness
+from .elimination import solve
+from .krylov import Operator, extend, forward, keep_massive, work
+from .matrices import product
 from .pencil import ChainPencil
-from .strained import Strained
 
 Array = NDArray[np.float64]
 
 _VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
-_SOLVE_TOLERANCE, _MAX_REFINEMENTS = 1e-8, 20  # relative error of a solution with K; refinement steps to reach it
-_MAX_SOLVE_ERROR = 0.3  # error of a solution without refinement above which K is lost to rounding
-_MAX_COUNT_ERROR = 1e-4  # error of a solution above which a wrong count or a negative pivot is due to rounding
+_MAX_SOLVE_ERROR = 1e-3
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 18, 4  # the same, starting from the modes of a similar pencil
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
@@ -62,9 +60,8 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     With ``near``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to all
     of that pencil's is not found, and ``completeness`` reports it as missing.
 
-    With many elements the assembled K loses digits to cancellation; solutions are then refined iteratively with products
-    from the element strains. The frequencies follow from the gyroscopic Rayleigh quotient of the vectors,
-    ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is the square of that of the vectors (Lancaster 2013).
+    The frequencies follow from the gyroscopic Rayleigh quotient of the vectors, ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is
+    the square of that of the vectors (Lancaster 2013).
 
     Raises:
         UnstableError: if K is not positive definite.
@@ -75,17 +72,26 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
         factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
-    n, exact = p.K.size, p.strained
-    M, C, K = (blocks.transposed(t) for t in (p.M, p.C, p.K))
-    w = _start(2 * n)
-    lost = solve_error(factor, exact, M, w)
-    if not lost < (_MAX_SOLVE_ERROR if factor.positive else _MAX_COUNT_ERROR):
-        raise _lost_to_rounding(len(K.diagonal), lost)
+    n = len(p.residual)
+    a = Operator(p.M, p.C, p.K, p.back, factor, *_massive(p))
+    w = _start(2 * n).copy() if near is None else near.vectors.copy()
+    y = w[:, n:].copy()
+    if p.clamped.size:
+        y[:, :6] -= y[:, :6] @ p.clamped
+    keep_massive(a, y)
+    w[:, n:] = y
+    lost = solve_error(a, w)
+    if not lost < _MAX_SOLVE_ERROR:
+        raise EigensolverError(
+            f"the stiffness of {len(p.K)} elements is lost to rounding (relative error of a solution {lost:.1e}): use "
+            "fewer elements, or check units"
+        )
     if not factor.positive:
         raise eigen.unstable()
-    refinements = _refinements(lost)
-    a = Operator(M, C, K, factor, exact, refinements)
-    w = forward(a, w)[0] if near is None else near.vectors.copy()  # smooth
+    if near is None:
+        smooth = work(len(w), n)
+        forward(a, w, smooth)
+        w = smooth.w
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
     size, before = 0, 0
@@ -110,16 +116,11 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     z = z[:, positive].T
     x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
     x = x.reshape(len(z), 2, n)
-    frequencies, kappa = _quotients(M, C, exact, x)
+    frequencies, kappa = _quotients(p, x)
     if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
         raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
     order = np.argsort(frequencies)
-    try:
-        completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()], lost)
-    except completeness.MissedModesError as error:
-        if lost > _MAX_COUNT_ERROR:  # the count uses the assembled K, which is rounded
-            raise _lost_to_rounding(len(K.diagonal), lost) from error
-        raise
+    completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()])
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
     start = Start(
         (_phases(every_z.shape[1]) @ every_z.T).real @ basis[:size],
@@ -128,41 +129,48 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     return Lowest(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0], start)
 
 
-def _lost_to_rounding(elements: int, error: float) -> EigensolverError:
-    return EigensolverError(
-        f"the stiffness of {elements} elements is lost to rounding (relative error of a solution {error:.1e}): use "
-        "fewer elements, or check units"
-    )
+def _massive(p: ChainPencil) -> tuple[Array, Array]:
+    """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.Operator``."""
+    if p.M.shape[1] > 12:
+        return np.zeros((0, 6, 6)), np.zeros((0, 6, 6))
+    lever, joint = p.back.copy(), bool(p.clamped.size)
+    if joint:
+        lever[0] = np.eye(6)
+    lever = np.asarray(np.linalg.inv(lever), dtype=np.float64)
+    lumps = np.concatenate([p.M[1:, :6, :6], p.M[-1:, 6:, 6:]])  # the tip's also in the axes of the node before
+    lumps[-2:-1] -= lumps[-1]
+    lumps[-1] = lever[-1].T @ lumps[-1] @ lever[-1]
+    massive = np.linalg.pinv(lumps, hermitian=True) @ lumps
+    if joint:
+        massive[0] = np.eye(6)  # ``back`` leaves its free directions only
+    return massive, lever
 
 
 def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
-    return _quotients(blocks.transposed(p.M), blocks.transposed(p.C), p.strained, x)[0]
+    return _quotients(p, x)[0]
 
 
-def _quotients(M: Transposed, C: Transposed, K: Strained, x: Array) -> tuple[Array, Array]:
+def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
     rows = x.reshape(-1, x.shape[2])
-    Kx, Cx, Mx = np.empty_like(x), np.empty_like(x), np.empty_like(x)
-    strained.times(K, rows, Kx.reshape(rows.shape))
-    blocks.times(C, rows, Cx.reshape(rows.shape))
-    blocks.times(M, rows, Mx.reshape(rows.shape))
+    signed = ((p.K, 1.0), (p.C, -1.0), (p.M, 1.0))
+    Kx, Cx, Mx = (product(matrix, sign, p.back, rows).reshape(x.shape) for matrix, sign in signed)
     kappa, inertia = np.einsum("mpi,mpi->m", x, Kx), np.einsum("mpi,mpi->m", x, Mx)
     half = 0.5 * (np.einsum("mi,mi->m", x[:, 1], Cx[:, 0]) - np.einsum("mi,mi->m", x[:, 0], Cx[:, 1]))  # ½ i x*Cx
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
 
 
-def solve_error(factor: Factor, exact: Strained, M: Transposed, v: Array) -> float:
+def solve_error(a: Operator, v: Array) -> float:
     """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
-    force, back = np.empty((2, 1, v.shape[1] // 2))
-    blocks.times(M, v[:1], force)
+    n = v.shape[1] // 2
+    force = product(a.M, 1.0, a.back, v[:1, :n])
     x = force.copy()
-    blocks.solve(factor, x)
-    strained.times(exact, x, back)
-    left = force - back
+    solve(a.factor, x)
+    left = force - product(a.K, 1.0, a.back, x)
     more = left.copy()
-    blocks.solve(factor, more)
+    solve(a.factor, more)
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
 
 
@@ -184,11 +192,3 @@ def _phases(modes: int) -> NDArray[np.complex128]:
     """Random coefficients (2, modes) of modes in start vectors, the same in every run."""
     rng = np.random.default_rng(1950)
     return rng.normal(size=(2, modes)) + 1j * rng.normal(size=(2, modes))
-
-
-def _refinements(solve_error: float) -> int:
-    """Number of refinement steps that reduce the error of a solution to the tolerance."""
-    for steps in range(_MAX_REFINEMENTS):
-        if solve_error ** (steps + 1) < _SOLVE_TOLERANCE:
-            return steps
-    return _MAX_REFINEMENTS

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def mode_shapes(body: Chain, shape: Shape, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m)."""
+    """(m, 21, 4) displacement and rotation about x at the common stations, from vectors (dn, m) of ``pencil.on_nodes``."""
     e, d, m = body.samples.element, shape.beta.shape[1] + 6, vectors.shape[1]
     read = _readings(body, shape)
     blocks = np.ascontiguousarray(vectors).view(np.float64).reshape(-1, d, 2 * m)

@@ -1,8 +1,8 @@
 """The rotating chain: its Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a given shape.
 
 With elastic connections only, every node moves freely: the velocity transformation B of the general solver is square and
-invertible, so the modes follow from the twists of the bodies, for which the matrices are block-tridiagonal. Twists and
-wrenches of node k are in the axes of node k.
+invertible, so the modes follow from the twists of the bodies, of which each element couples two. Twists and wrenches of
+node k are in the axes of node k.
 """
 
 from dataclasses import dataclass
@@ -17,60 +17,36 @@ from ..element import beams as bm
 from ..element import inertia
 from ..element.discretize import Chain
 from ..space import rigid
-from . import blocks, root_joint, strained
-from .blocks import Factor, Tridiagonal
-from .strained import Strained
+from . import elimination, matrices, root_joint
+from .elimination import Factor
+from .matrices import inwards
 
 Array = NDArray[np.float64]
 
-_FORCE_ROUNDING, _ENERGY_ROUNDING = (
-    1e-13,
-    1e-28,
-)  # relative rounding in the stiffness of a rigid motion: forces, strain energy
+_ROUNDING = 1e-13  # relative rounding in the stiffness of a rigid motion
 
 
 @dataclass(frozen=True)
 class ChainPencil:
-    """Residual (dn,) and block-tridiagonal M, C, K of β and nodes 1 … n; K = ``remainder`` + ``spring`` on ρ = Ad ξ_b − ξ_a.
+    """Residual (dn,) on (ρ, β), and M, C, K (n, d + 6, d + 6) of the elements, see ``matrices``.
 
-    ``spring`` is (n, 6, 6) and ``lever`` the Ad (n, 6, 6) of the relative poses, the identity for a joint at the root, whose
-    springs act on the twist of node 1; ``clamped`` is as in ``Chain``, at this shape. A clamped direction has a unit
-    stiffness and neither mass nor load: it does not move and contributes no mode.
+    The inertia carried by a node is part of the element that begins there, or, at the tip, of the last one. ``back`` is the
+    Ad⁻¹ (n, 6, 6) of the relative poses. For a joint at the root, ρ of the first element is the twist of node 1, on which its
+    springs act, and ``back`` the projector on the free directions; ``clamped`` is as in ``Chain``, at this shape. A clamped
+    direction bears no load and does not move.
     """
 
     residual: Array
-    M: Tridiagonal
-    C: Tridiagonal
-    remainder: Tridiagonal
-    spring: Array
-    lever: Array
+    M: Array
+    C: Array
+    K: Array
+    back: Array
     clamped: Array
 
     @cached_property
-    def K(self) -> Tridiagonal:
-        """The complete stiffness."""
-        on_b = np.swapaxes(self.lever, -1, -2) @ self.spring
-        diagonal, upper, lower = (
-            self.remainder.diagonal.copy(),
-            self.remainder.upper.copy(),
-            self.remainder.lower.copy(),
-        )
-        diagonal[:, -6:, -6:] += on_b @ self.lever
-        diagonal[:-1, -6:, -6:] += self.spring[1:]
-        upper[:, :, -6:] -= self.spring[1:] @ self.lever[1:]
-        lower[:, -6:] -= on_b[1:]
-        return _clamp(Tridiagonal(diagonal, upper, lower), self.clamped, 1.0)
-
-    @cached_property
     def factor(self) -> Factor:
-        """LU factors of K; ``numpy.linalg.LinAlgError`` if it is singular."""
-        return blocks.factor(self.K)
-
-    @property
-    def strained(self) -> Strained:
-        """K for products without cancellation; see ``strained``."""
-        clamped = self.clamped if self.clamped.size else np.zeros((6, 6))
-        return Strained(blocks.transposed(self.remainder), self.spring, self.lever, clamped)
+        """Factors of K; ``numpy.linalg.LinAlgError`` if it is singular."""
+        return elimination.factor(self.K, self.back, self.clamped)
 
 
 @dataclass(frozen=True)
@@ -107,33 +83,32 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     """
     n, d = len(shape.nodes), 6 + chain.beams.inner
     frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
-    x, lever = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
+    x, back = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
     nodes, relative, corner = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, chain.corner))
-    _place(nodes, relative, omega, gravity, chain.force, corner, frame, fall, axes, push, x, lever)
-    p = bm.pencil(chain.beams, x, shape.beta, frame[:-1], fall[:-1], effects, axes[:-1])
+    _place(nodes, relative, omega, gravity, chain.force, corner, frame, fall, axes, push, x, back)
+    p = bm.on_strain(chain.beams, x, shape.beta, frame[:-1], fall[:-1], effects, axes[:-1])
     g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
     inertia.carried(chain.lumps, frame, fall, push, effects.geometric, g, C, K)
-    residual, clamped = np.empty((n - 1, d)), chain.clamped
+    f, clamped = p.residual, chain.clamped
     if clamped.size:  # the joint replaces the first element
-        p.residual[0], p.remainder[0, :, :12], p.remainder[0, :12], lever[0] = 0.0, 0.0, 0.0, np.eye(6)
-    _balance(p.residual, lever, g, residual)
-    if clamped.size:
-        joint = root_joint.response(chain, relative[0], residual[0, -6:])
+        joint = root_joint.response(chain, relative[0], g[1] + f[1, :6] - f[1, 6:12])
         clamped, p.spring[0] = joint.clamped, joint.stiffness
-        residual[0, -6:] += joint.wrench
-        residual[0, -6:] -= clamped @ residual[0, -6:]
+        back[0] = np.eye(6) - clamped
+        f[0], p.remainder[0, :, :12], p.remainder[0, :12] = 0.0, 0.0, 0.0
+        f[0, 6:12] = joint.wrench
         if effects.geometric:
             K[1] += joint.turning
-    moving = 1.0 if effects.coriolis else 0.0
-    return ChainPencil(
-        residual.ravel(),
-        _clamp(blocks.from_elements(p.M, lever, chain.lumps), clamped, 0.0),
-        _clamp(blocks.from_elements(moving * p.C, lever, moving * C), clamped, 0.0),
-        blocks.from_elements(p.remainder, lever, K),
-        p.spring,
-        lever,
-        clamped,
-    )
+    p.remainder[:, 6:12, 6:12] += p.spring
+    for matrix, on_nodes in ((p.M, chain.lumps), (p.C, C), (p.remainder, K)):
+        matrix[1:, :6, :6] += on_nodes[1:-1]
+        matrix[-1, :12, :12] += np.tile(back[-1].T @ on_nodes[-1] @ back[-1], (2, 2))  # on ξ_a + ρ
+    if not effects.coriolis:
+        p.C[:] = 0.0
+    residual = np.empty((n - 1, d))
+    _gather(f, back, g, residual)
+    if clamped.size:
+        residual[0, :6] -= clamped @ residual[0, :6]
+    return ChainPencil(residual.ravel(), p.M, p.C, p.remainder, back, clamped)
 
 
 @compiled
@@ -149,9 +124,12 @@ def _place(
     axes: Array,
     push: Array,
     x: Array,
-    lever: Array,
+    ahead: Array,
 ) -> None:
-    """For every node, in its own axes: the hub's twist, gravity, load and the hub's axes; x is the pose of end b in a."""
+    """For every node, in its own axes: the hub's twist, gravity, load and the hub's axes.
+
+    For every element: the pose x of end b in a, and Ad⁻¹ ``ahead``.
+    """
     back, to_node = np.empty((4, 4)), np.empty((6, 6))
     for k in range(len(nodes)):
         rigid.inverse(nodes[k], back)
@@ -165,36 +143,31 @@ def _place(
                 fall[k, i] += back[i, j] * gravity[j]
                 push[k, i] += back[i, j] * force[k, j]
         if k + 1 < len(nodes):
-            rigid.adjoint(relative[k], lever[k])
+            rigid.inverse(relative[k], back)
+            rigid.adjoint(back, ahead[k])
             rigid.compose(relative[k], corner[k], x[k])
 
 
 @compiled
-def _balance(on_ends: Array, lever: Array, on_nodes: Array, out: Array) -> None:
-    """Forces (n, d) on β and nodes 1 … n in their axes, from elements (n, d + 6), ordered a, b, β, and nodes (n+1, 6)."""
-    inner = out.shape[1] - 6
-    for k in range(len(out)):
-        for i in range(inner):
-            out[k, i] = on_ends[k, 12 + i]
+def _gather(of_elements: Array, back: Array, of_nodes: Array, out: Array) -> None:
+    """Loads (n, d) on (ρ, β) from those of the elements (n, d + 6) on (ξ_a, ρ, β) and of the nodes (n+1, 6)."""
+    p = np.zeros((1, 6))
+    for k in range(len(out) - 1, -1, -1):
         for i in range(6):
-            out[k, inner + i] = on_nodes[k + 1, i]
-            for j in range(6):
-                out[k, inner + i] += lever[k, j, i] * on_ends[k, 6 + j]
-            if k > 0:
-                out[k - 1, inner + i] += on_ends[k, i]
+            p[0, i] += of_nodes[k + 1, i]
+        inwards(back, k, p, 0)
+        for i in range(out.shape[1]):
+            out[k, i] = of_elements[k, 6 + i] + (p[0, i] if i < 6 else 0.0)
+        for i in range(6):
+            p[0, i] += of_elements[k, i]
 
 
-def _clamp(t: Tridiagonal, clamped: Array, unit: float) -> Tridiagonal:
-    """The matrix with the clamped part of node 1's twist decoupled from the others, ``unit`` on its diagonal."""
-    if not clamped.size:
-        return t
-    free = np.eye(6) - clamped
-    diagonal, upper, lower = t.diagonal.copy(), t.upper.copy(), t.lower.copy()
-    diagonal[0, -6:] = free @ diagonal[0, -6:]
-    diagonal[0, :, -6:] = diagonal[0, :, -6:] @ free
-    diagonal[0, -6:, -6:] += unit * clamped
-    upper[:1], lower[:1] = free @ upper[:1], lower[:1] @ free
-    return Tridiagonal(diagonal, upper, lower)
+def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(dn, m) β and ξ_b of one element after the other, from vectors (dn, m) of (ρ, β)."""
+    found = matrices.twists(p.back, np.concatenate([vectors.real, vectors.imag], axis=1).T)
+    found = np.concatenate([found[..., 6:], found[..., :6]], axis=-1).reshape(len(found), -1).T
+    m = vectors.shape[1]
+    return found[:, :m] + 1j * found[:, m:]
 
 
 def loose(p: ChainPencil) -> bool:
@@ -202,15 +175,9 @@ def loose(p: ChainPencil) -> bool:
     if not p.clamped.size:
         return False
     free = np.linalg.svd(np.eye(6) - p.clamped)[0][:, : 6 - round(float(np.trace(p.clamped)))]
-    x = np.zeros((free.shape[1], len(p.lever), p.remainder.diagonal.shape[1]))
-    twist = free
-    for k in range(len(p.lever)):  # ξ_b = Ad⁻¹ ξ_a: no strain
-        twist = twist if k == 0 else np.linalg.solve(p.lever[k], twist)
-        x[:, k, -6:] = twist.T
-    rows = x.reshape(len(x), -1)
-    force = np.empty_like(rows)
-    strained.times(p.strained, rows, force)
-    K = rows @ force.T
-    cancelled = np.einsum("mki,kij,mkj->", np.abs(x), np.abs(p.remainder.diagonal), np.abs(x))
-    rounding = _FORCE_ROUNDING * cancelled + _ENERGY_ROUNDING * np.abs(p.spring).max() * (rows**2).sum()
-    return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= rounding)
+    x = np.zeros((free.shape[1], len(p.residual)))
+    x[:, :6] = free.T  # no strain beyond the joint
+    K = x @ matrices.product(p.K, 1.0, p.back, x).T
+    begins = np.abs(matrices.twists(p.back, x)[:, :-1, :6])
+    cancelled = np.einsum("mki,kij,mkj->", begins, np.abs(p.K[1:, :6, :6]), begins)
+    return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= _ROUNDING * cancelled)

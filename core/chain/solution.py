@@ -15,7 +15,7 @@ from .completeness import MissedModesError
 from .lanczos import EigensolverError, Lowest, Start, lanczos
 from .mode_shapes import mode_shapes
 from .pencil import ChainPencil, Shape
-from .steady import Steady
+from .steady import Steady, SteadyStateError
 
 Array = NDArray[np.float64]
 
@@ -48,19 +48,22 @@ class MeshSolver:
         """Solve at one speed (rad/s), starting from the shapes at previous speeds or else from the shape ``near``."""
         begun, body = time.perf_counter(), self.body
         guess = steady.extrapolate(self.known, omega)
-        state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
+        try:
+            state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
+        except SteadyStateError as error:
+            if pencil.loose(pencil.linearize(body, pencil.undeformed(body), omega, self.gravity, self.effects)):
+                raise _free_hinge(omega) from error
+            raise
         try:
             found = self._lowest(state.pencil)
         except (UnstableError, EigensolverError) as error:
             if pencil.loose(state.pencil):
-                raise UnstableError(
-                    f"omega: {omega:.6g} rad/s: a free hinge has no stiffness (at rest, or lead–lag without offset): add a "
-                    "spring"
-                ) from error
+                raise _free_hinge(omega) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
         self.start = found.start
         self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
-        shapes, strain = mode_shapes(body, state.shape, found.vectors), steady.largest_strain(body, state.shape)
+        shapes = mode_shapes(body, state.shape, pencil.on_nodes(state.pencil, found.vectors))
+        strain = steady.largest_strain(body, state.shape)
         seconds = time.perf_counter() - begun
         modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
         return Solved(modes, state, found.vectors)
@@ -79,6 +82,12 @@ class MeshSolver:
             return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
         state, omega = solved.state, solved.modes.omega
         return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
+
+
+def _free_hinge(omega: float) -> UnstableError:
+    return UnstableError(
+        f"omega: {omega:.6g} rad/s: a free hinge has no stiffness (at rest, or lead–lag without offset): add a spring"
+    )
 
 
 def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:

@@ -15,7 +15,7 @@ from ..element import measures
 from ..element.discretize import Chain
 from ..space import rigid
 from ..space import spatial as sp
-from . import blocks, root_joint
+from . import elimination, matrices, root_joint
 from .pencil import ChainPencil, Shape, linearize, undeformed
 
 Array = NDArray[np.float64]
@@ -92,15 +92,14 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
             shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
         try:
-            step = blocks.solution(p.factor, -p.residual).reshape(len(chain.nodes) - 1, -1)
+            relative = elimination.solution(p.factor, -p.residual)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
-        if p.clamped.size:
-            step[0, -6:] -= p.clamped @ step[0, -6:]  # due to rounding of the reaction
-        change = float(np.abs(step[:, -6:] / size).max())
+        step = matrices.twists(p.back, relative[None])[0]
+        change = float(np.abs(step[:, :6] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        energy, rounding = abs(float(step.ravel() @ p.residual)), rounding_energy(p, shape)
+        energy, rounding = abs(float(relative @ p.residual)), rounding_energy(p, shape)
         ratio = energy / before
         following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
         settled = energy <= rounding and following <= _CONVERGED_FACTOR * rounding
@@ -118,7 +117,7 @@ def rounding_energy(p: ChainPencil, shape: Shape) -> float:
     """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: a step with less energy is rounding."""
     length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
     weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
-    return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.spring, weight**2)))
+    return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.K[:, 6:12, 6:12], weight**2)))
 
 
 def largest_strain(chain: Chain, shape: Shape) -> float:
@@ -130,18 +129,18 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
 
 
 def displaced(shape: Shape, step: Array) -> Shape:
-    """The shape after a step (n, 6 or 12): changes of β, and twists of nodes 1 … n in their axes."""
+    """The shape after a step (n, 6 or 12): twists of nodes 1 … n in their axes, and changes of β."""
     nodes, relative = shape.nodes.copy(), shape.relative.copy()
     _displace(step, nodes[1:], relative)
-    return Shape(nodes, shape.beta + step[:, :-6], relative)
+    return Shape(nodes, shape.beta + step[:, 6:], relative)
 
 
 @compiled
 def _displace(step: Array, nodes: Array, relative: Array) -> None:
-    inner, here, between = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4))
+    here, between = np.empty((4, 4)), np.empty((4, 4))
     change, back = np.empty((4, 4)), np.eye(4)
     for k in range(len(nodes)):
-        rigid.exp(step[k, inner:], change)
+        rigid.exp(step[k, :6], change)
         for i in range(4):
             for j in range(4):
                 here[i, j] = nodes[k, i, j]
@@ -154,13 +153,13 @@ def _displace(step: Array, nodes: Array, relative: Array) -> None:
 @compiled
 def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
     """Add to the steps (n, d) the weighted twists that move nodes from poses ``now`` to ``other``, each (n, 4, 4)."""
-    inner, back, between, twist = step.shape[1] - 6, np.empty((4, 4)), np.empty((4, 4)), np.empty(6)
+    back, between, twist = np.empty((4, 4)), np.empty((4, 4)), np.empty(6)
     for k in range(len(now)):
         rigid.inverse(now[k], back)
         rigid.compose(back, other[k], between)
         rigid.log(between, twist)
         for i in range(6):
-            step[k, inner + i] += weight * twist[i]
+            step[k, i] += weight * twist[i]
 
 
 def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
@@ -175,7 +174,7 @@ def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | N
     step = np.zeros((len(now.beta), now.beta.shape[1] + 6))
     for x, shape in latest.items():
         weight = prod((omega**2 - other) / (x - other) for other in latest if other != x)
-        step[:, :-6] += weight * (shape.beta - now.beta)
+        step[:, 6:] += weight * (shape.beta - now.beta)
         _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
     return displaced(now, step)
 
@@ -208,7 +207,6 @@ def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
     residual = linearize(chain, undeformed(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
     bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
     elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
-    step = np.concatenate([np.zeros((1, 6)), blocks.solution(elastic, -residual[:, -6:].ravel()).reshape(-1, 6)])
-    rho = (sp.adjoint(chain.between) @ step[1:, :, None])[..., 0] - step[:-1]
+    rho = elimination.solution(elastic, -residual[:, :6].ravel()).reshape(-1, 6)
     loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))
-    return replace(chain, beams=replace(loaded, inner_preload=-residual[:, :-6]))
+    return replace(chain, beams=replace(loaded, inner_preload=-residual[:, 6:]))

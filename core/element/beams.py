@@ -7,7 +7,7 @@ element whose mass is lumped at the nodes has no such points.
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +83,16 @@ class Beams:
     def inner(self) -> int:
         """Number of internal coordinates of an element: six if it has mass inside, else none."""
         return 6 if len(self.points.element) else 0
+
+
+class OnStrain(NamedTuple):
+    """As ``Pencil``, on (ξ_a, ρ, β) instead of (ξ_a, ξ_b, β)."""
+
+    residual: Array
+    M: Array
+    C: Array
+    remainder: Array
+    spring: Array
 
 
 @dataclass(frozen=True)
@@ -177,7 +187,25 @@ def pencil(
     effects: Effects = ALL_EFFECTS,
     axes: Array | None = None,
 ) -> Pencil:
-    """Assemble residual and matrices of all elements.
+    """Assemble residual and matrices of all elements; arguments and exceptions as for ``on_strain``."""
+    found = on_strain(beams, x, beta, frame, gravity, effects, axes)
+    found.residual[:, :6] -= found.residual[:, 6:12]  # ρ = ξ_b − ξ_a
+    for matrix in found[1:4]:
+        matrix[:, :6] -= matrix[:, 6:12]
+        matrix[:, :, :6] -= matrix[:, :, 6:12]
+    return Pencil(*found)
+
+
+def on_strain(
+    beams: Beams,
+    x: Array,
+    beta: Array,
+    frame: Array,
+    gravity: Array,
+    effects: Effects = ALL_EFFECTS,
+    axes: Array | None = None,
+) -> OnStrain:
+    """Assemble residual and matrices of all elements, on (ξ_a, ρ, β).
 
     Args:
         beams: the elements.
@@ -194,7 +222,8 @@ def pencil(
     if axes is None and beams.points.force.any():
         raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
     n, d = len(x), 12 + beams.inner
-    out = Pencil(np.empty((n, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, d, d)), np.empty((n, 6, 6)))
+    M, C, remainder = np.empty((3, n, d, d))
+    out = OnStrain(np.empty((n, d)), M, C, remainder, np.empty((n, 6, 6)))
     assemble(
         _arrays(beams),
         measures.cardan(beams.law),
@@ -205,11 +234,7 @@ def pencil(
         np.ascontiguousarray(gravity),
         np.zeros((n, 3, 3)) if axes is None else np.ascontiguousarray(axes),
         effects.geometric,
-        out.residual,
-        out.M,
-        out.C,
-        out.remainder,
-        out.spring,
+        *out,
     )
     return out
 

@@ -47,7 +47,7 @@ def strains(law: StrainLawArrays, k: int, eta: Array, beta: Array, strain: Array
     for j in range(6):  # G contains the axial part of Magnus' term, except that of β
         undo[0, j] = 1.0 if j == 0 else 0.0
         r[0] += delta[j] * bow[j]
-    invert(undo)  # near the unit matrix
+    invert(undo, 0)  # near the unit matrix
     apply(undo, r, strain)
     changes, inner_changes = np.zeros(6), np.zeros(6)
     for i in range(6):

@@ -63,7 +63,7 @@ def assemble(
     remainder: Array,
     spring: Array,
 ) -> None:
-    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.Pencil``.
+    """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.OnStrain``.
 
     ``cardan`` is that of ``measures``; ``held`` is None without loads on the points and without components that stay fixed.
     Numba does not compile the branches that None excludes.
@@ -85,28 +85,11 @@ def assemble(
                 sums.f[12 + i] += beams.inner_preload[k, i] + beta[k, i]
                 sums.K[12 + i, 12 + i] += 1.0
         _add_elastic(beams, cardan, k, x[k], eta, back, beta[k], geometric, sums, spring[k])
-        _on_ends(sums.M, M[k])
-        _on_ends(sums.C, C[k])
-        _on_ends(sums.K, remainder[k])
-        for i in range(len(residual[k])):
+        d = residual.shape[1]
+        for i in range(d):
             residual[k, i] = sums.f[i]
-        for i in range(6):
-            residual[k, i] -= sums.f[6 + i]
-
-
-@compiled
-def _on_ends(of_rho: Array, out: Array) -> None:
-    """From (ξ_a, ρ, β) to (ξ_a, ξ_b, β) with ρ = ξ_b − ξ_a."""
-    d = len(out)
-    for i in range(d):
-        for j in range(d):
-            out[i, j] = of_rho[i, j]
-    for i in range(6):
-        for j in range(d):
-            out[i, j] -= of_rho[6 + i, j]
-    for i in range(d):
-        for j in range(6):
-            out[i, j] -= out[i, 6 + j]
+            for j in range(d):
+                M[k, i, j], C[k, i, j], remainder[k, i, j] = sums.M[i, j], sums.C[i, j], sums.K[i, j]
 
 
 @compiled

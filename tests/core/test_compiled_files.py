@@ -2,13 +2,14 @@
 
 import os
 import pickle
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from southwell.core import compiled_files
+from southwell.core import compiled, compiled_files, regular_files
 
 posix = pytest.mark.skipif(os.name == "nt", reason="modes and owners of POSIX")
 
@@ -86,3 +87,26 @@ def test_an_unverified_file_is_not_unpickled(tmp_path: Path) -> None:
     (tmp_path / "f.nbi").write_bytes(pickle.dumps(Trap()))
     assert files.load("key") is None
     assert not (tmp_path / "sprung").exists()
+
+
+def test_compiled_code_is_invalidated_by_a_change(tmp_path: Path) -> None:
+    """A compiled function calls one of another file; when that changes, the caller must be compiled again."""
+    package = tmp_path / "loops"
+    package.mkdir()
+    for module in (compiled, compiled_files, regular_files):
+        shutil.copy(str(module.__file__), package)
+    (package / "__init__.py").touch()
+    (package / "outer.py").write_text(
+        "from . import inner\nfrom .compiled import compiled\n\n@compiled\ndef outer(x):\n    return inner.inner(x) + 1.0\n"
+    )
+
+    def found(expression: str) -> float:
+        (package / "inner.py").write_text(
+            f"from .compiled import compiled\n\n@compiled\ndef inner(x):\n    return {expression}\n"
+        )
+        code = "from loops.outer import outer; print(outer(3.0))"
+        run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+        return float(run.stdout)
+
+    assert [found("2.0 * x"), found("5.0 * x")] == [7.0, 16.0]
+    assert len(list((package / "__pycache__").glob("compiled-*"))) == 1  # the old one is deleted

@@ -17,7 +17,7 @@ from southwell.cases.verify.reference import references
 from southwell.core import solve
 from southwell.core import velocity_transformation as vt
 from southwell.core.blade import Blade
-from southwell.core.chain import as_mechanism, blocks, steady
+from southwell.core.chain import as_mechanism, steady
 from southwell.core.chain.steady import SteadyStateError
 from southwell.core.effects import Effects
 from southwell.core.eigen import UnstableError
@@ -30,6 +30,7 @@ from southwell.core.space import spatial as sp
 from southwell.references.protocol.process import Limits
 from southwell.reports.cli import app as cli
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+from southwell.tests.support.dense import dense
 
 BLADES: dict[str, tuple[Case, Variant]] = {
     variant.name: (case, variant)
@@ -162,7 +163,7 @@ def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
     """Flap and lag do not commute: without the geometric stiffness of the reaction, K of the chain is not symmetric."""
     body = discretize(replace(curved(), root=np.array(ROOTS["both hinges"])), 4)
     state = steady.steady(body, 2.5, np.array([3.0, 5.0, -9.81]))
-    K = blocks.dense(state.pencil.K)
+    K = dense(state.pencil, state.pencil.K)
     assert np.abs(K - K.T).max() < 1e-9 * np.abs(K[:12, :12]).max()
     turned = sp.inverse(state.shape.nodes[0]) @ state.shape.nodes[1]
     assert np.abs(turned[:3, 3]).max() < 1e-14  # it stays on the hinge
