@@ -17,7 +17,7 @@ from .blade import Blade, without_rotary_inertia
 from .chain import as_mechanism
 from .chain.mode_shapes import mode_shapes
 from .chain.pencil import Shape
-from .chain.steady import ORDER, SteadyStateError
+from .chain.steady import SteadyStateError
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
@@ -36,6 +36,7 @@ from .space import spatial as sp
 Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
+_ORDER = 4  # of the extrapolation over speeds
 _CONVERGED = 1e-13  # largest last correction of a steady state, as a fraction of the blade's length (or a radian)
 _BALANCED = 1e-8  # largest distance from the steady state, as a fraction of the blade's length (or a radian)
 
@@ -111,7 +112,7 @@ def sweep(
                 raise
             linear = _about_steady_state(tree, body, omega, effects, {})  # without extrapolation from other speeds
         found = lowest(linear.pencil, count, found)
-        known = dict([*known.items(), (omega**2, linear.corrected)][-ORDER - 1 :])
+        known = dict([*known.items(), (omega**2, linear.corrected)][-_ORDER - 1 :])
         shapes = _shapes(body, linear.about, found.vectors)
         yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 

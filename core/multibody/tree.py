@@ -105,7 +105,9 @@ class Tree:
         inner: (i,) the first of the six internal coordinates of each beam that has them.
         batches: the beams.
         above: (n, n) above[j, k]: link k is on the path from the ground to link j, or is j.
+        beyond: (n, n) beyond[j, k] = 1: link j is a descendant of link k; else 0.
         carries: (b, n) carries[i, k]: coordinate k moves body i.
+        groups: the coordinates that move the same rows of B.
     """
 
     mechanism: Mechanism
@@ -122,17 +124,9 @@ class Tree:
     inner: NDArray[np.intp]
     batches: tuple[Batch, ...]
     above: NDArray[np.bool_]
+    beyond: Array
     carries: NDArray[np.bool_]
-
-    @cached_property
-    def groups(self) -> Groups:
-        """The coordinates that move the same rows of B."""
-        return _groups(self.before, np.append(self.link, self.inner + 5), self.inner)
-
-    @cached_property
-    def beyond(self) -> Array:
-        """(n, n) beyond[j, k] = 1: link j is a descendant of link k; else 0."""
-        return self.above.astype(float) - np.eye(len(self.above))
+    groups: Groups
 
     @cached_property
     def _number(self) -> dict[str, int]:
@@ -223,7 +217,8 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         if before[j] >= 0:
             above[j] = above[before[j]]
         above[j, j] = True
-    link = np.array([k for k, _ in links], dtype=np.intp)
+    link, on = (np.array(x, dtype=np.intp) for x in ([k for k, _ in links], before))
+    inside = np.array([j for j in inner if j >= 0], dtype=np.intp)
     _check_axes(
         mechanism,
         {
@@ -235,7 +230,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     return Tree(
         mechanism=mechanism,
         coordinates=tuple(coordinates),
-        before=np.array(before, dtype=np.intp),
+        before=on,
         fixed=np.array(fixed).reshape(n, 4, 4),
         screw=np.array(screw).reshape(n, 6),
         bodies=tuple(bodies),
@@ -244,10 +239,12 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertia=np.array(inertias),
         welds=tuple(welds),
         weld_names=tuple(j.name for j in cuts),
-        inner=np.array([j for j in inner if j >= 0], dtype=np.intp),
+        inner=inside,
         batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
         above=above,
+        beyond=above.astype(float) - np.eye(n),
         carries=np.vstack([above, np.zeros((1, n), bool)])[link],
+        groups=_groups(on, np.append(link, inside + 5), inside),
     )
 
 
