@@ -31,7 +31,7 @@ OMEGA = 10.0
 SWEEP = tuple(float(v) for v in np.linspace(0.0, 30.0, 31))
 ELEMENTS, COUNT = 50, 10
 CODES = ("pinocchio", "exudyn-ancf", "exudyn-tree", "scikit-fem", "pybmodes")
-SIZES = (50, 500, 5000)
+SIZES = (50, 500, 5000, 100_000)
 ROUNDS, SWEEPS = 7, 3
 EXACT = "exact-beam"
 

@@ -41,7 +41,8 @@ def estimate(f: Array, order: int) -> Estimate:
     """Extrapolate frequencies (3, m) of meshes each twice as fine as the previous one, with a theoretical ``order``.
 
     Where the observed order agrees with the theoretical one, the error of the finest mesh is Richardson's estimate, and that
-    of the extrapolated value is bounded by its change from the extrapolation of the first two meshes. Otherwise the finest
+    of the extrapolated value is the larger of that estimate, since three meshes may have the theoretical order by chance, and
+    the change from the extrapolation of the first two meshes. Otherwise the finest
     value is not extrapolated, and the lower of the two orders is used; for a sequence that does not converge, the
     uncertainty is three times its spread.
     """
@@ -57,7 +58,7 @@ def estimate(f: Array, order: int) -> Estimate:
     spread = _WARY * np.maximum(np.abs(before), np.abs(last))
     wary = np.where(converging, _WARY * np.abs(last) / (2.0**slow - 1.0), spread)
     values = np.where(firm, second, f[2])
-    of_values = np.where(firm, np.abs(second - first), wary) / f[2]
+    of_values = np.where(firm, np.maximum(np.abs(second - first), np.abs(last) / gain), wary) / f[2]
     of_finest = np.where(firm, _FIRM * np.abs(last) / gain + np.abs(second - first), wary) / f[2]
     return Estimate(values, *(np.maximum(u, _CHANCE * np.maximum.accumulate(u)) for u in (of_values, of_finest)))
 

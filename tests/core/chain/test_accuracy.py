@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.campbell.sweep import Named
+from southwell.cases.input.library import load
 from southwell.cases.input.schema import Compare
 from southwell.cases.verify import core_solver
 from southwell.core import solve
@@ -147,6 +148,23 @@ def test_richardsons_extrapolation_of_a_known_sequence() -> None:
         found = accuracy.estimate(f, 4)
         assert abs(found.values[0] - 1.0) <= found.of_values[0] + accuracy.FLOOR < found.of_finest[0]
         assert abs(f[2, 0] - 1.0) <= found.of_finest[0] < 5 * abs(f[2, 0] - 1.0)
+
+
+def test_the_theoretical_order_by_chance_does_not_make_the_extrapolation_exact() -> None:
+    """Changes by 16 to 1, as of fourth order, of a sequence that then converges faster: half the correction is wrong."""
+    c = 1e-8
+    found = accuracy.estimate(1.0 + c * np.array([[0.5 + 255.0], [0.5 + 15.0], [0.5]]), 4)
+    assert abs(found.values[0] - 1.0) == pytest.approx(0.5 * c, rel=1e-6)
+    assert abs(found.values[0] - 1.0) <= found.of_values[0] < found.of_finest[0]
+
+
+@pytest.mark.parametrize("omega", [0.0, 2 * np.pi])
+def test_the_uncertainty_where_the_order_passes_the_theoretical_one(omega: float) -> None:
+    """The elements of this blade converge with order 3, 4, 5 and 6 as they are halved."""
+    blade = load("windpact-1.5").variants[0].blade
+    rough, fine = (solve.modes(blade, omega, count=6, accuracy=a) for a in (1e-6, 1e-10))
+    assert rough.elements < fine.elements
+    assert (np.abs(rough.frequencies / fine.frequencies - 1.0) <= rough.uncertainty + fine.uncertainty).all()
 
 
 @pytest.mark.parametrize("f", [(1.0, 1.5, 1.25), (1.0, 1.1, 1.3)], ids=["alternating", "diverging"])
