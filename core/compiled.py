@@ -97,7 +97,7 @@ event.register("numba:compile", _FirstUse())
 def compiled(f: F) -> F:
     """Compile ``f`` to machine code: arrays must be C-contiguous; division by zero gives inf or nan, as in numpy."""
     folder = _folder()
-    if folder is None:
+    if folder is None or config.DISABLE_JIT:  # type: ignore[attr-defined]
         return cast(F, numba.njit(f, **_HOW))
     before = config.CACHE_DIR  # type: ignore[attr-defined]
     config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
