@@ -85,7 +85,7 @@ class Fault:
         seams: the replaced objects.
         trial: the case to run; None for counting, history and gate, whose canaries are run.
         blinds: name of a fault that must be caught and, with this fault, no longer is.
-        fast: whether every run executes it.
+        fast: whether every run includes it.
     """
 
     name: str

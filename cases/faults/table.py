@@ -1,4 +1,4 @@
-"""All seeded faults by name, those that every run executes, and the task that executes some of them."""
+"""All seeded faults by name, those that every run includes, and the task that executes some of them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
