@@ -56,9 +56,7 @@ class Store:
         try:
             self.base = sqlite3.connect(file, timeout=WAITING, isolation_level=None, check_same_thread=False)
             os.chmod(file, 0o600)
-            self.base.execute("pragma journal_mode = wal")
-            self.base.execute("pragma synchronous = normal")
-            self.base.execute(SCHEMA)
+            _prepare(self.base)
         except sqlite3.Error as error:
             raise OSError(f"{file}: {error}") from error
 
@@ -108,6 +106,21 @@ class Store:
     def close(self) -> None:
         """Close the file."""
         self.base.close()
+
+
+def _prepare(base: sqlite3.Connection) -> None:
+    """Set the mode and make the table; SQLite does not wait by itself where two processes set the mode of a new file."""
+    latest = time.monotonic() + WAITING
+    while True:
+        try:
+            base.execute("pragma journal_mode = wal")
+            base.execute("pragma synchronous = normal")
+            base.execute(SCHEMA)
+            return
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > latest:
+                raise
+            time.sleep(0.01)
 
 
 def _intact(checksum: bytes, value: bytes) -> bool:

@@ -28,6 +28,12 @@ def test_several_writers_lose_nothing(file: Path) -> None:
     assert one.count == 200
 
 
+def test_a_new_file_is_opened_by_many_at_once(tmp_path: Path) -> None:
+    for n in range(20):
+        with ThreadPoolExecutor(8) as pool:
+            list(pool.map(lambda _, n=n: Store(tmp_path / f"cache{n}" / store.NAME).close(), range(8)))
+
+
 def test_a_damaged_answer_is_found_and_removed(file: Path) -> None:
     kept = Store(file)
     kept.put("a", "x", b"1.0")
