@@ -152,6 +152,7 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     return _quotients(p, x)[0]
 
 
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
 def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
     rows = x.reshape(-1, x.shape[2])
@@ -162,6 +163,7 @@ def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
 
 
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # as in ``_quotients``
 def solve_error(a: Operator, v: Array) -> float:
     """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2

@@ -466,6 +466,7 @@ def test_an_adapter_that_cannot_be_imported_is_told_in_one_line(
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("modulus", ["1e-300", "1e-20"])
 @pytest.mark.parametrize("command", ["modes", "campbell"])
 def test_stiffness_out_of_all_proportion_is_told_in_one_line(
