@@ -178,24 +178,6 @@ def massless(beams: Beams) -> Beams:
     return replace(beams, points=NO_POINTS)
 
 
-def pencil(
-    beams: Beams,
-    x: Array,
-    beta: Array,
-    frame: Array,
-    gravity: Array,
-    effects: Effects = ALL_EFFECTS,
-    axes: Array | None = None,
-) -> Pencil:
-    """Assemble residual and matrices of all elements; arguments and exceptions as for ``on_strain``."""
-    found = on_strain(beams, x, beta, frame, gravity, effects, axes)
-    found.residual[:, :6] -= found.residual[:, 6:12]  # ρ = ξ_b − ξ_a
-    for matrix in found[1:4]:
-        matrix[:, :6] -= matrix[:, 6:12]
-        matrix[:, :, :6] -= matrix[:, :, 6:12]
-    return Pencil(*found)
-
-
 def on_strain(
     beams: Beams,
     x: Array,
@@ -237,6 +219,15 @@ def on_strain(
         *out,
     )
     return out
+
+
+def pencil(found: OnStrain) -> Pencil:
+    """The residual and matrices on (ξ_a, ξ_b, β); the arrays of ``found`` are changed."""
+    found.residual[:, :6] -= found.residual[:, 6:12]  # ρ = ξ_b − ξ_a
+    for matrix in found[1:4]:
+        matrix[:, :6] -= matrix[:, 6:12]
+        matrix[:, :, :6] -= matrix[:, :, 6:12]
+    return Pencil(*found)
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..element.beams import Pencil, on_ends
-from ..element.beams import pencil as beam_pencil
+from ..element import beams as bm
 from ..element.measures import response
 from ..space import spatial as sp
 from ..space.inertia import transformed
@@ -68,7 +67,7 @@ class _Sum:
         self.blocks: list[tuple[NDArray[np.intp], NDArray[np.intp], tuple[Array, Array, Array]]] = []
         self.springs: list[tuple[NDArray[np.intp], Array]] = []
 
-    def add(self, ends: NDArray[np.intp], pencil: Pencil) -> None:
+    def add(self, ends: NDArray[np.intp], pencil: bm.Pencil) -> None:
         """Add wrenches (e, d) and matrices (e, d, d) of e elements on d/6 rows ``ends`` each, without those on the ground."""
         self.springs.append((ends[:, :2], pencil.spring))
         for i in range(ends.shape[1]):
@@ -149,11 +148,11 @@ def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Arr
     return x, np.concatenate([k.Y, still])[body], np.concatenate([k.A, still])[body]
 
 
-def _between(w: Array, k: Array, c: Array) -> Pencil:
+def _between(w: Array, k: Array, c: Array) -> bm.Pencil:
     """w on b and −w on a, both at one point in one set of axes: with ρ = ξ_b − ξ_a, δw = k ρ + c ρ̇ + ξ_a ×* w."""
-    drag = on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # follows b: −ρ ×* w
-    damping = on_ends(c[None], c[None])
-    return Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
+    drag = bm.on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # follows b: −ρ ×* w
+    damping = bm.on_ends(c[None], c[None])
+    return bm.Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
 
 
 def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
@@ -213,13 +212,14 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     x = sp.inverse(xa) @ xb
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
     load_axes = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
-    p = beam_pencil(batch.beams, x, beta, frame, fall, axes=np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes)
+    axes = np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes
+    p = bm.pencil(bm.on_strain(batch.beams, x, beta, frame, fall, axes=axes))
     M, C, K = p.M, p.C, p.remainder
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]
         d = np.swapaxes(E, -1, -2) @ batch.damping @ E
         C = C.copy()
-        C[:, :12, :12] += on_ends(d, d)
+        C[:, :12, :12] += bm.on_ends(d, d)
     # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
     turn, local = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
     turn[:, :6, :6] = turn[:, 6:12, 6:12] = sp.ad(frame)
@@ -230,7 +230,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
     spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
     residual = (back @ p.residual[..., None])[..., 0]
-    out.add(ends, Pencil(residual, back @ M @ local, back @ C @ local, back @ K @ local, spring))
+    out.add(ends, bm.Pencil(residual, back @ M @ local, back @ C @ local, back @ K @ local, spring))
 
 
 def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> None:
