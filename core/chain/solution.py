@@ -31,7 +31,7 @@ class Solved:
 
 @dataclass
 class MeshSolver:
-    """A chain, its steady shapes at previous speeds, and the start of a basis from the modes at the last one.
+    """A chain, its ``steady.coordinates`` at the last values of Ω², and the start of a basis from the modes at the last speed.
 
     ``restarts`` counts the speeds at which that basis missed a mode and the modes were computed again without it.
     """
@@ -40,14 +40,14 @@ class MeshSolver:
     count: int
     effects: Effects
     gravity: Array
-    known: list[tuple[float, Shape]] = field(default_factory=list)
+    known: dict[float, Array] = field(default_factory=dict)
     start: Start | None = None
     restarts: int = 0
 
     def at(self, omega: float, near: Shape | None = None) -> Solved:
         """Solve at one speed (rad/s), starting from the shapes at previous speeds or else from the shape ``near``."""
         begun, body = time.perf_counter(), self.body
-        guess = steady.extrapolate(self.known, omega)
+        guess = steady.extrapolate(body, self.known, omega)
         try:
             state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
         except SteadyStateError as error:
@@ -61,7 +61,8 @@ class MeshSolver:
                 raise _free_hinge(omega) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
         self.start = found.start
-        self.known = [*self.known[-steady.ORDER :], (omega, state.shape)]
+        self.known.pop(omega**2, None)  # the latest is the last one
+        self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])
         shapes = mode_shapes(body, state.shape, pencil.on_nodes(state.pencil, found.vectors))
         strain = steady.largest_strain(body, state.shape)
         seconds = time.perf_counter() - begun

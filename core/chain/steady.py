@@ -1,8 +1,7 @@
 """Steady state of a rotating chain by Newton's method, and its extrapolation from earlier speeds."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,9 @@ Array = NDArray[np.float64]
 
 _MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: accept a stalled step; any step
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a step; of the one after it
 _MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
-ORDER = 3  # of the extrapolation over speeds
+_DEGREE, LATEST = 3, 8  # of the extrapolation over speeds: degree, and number of speeds
 _MIN_RAMP = 2.0**-8
 
 
@@ -81,8 +80,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
 
     The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
     nodes' poses, below which a step is meaningless. The size of a step is not a criterion: the steps of an almost
-    inextensible blade are tiny. A step below the rounding energy ends the iteration if the next one would be negligible by
-    quadratic convergence, or if it is hardly smaller than the last: rounding may be much less than its bound.
+    inextensible blade are tiny.
     """
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.nan  # energy of the last step
@@ -99,18 +97,32 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         change = float(np.abs(step[:, :6] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
-        energy, rounding = abs(float(relative @ p.residual)), rounding_energy(p, shape)
-        ratio = energy / before
-        following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
-        settled = energy <= rounding and following <= _CONVERGED_FACTOR * rounding
-        stalled = energy <= _STALL_FACTOR * rounding and energy > _MIN_REDUCTION * before
-        if energy <= _CONVERGED_FACTOR * rounding or settled or stalled:
+        energy = abs(float(relative @ p.residual))
+        if _settled(energy, before, rounding_energy(p, shape)):
             if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
                 raise SteadyStateError("elements are deformed beyond the range of their strain measure")
             return Steady(displaced(shape, step), p)
         step *= min(1.0, 0.5 / max(change, 0.5))
         shape, before = displaced(shape, step), energy
     raise SteadyStateError("no convergence")
+
+
+def _settled(energy: float, before: float, rounding: float) -> bool:
+    """Whether a step is the last one.
+
+    It is if its energy is about that of rounding errors, which may also be much less than their bound ``rounding``: if it is
+    the first step, if it is hardly smaller than the last one, or if the next one would be negligible by quadratic convergence.
+
+    Args:
+        energy: of the step.
+        before: of the last step; nan for the first one.
+        rounding: bound of the energy of rounding errors.
+    """
+    ratio = energy / before
+    if not ratio <= _MIN_REDUCTION:
+        return energy <= _STALL_FACTOR * rounding
+    following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
+    return energy <= rounding and following <= _CONVERGED_FACTOR * rounding
 
 
 def rounding_energy(p: ChainPencil, shape: Shape) -> float:
@@ -150,33 +162,51 @@ def _displace(step: Array, nodes: Array, relative: Array) -> None:
         rigid.inverse(change, back)
 
 
+def coordinates(chain: Chain, shape: Shape) -> Array:
+    """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, and β."""
+    out = np.empty((len(shape.beta), 6 + shape.beta.shape[1]))
+    _twists(chain.between, shape.relative, out)
+    out[:, 6:] = shape.beta
+    return out
+
+
 @compiled
-def _add_step(weight: float, now: Array, other: Array, step: Array) -> None:
-    """Add to the steps (n, d) the weighted twists that move nodes from poses ``now`` to ``other``, each (n, 4, 4)."""
-    back, between, twist = np.empty((4, 4)), np.empty((4, 4)), np.empty(6)
-    for k in range(len(now)):
-        rigid.inverse(now[k], back)
-        rigid.compose(back, other[k], between)
-        rigid.log(between, twist)
-        for i in range(6):
-            step[k, i] += weight * twist[i]
+def _twists(poses: Array, others: Array, out: Array) -> None:
+    back, between = np.empty((4, 4)), np.empty((4, 4))
+    for k in range(len(poses)):
+        rigid.inverse(poses[k], back)
+        rigid.compose(back, others[k], between)
+        rigid.log(between, out[k, :6])
 
 
-def extrapolate(known: Sequence[tuple[float, Shape]], omega: float) -> Shape | None:
-    """Extrapolate the shape to ``omega`` (rad/s) by a polynomial in Ω² through the last few; None if none is known."""
-    latest: dict[float, Shape] = {}
-    for speed, shape in reversed(known):
-        if len(latest) <= ORDER:
-            latest.setdefault(speed**2, shape)
-    if not latest:
+@compiled
+def _bend(between: Array, coordinates: Array, nodes: Array, relative: Array) -> None:
+    """Fill the poses of the nodes, from the first on, and the relative ones, from ``coordinates``."""
+    change = np.empty((4, 4))
+    for k in range(len(between)):
+        rigid.exp(coordinates[k, :6], change)
+        rigid.compose(between[k], change, relative[k])
+        rigid.compose(nodes[k], relative[k], nodes[k + 1])
+
+
+def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Shape | None:
+    """Extrapolate the shape to ``omega`` (rad/s) from the ``coordinates`` at other values of Ω²; None if none are
+    known.
+
+    The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
+    poses in the hub's axes, of which strains are small differences, these errors would be far larger.
+    """
+    if not known:
         return None
-    now = next(iter(latest.values()))
-    step = np.zeros((len(now.beta), now.beta.shape[1] + 6))
-    for x, shape in latest.items():
-        weight = prod((omega**2 - other) / (x - other) for other in latest if other != x)
-        step[:, 6:] += weight * (shape.beta - now.beta)
-        _add_step(weight, now.nodes[1:], shape.nodes[1:], step)
-    return displaced(now, step)
+    at = np.array(list(known)) - omega**2
+    powers = (at / (np.abs(at).max() or 1.0))[:, None] ** np.arange(min(_DEGREE + 1, len(at)))
+    q, r = np.linalg.qr(powers)
+    weights = q @ np.linalg.solve(r.T, np.eye(len(r))[0])  # of the value at zero
+    found = np.einsum("k,kij->ij", weights, np.array(list(known.values())))
+    nodes, relative = np.empty_like(chain.nodes), np.empty_like(chain.between)
+    nodes[0] = chain.nodes[0]
+    _bend(chain.between, found, nodes, relative)
+    return Shape(nodes, found[:, 6:], relative)
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:

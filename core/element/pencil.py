@@ -161,6 +161,8 @@ def _add_inertia(
         change[i] = eta[i] - beams.law.eta[k, i]
     for p in range(per):
         point = per * k + p
+        if held is None and beams.mass[point, 0, 0] == 0.0:
+            continue  # a copy that ``beams.alike`` added
         shape = beams.shape[point]
         ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
         rigid.exp(zeta, from_point)
