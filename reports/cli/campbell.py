@@ -33,6 +33,7 @@ from ..campbell.cover import Origin
 from ..campbell.tables import Sheet
 from ..shared import html as as_html
 from ..shared import not_used
+from ..shared import pdf as as_pdf
 from ..shared.console import Watch, output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
@@ -131,7 +132,7 @@ def command(
     html
         Also write campbell.html: one file with its figures.
     pdf
-        Also write campbell.pdf; requires the extra `pdf` (WeasyPrint).
+        Also write campbell.pdf; requires the extra `pdf` (Typst).
     """
     if strict and operating is None:
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")
@@ -178,10 +179,10 @@ def command(
             if html:
                 written = (*written, as_html.write(written[0]))
             if pdf:
-                written = (*written, as_html.pdf(written[0]))
+                written = (*written, as_pdf.write(written[0]))
         except OSError as error:
             raise _unwritable(out, error.strerror) from error
-        except as_html.PdfError as error:
+        except as_pdf.PdfError as error:
             raise UsageError(str(error)) from error
         names = ", ".join(path.name for path in written)
         output().print(f"{folder}: {names}", markup=False, soft_wrap=True)

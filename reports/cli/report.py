@@ -23,23 +23,24 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     html
         Also write report.html, one file with its figures.
     pdf
-        Also write report.pdf; requires the extra `pdf` (WeasyPrint).
+        Also write report.pdf; requires the extra `pdf` (Typst).
     """
     run = found(folder if folder.is_dir() else folder / RESULTS)
     with writing(folder):
         written = show(run, folder)
     if written is None:
         return INCOMPLETE
-    if html or pdf:
+    if html:
         from ..shared import html as page
 
-        if html:
-            print(page.write(written))
-        if pdf:
-            try:
-                print(page.pdf(written))
-            except page.PdfError as error:
-                raise UsageError(str(error)) from error
+        print(page.write(written))
+    if pdf:
+        from ..shared import pdf as paper
+
+        try:
+            print(paper.write(written))
+        except paper.PdfError as error:
+            raise UsageError(str(error)) from error
     return INCOMPLETE if run.unfinished else PASSED
 
 

@@ -23,6 +23,7 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -364,7 +365,7 @@ def _shown(run, folder: Path) -> None:
     from southwell.reports.ci import junit
     from southwell.reports.cli import report
     from southwell.reports.dashboard import data
-    from southwell.reports.shared import html, summary
+    from southwell.reports.shared import html, pdf, summary
     from southwell.reports.shared.log_safe import LogSafe
     from southwell.reports.verification import report as matrix_report
 
@@ -372,6 +373,8 @@ def _shown(run, folder: Path) -> None:
     page = html.render(text, folder)
     assert "<img" not in page
     assert "<script" not in page
+    if find_spec("typst"):
+        pdf.render(text, folder)
     junit.render(run)
     json.dumps([data.first(run, "x"), *(data.of_case(run, case) for case in summary.cases(run))], allow_nan=False)
     shown = io.StringIO()

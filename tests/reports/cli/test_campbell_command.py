@@ -318,10 +318,25 @@ def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys:
     assert "positive with the leading edge downwind" in page
 
 
-def test_without_weasyprint_the_page_is_kept(
+def test_every_table_of_the_page_is_in_the_pdf(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With all sections that the page can have."""
+    from ...support import printed
+
+    points = tmp_path / "rig.csv"
+    points.write_text("speed [rpm],measured [Hz],mode\n100,9.9,1\n")
+    line = f"campbell {beam} --rpm 0,50,100 --modes 3 --elements 6 --operating 20:90 --against park-cantilever"
+    status, shown, err = southwell(f"{line} --add rig={points} --data-uncertainty 1% --pdf -o {tmp_path}", capsys)
+    assert status == 0, err
+    assert "campbell.pdf" in shown
+    page = (tmp_path / "campbell.md").read_text(encoding="utf-8")
+    assert page.count("\n## ") > 8
+    assert printed.missing(page, printed.read(tmp_path / "campbell.pdf")) == []
+
+
+def test_without_typst_the_page_is_kept(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    monkeypatch.setitem(sys.modules, "typst", None)
     status, _, err = southwell(f"campbell {beam} --rpm 0,50 --modes 1 --elements 4 --pdf -o {tmp_path}", capsys)
     assert status == 2
     assert "pip install '.[pdf]'" in err

@@ -1,6 +1,5 @@
-"""The report as one HTML file: nothing outside it is needed, links lead somewhere, words stay words; and as a PDF."""
+"""The report as one HTML file: nothing outside it is needed, links lead somewhere, words stay words."""
 
-import importlib.util
 import re
 import subprocess
 import sys
@@ -14,7 +13,7 @@ import pytest
 
 from southwell.cases.judge.results import Setting, write
 from southwell.reports.cli import arguments
-from southwell.reports.shared import html, summary
+from southwell.reports.shared import colours, html, summary
 from southwell.reports.verification import report as matrix_report
 
 from ...support import samples
@@ -95,10 +94,10 @@ def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path)
         name = verdict.replace(" ", "-")
         cells = re.findall(rf'<td class="{name}">(.*?)</td>', text)
         assert cells
-        assert all(re.match(rf"([\d.]+<br>)?{re.escape(sign)}( |&nbsp;)", cell) for cell in cells)
+        assert all(re.match(rf"([\d.]+<br>)?{re.escape(sign)}[ \u00a0]", cell) for cell in cells)
         assert f"td.{name}" in html.STYLE, verdict
     plain = re.findall(r"<td>(.*?)</td>", text)
-    below = rf"(^|<br>)[{re.escape(''.join(html.CLASSES))}]( |&nbsp;)"
+    below = rf"(^|<br>)[{re.escape(''.join(colours.NAMES))}][ \u00a0]"
     assert [cell for cell in plain if re.search(below, cell)] == [], "also where a frequency stands above the verdict"
 
 
@@ -131,20 +130,3 @@ def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
     assert not [tag for tag, _ in page.tags if tag == "script"]
     assert all(source.startswith("data:image/svg+xml,") for source in page.of("img", "src"))
     assert not [name for _, given in page.tags for name in given if name.startswith("on")]
-
-
-@pytest.mark.slow
-def test_a_pdf_or_what_is_missing_for_it(folder: Path) -> None:
-    done = report(str(folder), "--pdf")
-    if importlib.util.find_spec("weasyprint"):
-        assert done.returncode == 0, done.stderr
-        assert (folder / "report.pdf").read_bytes().startswith(b"%PDF-")
-    else:
-        assert done.returncode == 2
-        assert "pip install '.[pdf]'" in done.stderr
-
-
-def test_without_weasyprint_it_says_what_to_install(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "weasyprint", None)
-    with pytest.raises(html.PdfError, match=r"pip install '\.\[pdf\]'"):
-        html.pdf(matrix_report.write(samples.run(), folder))

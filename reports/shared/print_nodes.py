@@ -1,0 +1,143 @@
+"""A report as nested data for ``print.typ``, which lays it out: text is never part of Typst's code."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+from markdown_it.tree import SyntaxTreeNode
+
+from . import columns
+from .document import FOLD, Document, figure
+
+Node = dict[str, Any]
+
+WIDTH = (297 - 24) / 25.4 * 72
+"""Width of the page between its margins, points."""
+
+SIZE, PADDING = 6.6, 4.5
+"""Font size of tables, and empty space of their cells, left and right together, points."""
+
+LINES = 40
+"""Rows that may have more lines than this may be broken, since they could be higher than a page."""
+
+LONGEST = {"regular": 40, "bold": 40, "mono": 110}
+"""Longest words in characters; longer ones may be broken anywhere. Half the width of the page; of code, three quarters."""
+
+
+def nodes(document: Document, folder: Path) -> list[Node]:
+    """The blocks of a report; figures are read from ``folder``.
+
+    Raises:
+        NotImplementedError: if there is no layout for a token.
+        OSError: if a figure cannot be read.
+    """
+    tree = SyntaxTreeNode(document.tokens)
+    ids = {str(node.attrs["id"]) for node in tree.walk() if node.type == "heading"}
+    return _blocks(tree, partial(_inline, ids=ids, folder=folder))
+
+
+Inline = Callable[[SyntaxTreeNode], Node]
+
+
+def _blocks(parent: SyntaxTreeNode, inline: Inline) -> list[Node]:
+    return [block for node in parent.children for block in _block(node, inline)]
+
+
+def _block(node: SyntaxTreeNode, inline: Inline) -> Iterator[Node]:
+    """The block of a token; none of the end of a collapsible section."""
+    kind = node.type
+    if kind == "heading":
+        yield {"kind": kind, "level": int(node.tag[1:]), "id": node.attrs["id"], "body": _text(node, inline)}
+    elif kind == "paragraph":
+        follows = node.next_sibling is not None and node.next_sibling.type == "table"
+        yield {"kind": "span" if node.hidden else kind, "sticky": follows, "body": _text(node, inline)}
+    elif kind in ("bullet_list", "ordered_list"):
+        items = [_blocks(item, inline) for item in node.children]
+        yield {"kind": kind, "start": node.attrs.get("start", 1), "items": items}
+    elif kind in ("fence", "code_block"):
+        yield {"kind": "code", "text": _broken(node.content.rstrip("\n"), "mono")}
+    elif kind == "table":
+        yield _table(node, inline)
+    elif kind == "blockquote":
+        yield {"kind": kind, "body": _blocks(node, inline)}
+    elif kind == "hr":
+        yield {"kind": kind}
+    elif kind == "html_block" and (found := FOLD.fullmatch(node.content.rstrip())):
+        if found[1] is not None:
+            yield {"kind": "summary", "text": unescape(found[1])}
+    else:
+        raise NotImplementedError(f"no layout in print for {kind}: add it to {__name__}")
+
+
+def _text(parent: SyntaxTreeNode, inline: Inline) -> list[Node]:
+    """The contents of a heading, paragraph or table cell."""
+    return [inline(child) for outer in parent.children for child in outer.children]
+
+
+def _inline(node: SyntaxTreeNode, ids: set[str], folder: Path) -> Node:
+    kind = node.type
+    if kind == "text":
+        return {"kind": kind, "text": _broken(node.content, "regular")}
+    if kind == "code_inline":
+        return {"kind": kind, "text": _broken(node.content, "mono")}
+    if kind == "softbreak":
+        return {"kind": "text", "text": " "}
+    if kind in ("hardbreak", "html_inline"):  # the only HTML is a line break
+        return {"kind": "break"}
+    if kind == "image":
+        found = figure(str(node.attrs["src"]), folder)
+        return {"kind": "em", "body": _children(node, ids, folder)} if found is None else _figure(node, found)
+    if kind in ("em", "strong", "link"):
+        body, to = _children(node, ids, folder), str(node.attrs.get("href", ""))
+        if kind == "link" and to.startswith("#"):
+            return {"kind": "reference" if to[1:] in ids else "span", "to": to[1:], "body": body}
+        return {"kind": kind if to or kind != "link" else "span", "to": to, "body": body}
+    raise NotImplementedError(f"no layout in print for {kind}: add it to {__name__}")
+
+
+def _children(node: SyntaxTreeNode, ids: set[str], folder: Path) -> list[Node]:
+    return [_inline(child, ids, folder) for child in node.children]
+
+
+def _figure(node: SyntaxTreeNode, svg: str) -> Node:
+    return {"kind": "figure", "svg": svg, "alt": node.content}
+
+
+def _table(table: SyntaxTreeNode, inline: Inline) -> Node:
+    rows = [row for part in table.children for row in part.children]
+    cells = [[_text(cell, inline) for cell in row.children] for row in rows]
+    pieces = [
+        [list(_pieces(text, _face(cell))) for cell, text in zip(row.children, texts, strict=True)]
+        for row, texts in zip(rows, cells, strict=True)
+    ]
+    across, size = columns.widths(pieces, SIZE, PADDING, WIDTH)
+    body = [
+        {"verdict": cell.attrs.get("class", ""), "high": high, "body": text}
+        for row, texts, measured in zip(rows[1:], cells[1:], pieces[1:], strict=True)
+        for high in [columns.lines(measured, across, size, PADDING) > LINES]
+        for cell, text in zip(row.children, texts, strict=True)
+    ]
+    return {"kind": "table", "size": size, "widths": across, "head": cells[0], "cells": body}
+
+
+def _face(cell: SyntaxTreeNode) -> str:
+    return "bold" if cell.type == "th" or cell.attrs.get("class") == "fail" else "regular"
+
+
+def _pieces(nodes: Sequence[Node], face: str) -> Iterator[tuple[str, str]]:
+    """The text of a cell for its measurement."""
+    for node in nodes:
+        if node["kind"] == "break":
+            yield "\n", face
+        elif "text" in node:
+            yield node["text"], "mono" if node["kind"] == "code_inline" else face
+        else:
+            yield from _pieces(node.get("body", ()), "bold" if node["kind"] == "strong" else face)
+
+
+def _broken(text: str, face: str) -> str:
+    """Text with zero-width spaces in overlong words, such as paths and digests, which would leave the page."""
+    return re.sub(rf"(\S{{{LONGEST[face]}}})(?=\S)", "\\1\u200b", text)
