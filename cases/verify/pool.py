@@ -16,6 +16,8 @@ from time import sleep
 from types import FrameType
 from typing import Any, ParamSpec, TypeVar
 
+from ...references.protocol import launch
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -96,6 +98,7 @@ def _begin(scratch: Path | None) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    launch.keep()
     Thread(target=_follow_parent, daemon=True).start()
 
 
