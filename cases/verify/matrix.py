@@ -114,7 +114,6 @@ def run(
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
-        split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget and parts]
         on_progress(Progress(0, total, _running(pending)))
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
@@ -129,6 +128,9 @@ def run(
                 else:
                     for column in task.columns:
                         pending[executor.submit(column, speeds, answer[column.effects])] = replace(task, column=column)
+                if parts and not split and all(t.column for t in pending.values()):
+                    # after all columns: they are short, so that no worker is idle at the end
+                    split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]

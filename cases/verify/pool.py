@@ -16,6 +16,8 @@ from time import sleep
 from types import FrameType
 from typing import Any, ParamSpec, TypeVar
 
+from ...references.protocol import launch
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -23,6 +25,7 @@ SAFE_PATH = "PYTHONSAFEPATH"
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
+_working = False
 _leaving = False
 _orphaned = False
 
@@ -40,7 +43,7 @@ class Pool(ProcessPoolExecutor):
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """See ``Executor``. A task that is pending when the pool stops is not started."""
-        with _safe_path():  # processes start when they are first needed
+        with _safe_path(), _held():  # processes start when they are first needed
             return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
 
     def stop(self) -> None:
@@ -48,7 +51,7 @@ class Pool(ProcessPoolExecutor):
         for child in active_children():
             if child.pid is not None:
                 with suppress(ProcessLookupError):  # it has just ended
-                    os.kill(child.pid, signal.SIGINT)
+                    os.kill(child.pid, signal.SIGTERM)  # ends a process silently that is still starting
         self.shutdown(wait=True, cancel_futures=True)
 
 
@@ -78,12 +81,24 @@ def _safe_path() -> Iterator[None]:
             os.environ[SAFE_PATH] = before
 
 
+@contextmanager
+def _held() -> Iterator[None]:
+    """Let processes started meanwhile take an interrupt only when they are ready, where it is no traceback."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _begin(scratch: Path | None) -> None:
     os.environ.pop(SAFE_PATH, None)  # meant for this process, not for processes started by foreign codes
     if scratch:
         os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    launch.keep()
     Thread(target=_follow_parent, daemon=True).start()
 
 
@@ -99,14 +114,21 @@ def _follow_parent() -> None:
 
 
 def _leave(number: int, frame: FrameType | None) -> None:
-    """Unwind the running task once (a wait for a foreign code kills that code); without a parent, at every signal."""
+    """Unwind the running task once (a wait for a foreign code kills that code); without a parent, at every signal.
+
+    Before the first task the executor would log the exception, so the process ends at once.
+    """
     global _leaving
+    if not _working:
+        os._exit(128 + number)
     if _orphaned or not _leaving:
         _leaving = True
         raise SystemExit(128 + number)
 
 
 def _unless_leaving(fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    global _working
+    _working = True
     if _leaving:
         raise SystemExit(128 + signal.SIGINT)
     try:

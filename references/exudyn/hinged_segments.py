@@ -8,6 +8,9 @@ and then rotates about them, where these are free. This is a lumped model of sec
 The hinge has the position and axes of its section, so the line may be curved. Its 6×6 compliance is the integral of the
 sections' compliances, each rotated into the axes of the hinge, so strains may couple.
 
+Elements end where properties have kinks (see ``reference_line.element_ends``). Steady tension T makes a boundary layer of
+thickness √(EI/T) at a clamped root; the elements of a blade without kinks are shorter there.
+
 All joints of a hinge except the last rotation are split in two halves, before and after it. A stretched hinge then
 rotates at its middle, and the order of finite rotations does not matter. With all joints on one side the model would be
 of first order.
@@ -17,12 +20,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
+from scipy import sparse
 
 from ...core import gauss
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped, mass_at, stiffness_at
 from ...core.space.spatial import skew
-from ..theories.reference_line import line, root_axes
+from ..theories.reference_line import element_ends, line, root_axes
+from ..theories.spectral import intervals
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -38,35 +42,45 @@ class HingedSegments:
     Attributes:
         strain: (n,) the strain that the joint allows (in ``core.blade``'s order of strains).
         stiffness: (n,) of each joint alone, N/m or N m.
-        coupling: (n, n) off-diagonal stiffness between the joints of a hinge, zero on the diagonal.
+        coupling: (n, n) sparse, stiffness between different joints of a hinge; no entries on the diagonal.
         offset, turn: (n, 3) m, (n, 3, 3) from the previous link; for the first, from the hub's axes, coned.
         segment: (e,) the link that carries the segment, the last of each hinge.
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
+        ends: (k+1,) arc lengths of the ends of the k elements, m.
         reach: (e, 3) from a hinge to the end of its element, in the hinge's axes, m.
     """
 
     strain: Index
     stiffness: Array
-    coupling: Array
+    coupling: sparse.csr_array
     offset: Array
     turn: Array
     segment: Index
     mass: Array
     centre: Array
     inertia: Array
+    ends: Array
     reach: Array
 
 
-def plant(blade: Blade, elements: int) -> HingedSegments:
-    """A blade as a tree of ``elements`` equal elements, after the root joint if the root is not clamped."""
-    ends = np.linspace(0.0, blade.length, elements + 1)
+INTERVALS = 12
+"""A blade with more intervals between kinks has proportionally more elements."""
+
+LAYER = 10.0
+"""Distance from the root at which elements are twice as long as there, in thicknesses of the layer. Half of it, and twice,
+need at most twice the elements."""
+
+
+def plant(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
+    """A blade at ``omega`` (rad/s) as a tree of at least ``elements`` elements, after the root joint if not clamped."""
+    ends = _ends(blade, elements, omega)
     hinges = _hinges(blade, ends)
     place, axes = _frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
     slide, turn = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
     hinge = np.array([*slide, *turn, *turn[-2::-1], *slide[::-1]])
     stiffness = list(_stiffness(blade, ends, axes, hinge))
-    joints = [hinge] * elements
+    joints = [hinge] * (len(ends) - 1)
     reach = (axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
     if not clamped(blade):
         free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
@@ -82,20 +96,38 @@ def plant(blade: Blade, elements: int) -> HingedSegments:
     offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
     joint_turn[first] = before @ axes
     mass, centre, inertia = _segments(blade, hinges, place, axes)
-    full: Array = np.asarray(block_diag(*stiffness), float)
-    own = np.diagonal(full)
+    full = sparse.csr_array(sparse.block_diag(stiffness))
+    own: Array = full.diagonal().astype(float)
+    coupling = full - sparse.diags_array(own)
+    coupling.eliminate_zeros()
     return HingedSegments(
         strain=np.concatenate(joints),
         stiffness=own,
-        coupling=full - np.diag(own),
+        coupling=coupling,
         offset=offset,
         turn=joint_turn,
         segment=first + count - 1,
         mass=mass,
         centre=centre,
         inertia=inertia,
+        ends=ends,
         reach=reach,
     )
+
+
+def _ends(blade: Blade, elements: int, omega: float) -> Array:
+    """(k+1,) ends of at least ``elements`` elements; their places at a speed are a fixed function of k, for the order."""
+    ends = element_ends(blade, elements, INTERVALS)
+    if not omega or not clamped(blade) or len(intervals(blade)) > 2:
+        return ends
+    s, weight = (part.ravel() for part in gauss.between(blade.stations, 3))
+    mass = np.append(weight * mass_at(blade, s)[:, 0, 0], blade.tip_mass[0, 0])
+    level = np.cos(blade.precone)
+    tension = omega**2 * level * mass @ (blade.hub_radius + level * np.append(s, blade.length))
+    bend = np.diagonal(blade.stiffness[0])[[BEND_Y, BEND_Z]].min()
+    layer = LAYER * np.sqrt(bend / tension) / blade.length
+    even = np.linspace(0.0, 1.0, elements + 1)
+    return blade.length * np.append(layer * np.expm1(even[:-1] * np.log1p(1.0 / layer)), 1.0)
 
 
 def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:

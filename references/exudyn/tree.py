@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.interpolate import CubicSpline
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
@@ -41,7 +42,7 @@ class ExudynTree:
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
     effects = ALL_EFFECTS
-    levels = (24, 48, 96)
+    levels = (12, 24, 48)
     order = 2
     hint = ex.HINT
     distribution = ex.DISTRIBUTION
@@ -67,11 +68,11 @@ class ExudynTree:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        tree = plant(blade, elements)
+        tree = plant(blade, elements, omega)
         M, C, K, q = linearize(tree, omega)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(blade, tree, q, vectors)
-        return Modes(omega, frequencies, shapes, elements, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, len(tree.ends) - 1, seconds=time.perf_counter() - begun)
 
 
 def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
@@ -109,9 +110,9 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
             jointVelocityOffsetVector=zero,
         )
     )
-    if tree.coupling.any():
-        coupling = np.zeros((n, n))
-        coupling[1:, 1:] = tree.coupling
+    if tree.coupling.nnz:
+        coupling = exu.MatrixContainer()  # sparse: a full one makes every difference of the forces cost n²
+        coupling.SetWithSparseMatrix(sparse.block_diag([[[0.0]], tree.coupling], format="csr"))
         mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))
     ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
@@ -176,10 +177,11 @@ def _shapes(blade: Blade, tree: HingedSegments, q: Array, vectors: NDArray[np.co
     cone = rotation(1, np.array(-blade.precone))
     moved[:, :3] = cone.T @ moved[:, :3]
     ends = np.concatenate([np.zeros((1, *moved.shape[1:])), moved]) if clamped(blade) else moved
-    s = np.linspace(0.0, blade.length, len(ends))
-    along = CubicSpline(s, ends[:, [0, 3]])(STATIONS * blade.length)
+    along = CubicSpline(tree.ends, ends[:, [0, 3]])(STATIONS * blade.length)
     level: Any = ((1, np.zeros_like(ends[0, 1:3])), "not-a-knot")
-    across = CubicSpline(s, ends[:, 1:3], bc_type=level if clamped(blade) else "not-a-knot")(STATIONS * blade.length)
+    across = CubicSpline(tree.ends, ends[:, 1:3], bc_type=level if clamped(blade) else "not-a-knot")(
+        STATIONS * blade.length
+    )
     shapes = np.stack([along[:, 0], across[:, 0], across[:, 1], along[:, 1]], axis=1)
     shapes[:, :3] = cone @ shapes[:, :3]
     return shapes.transpose(2, 0, 1)

@@ -1,22 +1,19 @@
 """Run an untrusted process with limits on time, memory and output, and leave nothing of it running.
 
-The process is ``supervisor.py`` with a module of the package. It reads one request, a line of JSON, and writes one line
+The process runs a module of the package under ``supervisor.py``. It reads one request, a line of JSON, and writes one line
 per answer as soon as it is ready. Closing its standard input ends it and all processes it has started.
 """
 
 import os
 import selectors
 import signal
-import subprocess
-import sys
 import time
-from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Literal
 
-SUPERVISOR = Path(__file__).with_name("supervisor.py")
+from . import launch
 
 KEPT = 8_192
 """Number of last bytes of standard error that are kept."""
@@ -83,32 +80,21 @@ def converse(module: str, request: bytes, expected: int, limits: Limits) -> tupl
         expected: number of answers.
         limits: for each answer.
     """
-    alone = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    child = subprocess.Popen(
-        [sys.executable, "-P", str(SUPERVISOR), module, str(ADDRESS_SPACE * limits.memory)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        bufsize=0,
-        env={**os.environ, **alone},
-        start_new_session=True,
-    )
+    child = launch.start(module, ADDRESS_SPACE * limits.memory)
     try:
         lines, stopped, said = _listen(child, request, expected, limits)
     finally:
         _end(child)
-    return lines, stopped or _crash(child.returncode, said.decode("utf-8", "replace"))
+    return lines, stopped or _crash(child.returncode or 0, said.decode("utf-8", "replace"))
 
 
 def _listen(
-    child: subprocess.Popen[bytes], request: bytes, expected: int, limits: Limits
+    child: launch.Child, request: bytes, expected: int, limits: Limits
 ) -> tuple[list[bytes], Failure | None, bytes]:
-    to, answers, errors = _pipes(child)
+    to, answers, errors = child.stdin, child.stdout, child.stderr
     lines: list[bytes] = []
     line, said, rest = bytearray(), b"", memoryview(request + b"\n")
     deadline, look = time.monotonic() + START, 0.0
-    for stream in (to, answers, errors):
-        os.set_blocking(stream.fileno(), False)
     with selectors.DefaultSelector() as ready:
         ready.register(answers, selectors.EVENT_READ)
         ready.register(errors, selectors.EVENT_READ)
@@ -161,46 +147,24 @@ def _send(to: IO[bytes], rest: memoryview) -> memoryview:
         return rest[:0]
 
 
-def _end(child: subprocess.Popen[bytes]) -> None:
+def _end(child: launch.Child) -> None:
     """End the process and all processes it has started."""
-    to, *others = _pipes(child)
     try:
-        to.close()
-        child.wait(GRACE)
-    except BaseException as error:  # its supervisor does not respond, or this process is interrupted
-        for pid in (*_below(child.pid), child.pid):
-            with suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGKILL)
-        child.wait()
-        if not isinstance(error, subprocess.TimeoutExpired):
-            raise
+        child.stdin.close()
+        if not child.wait(GRACE):  # its supervisor does not respond
+            child.kill()
+    except BaseException:  # this process is interrupted
+        child.kill()
+        raise
     finally:
-        for pipe in others:
-            pipe.close()
+        child.wait(GRACE)
+        child.close()
 
 
-def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes], IO[bytes]]:
-    if child.stdin is None or child.stdout is None or child.stderr is None:
-        raise ValueError("not started with pipes")
-    return child.stdin, child.stdout, child.stderr
-
-
-def _below(pid: int) -> list[int]:
-    """All descendants of a process; empty if the kernel does not list them."""
-    found, todo = [], deque([pid])
-    while todo:
-        one = todo.popleft()
-        with suppress(OSError):
-            text = Path(f"/proc/{one}/task/{one}/children").read_text(encoding="ascii")
-            todo += (new := [int(child) for child in text.split()])
-            found += new
-    return found
-
-
-def _resident(pid: int) -> int:
-    """Resident memory of all descendants of a process, bytes."""
+def _resident(pid: int | None) -> int:
+    """Resident memory of all descendants of a process, if it has started, bytes."""
     pages = 0
-    for one in _below(pid):
+    for one in launch.descendants(pid) if pid else ():
         with suppress(OSError, IndexError, ValueError):
             pages += int(Path(f"/proc/{one}/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")

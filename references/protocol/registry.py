@@ -167,6 +167,7 @@ def code(name: str) -> Any:
 
 
 CAPS = {
+    "exudyn-tree": 768,
     "pinocchio": 40,
     "drake": 80,
     "mujoco": 80,
@@ -177,7 +178,7 @@ CAPS = {
     "scikit-fem-solid": 80,
 }
 """Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes and
-scikit-fem-reissner dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
+scikit-fem-reissner and exudyn-tree dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
 coordinates); solids have hundreds of freedoms per layer of nodes."""
 
 

@@ -1,16 +1,23 @@
-"""Run one module in a separate process and leave no process behind. Uses only the standard library, so it starts fast.
+"""Run modules in separate processes and leave no process behind.
 
-``python -P supervisor.py MODULE BYTES`` forks. The child leads a new session, has at most BYTES of address space, and
-calls ``MODULE.main()``. The parent is the subreaper of all processes that the child starts (Linux), including
-double-forked ones. When the child ends, or the other end of standard input is closed, the parent kills all of them and
-ends with the child's status.
+``python -P supervisor.py SOCKET MODULE…`` imports the modules, on Linux, and then forks a supervisor for each request, with
+four file descriptors: the standard streams of the process to run, and a pipe for its status. It ends when the other end of the
+socket is closed. Importing takes most of a second, so the process that forks is kept where many requests follow. It never
+imports a code. On macOS a process that has loaded system libraries cannot be forked, so nothing is imported before.
+
+A supervisor writes its process ID and forks again. The child leads a new session, has at most the requested address space, and
+calls ``main()`` of the requested module. The supervisor is the subreaper of all processes that the child starts (Linux),
+including double-forked ones. When the child ends, or the other end of standard input is closed, it kills all of them and
+writes the child's exit code.
 """
 
 import ctypes
 import importlib
+import json
 import os
 import select
 import signal
+import socket
 import sys
 import time
 from contextlib import suppress
@@ -18,10 +25,35 @@ from contextlib import suppress
 SET_PARENT_DEATH_SIGNAL, SET_CHILD_SUBREAPER = 1, 36
 """Of ``prctl`` (linux/prctl.h)."""
 
+REQUEST = 256
+"""Bytes of a request: JSON ``[module, address space in bytes]``, filled up with blanks."""
+
 
 def main() -> None:
-    """Fork, wait, kill the remaining processes, and end with the child's status."""
-    module, space = sys.argv[1], int(sys.argv[2])
+    """Fork a supervisor for each request until the socket is closed."""
+    link = socket.socket(fileno=int(sys.argv[1]))
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the kernel removes ended supervisors
+    for name in sys.argv[2:] if sys.platform == "linux" else ():
+        with suppress(Exception):  # the child imports its module again and reports the error
+            importlib.import_module(name)
+    while True:
+        request, streams, _, _ = socket.recv_fds(link, REQUEST, 4)
+        if not request:
+            os._exit(0)
+        if not os.fork():
+            link.close()
+            supervise(*json.loads(request), *streams)
+        for stream in streams:
+            os.close(stream)
+
+
+def supervise(module: str, space: int, reads: int, writes: int, errors: int, status: int) -> None:
+    """Fork, wait, kill the remaining processes, write the child's exit code, and end."""
+    os.setsid()
+    for number, stream in enumerate((reads, writes, errors)):
+        os.dup2(stream, number)
+        os.close(stream)
+    os.write(status, b"%d\n" % os.getpid())
     _limit("RLIMIT_CORE", 0)  # no core file after a crash
     _prctl(SET_CHILD_SUBREAPER, 1)
     ended, bell = os.pipe()
@@ -32,12 +64,14 @@ def main() -> None:
     if not child:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        os.close(ended)
-        os.close(bell)
+        for own in (ended, bell, status):
+            os.close(own)
         _work(module, space)
-    status = _wait(child, ended)
+    code = _wait(child, ended)
     _sweep(child)
-    _end(status)
+    with suppress(BrokenPipeError):  # nobody is left to read it
+        os.write(status, b"%d\n" % os.waitstatus_to_exitcode(code))
+    os._exit(0)
 
 
 def _work(module: str, space: int) -> None:
@@ -94,15 +128,6 @@ def _children() -> list[int]:
             return [int(pid) for pid in file.read().split()]
     except OSError:
         return []
-
-
-def _end(status: int) -> None:
-    if os.WIFSIGNALED(status):
-        number = os.WTERMSIG(status)
-        with suppress(OSError, ValueError):  # SIGKILL has no handler to reset
-            signal.signal(number, signal.SIG_DFL)
-        os.kill(os.getpid(), number)
-    os._exit(os.waitstatus_to_exitcode(status) if os.WIFEXITED(status) else 255)
 
 
 def _prctl(option: int, value: int) -> None:

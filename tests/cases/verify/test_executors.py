@@ -30,6 +30,32 @@ def test_processes_of_this_machine_by_default() -> None:
         pool.submit(os.getpid)
 
 
+STOPPED = """
+import os, signal, sys, time
+from southwell.cases.verify.pool import Pool
+
+if __name__ == "__main__":
+    for number in range(12):
+        pool = Pool(2)
+        tasks = [pool.submit(int, "no number") for _ in range(2)]
+        time.sleep(0.05 * number)
+        if sys.argv[1] == "interrupted":  # as by Ctrl-C, which every process of the group receives
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            os.killpg(0, signal.SIGINT)
+        pool.stop()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", ["stopped", "interrupted"])
+def test_processes_that_are_still_starting_end_silently(how: str, tmp_path: Path) -> None:
+    (tmp_path / "stopped.py").write_text(STOPPED, encoding="utf-8")
+    line = [sys.executable, "stopped.py", how]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, start_new_session=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize("module", ["distributed", "dask_jobqueue"])
 def test_without_dask_there_is_a_hint(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     if module == "dask_jobqueue":

@@ -1,0 +1,155 @@
+"""Start supervised processes: each is forked by a process of ``supervisor.py``, which may be kept for the next ones."""
+
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO
+
+from .supervisor import REQUEST
+
+SUPERVISOR = Path(__file__).with_name("supervisor.py")
+
+PRELOADED = ("southwell.references.preloaded",)
+"""What a kept process imports."""
+
+_keeping = False
+_kept: "_Forker | None" = None
+
+
+@dataclass(frozen=True)
+class _Forker:
+    """The process that forks, and the socket for its requests; it ends when the socket is closed."""
+
+    process: subprocess.Popen[bytes]
+    link: socket.socket
+
+    def close(self) -> None:
+        self.link.close()
+        self.process.wait()
+
+
+@dataclass
+class Child:
+    """A supervisor.
+
+    Attributes:
+        stdin, stdout, stderr: of the process that it supervises; it ends soon after ``stdin`` is closed.
+        returncode: exit code of that process, the signal negative; None while it, or anything it has started, is running.
+    """
+
+    stdin: IO[bytes]
+    stdout: IO[bytes]
+    stderr: IO[bytes]
+    _status: int
+    _forker: _Forker
+    _said: bytearray = field(default_factory=bytearray)
+    returncode: int | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """Process ID of the supervisor; None before it is forked."""
+        self.poll()
+        first, ended, _ = self._said.partition(b"\n")
+        return int(first) if ended else None
+
+    def poll(self) -> int | None:
+        """The exit code, as far as it is known."""
+        while self.returncode is None:
+            try:
+                got = os.read(self._status, 64)
+            except BlockingIOError:
+                break
+            self._said += got
+            if not got:
+                codes = self._said.split(b"\n")[1:-1]
+                self.returncode = int(codes[0]) if codes else -signal.SIGKILL  # the supervisor was killed
+        return self.returncode
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for the exit code; False if it is not there in time."""
+        latest, said = time.monotonic() + seconds, select.poll()
+        said.register(self._status, select.POLLIN)
+        while self.poll() is None:
+            if (left := latest - time.monotonic()) <= 0.0:
+                return False
+            said.poll(1000.0 * left)
+        return True
+
+    def kill(self) -> None:
+        """Kill the supervisor and all its descendants, or what was to fork it."""
+        for pid in (*descendants(self.pid), self.pid) if self.pid else (self._forker.process.pid,):
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGKILL)
+
+    def close(self) -> None:
+        """Close what is open."""
+        for stream in (self.stdin, self.stdout, self.stderr):
+            stream.close()
+        os.close(self._status)
+        if self._forker is not _kept:
+            self._forker.close()
+
+
+def keep() -> None:
+    """Keep the process that forks, from the next start on; for a process that starts many, from one thread."""
+    global _keeping
+    _keeping = True
+
+
+def start(module: str, space: int) -> Child:
+    """Start a process that calls ``main()`` of a module and has at most ``space`` bytes of address space."""
+    global _kept
+    if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
+        _kept = _forker(PRELOADED)
+    forker = _kept or _forker((module,))
+    pipes = [os.pipe() for _ in range(4)]
+    theirs = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
+    mine = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
+    try:
+        with suppress(BrokenPipeError, ConnectionResetError):  # it was killed; then nobody holds the other ends
+            socket.send_fds(forker.link, [json.dumps([module, space]).encode().ljust(REQUEST)], theirs)
+    finally:
+        for number in theirs:
+            os.close(number)
+    for number in mine:
+        os.set_blocking(number, False)
+    stdin, stdout, stderr = (os.fdopen(n, m, buffering=0) for n, m in zip(mine, ("wb", "rb", "rb"), strict=False))
+    return Child(stdin, stdout, stderr, mine[3], forker)
+
+
+def _forker(modules: tuple[str, ...]) -> _Forker:
+    here, there = socket.socketpair()
+    alone = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    nothing = subprocess.DEVNULL
+    with there:
+        process = subprocess.Popen(
+            [sys.executable, "-P", str(SUPERVISOR), str(there.fileno()), *modules],
+            stdin=nothing,
+            stdout=nothing,
+            stderr=nothing,
+            pass_fds=[there.fileno()],
+            env={**os.environ, **alone},
+            start_new_session=True,
+        )
+    return _Forker(process, here)
+
+
+def descendants(pid: int) -> list[int]:
+    """All descendants of a process; empty if the kernel does not list them."""
+    found, todo = [], deque([pid])
+    while todo:
+        one = todo.popleft()
+        with suppress(OSError):
+            text = Path(f"/proc/{one}/task/{one}/children").read_text(encoding="ascii")
+            todo += (new := [int(child) for child in text.split()])
+            found += new
+    return found
