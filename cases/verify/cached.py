@@ -27,7 +27,7 @@ class Cached(Executor):
     Attributes:
         also: what all answers depend on besides the question.
         taken: times at which the answers taken from the store were computed, s since 1970.
-        asked: number of tasks submitted.
+        asked: number of tasks submitted, without columns that solve nothing.
     """
 
     def __init__(self, executor: Executor, store: Store, also: tuple[str, ...] = ()) -> None:
@@ -36,7 +36,9 @@ class Cached(Executor):
         self.asked = 0
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """See ``Executor``."""
+        """See ``Executor``. A column that solves nothing is filled at once: starting a process would take seconds."""
+        if isinstance(fn, Column) and not fn.solves:
+            return Serial().submit(fn, *args, **kwargs)
         self.asked += 1
         if not storable(fn):
             return self.executor.submit(fn, *args, **kwargs)

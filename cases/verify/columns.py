@@ -55,6 +55,7 @@ class Column:
         due: where cells are required: at every speed for every mode, at the highest speed, or where it has numbers.
         adapter: digest of the source of the code; empty for a column of this package.
         bundled: whether the adapter of the code is part of this package.
+        solves: whether there is anything to solve; not for a code that is absent, broken or declines the blade.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Column:
     due: Literal["everywhere", "highest speed", "somewhere"] = "everywhere"
     adapter: str = ""
     bundled: bool = True
+    solves: bool = True
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds that have a reference."""
@@ -111,18 +113,18 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
 
 def _mechanisms_only(case: str, code: Description, target: float) -> Column:
     head = Head(case, code.name, code.version or "", "code", target)
-    return Column(
-        code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", "the code takes mechanisms, not blades")
-    )
+    absent = partial(_absent, head, "not applicable", "the code takes mechanisms, not blades")
+    return Column(code.name, ALL_EFFECTS, head, absent, solves=False)
 
 
 def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column:
     if code.failure:
-        return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure))
+        return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure), solves=False)
     if code.refused and code.refused[0]:
-        return Column(code.name, ALL_EFFECTS, head, partial(_absent, head, "not applicable", code.refused[0]))
+        refused = partial(_absent, head, "not applicable", code.refused[0])
+        return Column(code.name, ALL_EFFECTS, head, refused, solves=False)
     if code.version is None:
-        return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)))
+        return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)), solves=False)
     name, effects = code.asked, felt(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=SAME)

@@ -92,7 +92,8 @@ def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
         head = Head(case.name, code.name, code.version or "", "same discretisation", case.target, code.shares)
-        out.append(Column(code.name, ALL_EFFECTS, head, _work(head, variant, code, limits), code.independence))
+        work, solves = _work(head, variant, code, limits), code.mechanisms and not code.failure
+        out.append(Column(code.name, ALL_EFFECTS, head, work, code.independence, solves=solves))
     if form := variant.described.text.closed_form:
         known = f"southwell {version('southwell')}"
         head = Head(case.name, "closed form", known, "same discretisation", case.target, "nothing")

@@ -55,6 +55,20 @@ def test_an_answer_is_computed_once(kept: Store) -> None:
     assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
 
 
+def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
+    class Refusing(Serial):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+            raise AssertionError("a task was started")
+
+    head = Head("blade", "absent", "", "code", 1e-3)
+    column = Column("absent", ALL_EFFECTS, head, partial(lost, head), solves=False)
+    one = Cached(Refusing(), kept)
+    cells, _ = one.submit(column, [1.0], [None]).result()
+    assert (len(cells), CALLS, one.asked) == (1, ["absent"], 0)
+    with pytest.raises(AssertionError, match="a task was started"):
+        one.submit(replace(column, solves=True), [1.0], [None])
+
+
 def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: Store) -> None:
     for also in (("code 1.0",), ("code 1.1",), ("code 1.0",)):
         Cached(Serial(), kept, also).submit(double, 2.0)

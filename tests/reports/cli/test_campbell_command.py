@@ -212,6 +212,7 @@ def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys:
     assert "Hz at 30 rpm" in shown
 
 
+@pytest.mark.slow
 def test_gravity_at_an_azimuth_stiffens_a_blade_that_hangs(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -224,6 +225,7 @@ def test_gravity_at_an_azimuth_stiffens_a_blade_that_hangs(
     assert first[2] < first[0] < first[1]
 
 
+@pytest.mark.slow
 def test_a_load_of_the_beams_weight_is_gravity(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its weight per length towards the tip as a table, or gravity with the blade hanging: the same first frequency."""
     (blade,) = (v.blade for v in library.load(str(beam)).variants)
@@ -318,6 +320,7 @@ def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys:
     assert "positive with the leading edge downwind" in page
 
 
+@pytest.mark.slow
 def test_every_table_of_the_page_is_in_the_pdf(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With all sections that the page can have."""
     from ...support import printed

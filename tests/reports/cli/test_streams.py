@@ -49,6 +49,7 @@ def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Pat
     assert (done.returncode, (folder / "results.jsonl").exists()) == (0, True), done.stderr
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     done = shell(f"southwell verify rotating-cable --out '{tmp_path / 'file' / 'out'}'")
