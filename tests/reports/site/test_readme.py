@@ -50,9 +50,13 @@ def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_thro
 
 @pytest.mark.slow
 def test_the_output_of_the_command_is_what_it_prints(tmp_path: Path) -> None:
-    """As southwell is run here; the figure is the one it draws."""
+    """As southwell is run here; the figure is the one it draws. Uncertainties below 1e-8 are rounding: processors differ."""
     output = readme.example(tmp_path)
-    assert readme.put(TEXT, readme.console(output), "command") == TEXT, "run `make readme`"
+    again, before = (
+        re.sub(r"\b\de-(09|1\d)\b", "tiny ", text)
+        for text in (readme.put(TEXT, readme.console(output), "command"), TEXT)
+    )
+    assert again == before, "run `make readme`"
     assert (tmp_path / readme.FIGURE.name).is_file()
     assert readme.FIGURE.relative_to(readme.ROOT).as_posix() in TEXT
     assert readme.FIGURE.is_file()
