@@ -140,6 +140,7 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
     assert error_budget.uncertain(CASE, (), run().cells) == []
 
 
+@pytest.mark.slow
 def test_the_budget_survives_the_disk_and_is_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results.write(path, run())

@@ -74,6 +74,7 @@ def test_the_body_has_the_segments_mass_centre_and_inertia() -> None:
     np.testing.assert_allclose(found, exact, atol=1e-12 * mass)
 
 
+@pytest.mark.slow
 def test_rigid_ties_restrain_warping_and_average_ties_give_way() -> None:
     """Torsional stiffness of a 4:1 rectangle one chord long: rigid + 62 %, average − 16 %; in place it is St Venant's.
 
@@ -127,6 +128,7 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
 # The tapered, twisted blade
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("omega", [0.0, SPEED])
 def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     """20 segments in place, five lowest frequencies (the fifth is torsion) within 0.5 %, mode by mode."""
@@ -136,6 +138,7 @@ def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     assert (mac(found, whole).diagonal()[:5] > 0.999).all()
 
 
+@pytest.mark.slow
 def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
     """Segments shorter than their chord: too stiff by per cents with rigid ties; slightly too soft with average ties."""
     whole = twisted_modes(0.0).frequencies[:5]

@@ -93,6 +93,7 @@ def square() -> np.ndarray:
     return identified.stiffness(BAR, np.array([1.0]), (4, 4))[0]
 
 
+@pytest.mark.slow
 def test_sections_of_a_square_bar() -> None:
     """E A, E I about the offset line, G J = 0.140577 G a⁴ (St Venant) about the centroid; offset couplings E A y."""
     E, G, area, y = 2.1e11, SHEAR, SIDE**2, -0.2 * SIDE
@@ -162,6 +163,7 @@ def test_a_held_bar_has_timoshenkos_frequencies() -> None:
 # ------------------------------------------------------------------------------------------------------------ the adapter
 
 
+@pytest.mark.slow
 def test_the_case_is_recognised_by_its_axis_and_sections() -> None:
     blade = case()
     assert recognised(blade) == (CURVED, "")
