@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 _MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
-_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a step; of the one after it
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a stalled step; of the next one
 _MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
 _DEGREE, LATEST = 3, 8  # of the extrapolation over speeds: degree, and number of speeds
 _MIN_RAMP = 2.0**-8
@@ -110,16 +110,18 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
 def _settled(energy: float, before: float, rounding: float) -> bool:
     """Whether a step is the last one.
 
-    It is if its energy is about that of rounding errors, which may also be much less than their bound ``rounding``: if it is
-    the first step, if it is hardly smaller than the last one, or if the next one would be negligible by quadratic convergence.
+    It is if its energy is that of rounding errors, and it is the first step or hardly smaller than the last one, or if the next
+    one would be negligible by quadratic convergence: rounding may be much less than its bound.
 
     Args:
         energy: of the step.
         before: of the last step; nan for the first one.
         rounding: bound of the energy of rounding errors.
     """
+    if np.isnan(before):
+        return energy <= rounding
     ratio = energy / before
-    if not ratio <= _MIN_REDUCTION:
+    if ratio > _MIN_REDUCTION:
         return energy <= _STALL_FACTOR * rounding
     following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
     return energy <= rounding and following <= _CONVERGED_FACTOR * rounding

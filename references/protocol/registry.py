@@ -177,7 +177,7 @@ CAPS = {
     "scikit-fem-reissner": 96,
     "scikit-fem-solid": 80,
 }
-"""Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes and
+"""Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes,
 scikit-fem-reissner and exudyn-tree dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
 coordinates); solids have hundreds of freedoms per layer of nodes."""
 

@@ -20,6 +20,9 @@ WORD = re.compile(r"(?:[^ \n\u200b/-]|[/-](?![^\W\d_]))+[/-]?|[/-]")
 SLACK = 0.02
 """Added to measured widths, em: kerning and rounding are not measured."""
 
+SCALE = 100
+"""Font size at which characters are measured, points."""
+
 Pieces = Sequence[tuple[str, str]]
 """Text of a cell: pieces with their face; a line break is a newline."""
 
@@ -93,9 +96,6 @@ def _advance(sign: str, face: str) -> float:
 @cache
 def _glyphs() -> set[int]:
     return set(_font("regular").get_charmap())
-
-
-SCALE = 100
 
 
 @cache

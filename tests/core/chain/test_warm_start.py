@@ -82,7 +82,7 @@ def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
     gravity: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In both cases within the rounding error that is stated; the settled one takes fewer linearisations."""
-    body, fall, speeds = discretize(FLAT, 20), np.array([0.0, 0.0, gravity]), np.linspace(5.0, 8.0, 13)
+    body, fall, speeds = discretize(FLAT, 100), np.array([0.0, 0.0, gravity]), np.linspace(5.0, 8.0, 13)
     counts, found = [], []
     linearize = steady.linearize
 
@@ -117,6 +117,6 @@ def test_a_fine_sweep_takes_one_linearisation_a_speed(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(steady, "linearize", counted)
     speeds = np.linspace(5.0, 6.0, 25)
-    for _ in solve.mesh_sweep(FLAT, speeds, 20, 6):
+    for _ in solve.mesh_sweep(FLAT, speeds, 100, 6):
         pass
     assert count <= len(speeds) + 12
