@@ -1,19 +1,16 @@
 """Compiled loops, and the products of small matrices they are made of.
 
 Functions that run for every element at every speed are compiled by numba at their first call and cached on disk. The cache
-folder is named after a digest of their sources, so a change to one of them invalidates all. The first compilation of a
-command is announced by the logger ``southwell``, whose warnings go to standard error by default.
+folder is named after a digest of their sources, so a change to one of them invalidates all.
 """
 
 import hashlib
-import logging
 import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
-from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -23,6 +20,7 @@ from numba.core import config, event
 from numpy.typing import NDArray
 
 from . import compiled_files
+from .first_use import FirstUse
 
 Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
@@ -61,37 +59,7 @@ def _places() -> Iterator[Path]:
         yield Path(tempfile.gettempdir()) / f"southwell-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
 
 
-ANNOUNCEMENT = "southwell: compiling the solver's loops (first use only, up to half a minute)"
-
-
-class _FirstUse(event.Listener):
-    """Announces compilation once; among several worker processes, only one announces it."""
-
-    announced = False
-
-    def on_start(self, event: Any) -> None:
-        """Numba begins to compile a function that is not in the cache."""
-        ours = event.data["dispatcher"].py_func.__module__.startswith(__package__ or "")
-        if ours and not self.announced:
-            self.announced = True
-            if parent_process() is None or _first_worker():
-                logging.getLogger("southwell").warning(ANNOUNCEMENT)
-
-    def on_end(self, event: Any) -> None:
-        """Nothing to do."""
-
-
-def _first_worker() -> bool:
-    folder = _folder()
-    if folder is None:
-        return True
-    with suppress(FileExistsError):
-        (folder / "announced").touch(exist_ok=False)
-        return True
-    return False
-
-
-event.register("numba:compile", _FirstUse())
+event.register("numba:compile", FirstUse(_folder))
 
 
 def compiled(f: F) -> F:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from southwell.core import compiled, compiled_files, regular_files
+from southwell.core import compiled, compiled_files, first_use, regular_files
 
 posix = pytest.mark.skipif(os.name == "nt", reason="modes and owners of POSIX")
 
@@ -93,7 +93,7 @@ def test_compiled_code_is_invalidated_by_a_change(tmp_path: Path) -> None:
     """A compiled function calls one of another file; when that changes, the caller must be compiled again."""
     package = tmp_path / "loops"
     package.mkdir()
-    for module in (compiled, compiled_files, regular_files):
+    for module in (compiled, compiled_files, first_use, regular_files):
         shutil.copy(str(module.__file__), package)
     (package / "__init__.py").touch()
     (package / "outer.py").write_text(

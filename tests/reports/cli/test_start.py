@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from southwell.core import compiled
+from southwell.core import first_use
 from southwell.reports.cli import app as cli
 
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "pandas")
@@ -83,7 +83,7 @@ def test_compilation_is_announced_once_wherever_standard_error_goes(tmp_path: Pa
     """It is a pipe here; functions of others are none of our business."""
     done = python(COMPILE, tmp_path)
     assert (done.returncode, done.stdout) == (0, "elsewhere\n"), done.stderr
-    assert done.stderr == compiled.ANNOUNCEMENT + "\n"
+    assert done.stderr == first_use.ANNOUNCEMENT + "\n"
 
 
 def test_install_hints_keep_their_brackets(capsys: pytest.CaptureFixture[str]) -> None:
