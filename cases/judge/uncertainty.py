@@ -2,13 +2,13 @@
 
 Three refinements give the observed order of convergence, and from it the Richardson extrapolation and Roache's grid
 convergence index (GCI). The extrapolated value is reported, so the index is that of the extrapolated value: three
-refinements give two extrapolated values, and the index of the second follows from their change, assumed to shrink with
-at least first order. If the observed order is not the theoretical one, extrapolation is unreliable: the index is then
-that of the finest refinement, with the larger safety factor. Sources: Roache, *Verification and Validation in
-Computational Science and Engineering* (1998); Celik et al., J. Fluids Eng. 130 (2008) 078001, for the order at unequal
-refinement ratios; Oberkampf and Roy, *Verification and Validation in Scientific Computing* (2010), §8.6, for the choice
-of the safety factor; Eça and Hoekstra, J. Comput. Phys. 262 (2014) 104, for three times the spread where the order of
-convergence is meaningless.
+refinements give two extrapolated values, and the index of the second follows from their change, assumed to shrink with at
+least first order; it is at least ``CHANCE`` times the correction. If the observed order is not the theoretical one,
+extrapolation is unreliable: the index is then that of the finest refinement, with the larger safety factor. Sources:
+Roache, *Verification and Validation in Computational Science and Engineering* (1998); Celik et al., J. Fluids Eng. 130
+(2008) 078001, for the order at unequal refinement ratios; Oberkampf and Roy, *Verification and Validation in Scientific
+Computing* (2010), §8.6, for the choice of the safety factor; Eça and Hoekstra, J. Comput. Phys. 262 (2014) 104, for three
+times the spread where the order of convergence is meaningless.
 """
 
 from collections.abc import Sequence
@@ -31,6 +31,10 @@ NEAR_THEORY = 0.1
 
 FIRM, WARY = 1.25, 3.0
 """Roache's safety factors: for a sequence seen to converge at the theoretical order, and for any other."""
+
+CHANCE = 0.03
+"""Smallest uncertainty of an extrapolated value, as a fraction of the extrapolation's correction: terms of higher order may
+cancel in two extrapolated values, whose change is then no measure of their error."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +86,8 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
     before, value = (f[k] + (f[k] - f[k - 1]) / ((n[k] / n[k - 1]) ** used - 1.0) for k in (1, 2))
     if firm:
         change = abs(value - before) / (n[2] / n[1] - 1.0)
-        return Estimate(float(value), _at_least(FIRM * change / abs(value)), observed)
+        wrong = max(FIRM * change, CHANCE * abs(value - f[2]))
+        return Estimate(float(value), _at_least(wrong / abs(value)), observed)
     note = f"observed order {observed:.2f} instead of {order}: safety factor {WARY:g}"
     return Estimate(float(value), _at_least(WARY * abs(value / f[2] - 1.0)), observed, note)
 

@@ -21,6 +21,7 @@ from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
+from ..theories.reference_line import steps
 from . import system as ex
 from .hinged_segments import SLIDE, TURN, HingedSegments, plant
 
@@ -72,7 +73,8 @@ class ExudynTree:
         M, C, K, q = linearize(tree, omega)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(blade, tree, q, vectors)
-        return Modes(omega, frequencies, shapes, len(tree.ends) - 1, seconds=time.perf_counter() - begun)
+        refinement = len(tree.ends) - 1 - steps(blade)
+        return Modes(omega, frequencies, shapes, refinement, seconds=time.perf_counter() - begun)
 
 
 def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
@@ -123,24 +125,24 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
 
 
 def _steady_state(exu: Any, mbs: Any, omega: float, n: int) -> None:
-    """Move the tree to its steady state, raising the speed from zero in as few steps as suffice.
+    """Move the tree to its steady state, raising the speed from zero in as few increments as suffice.
 
     Exudyn's Newton method is undamped, and its load steps do not scale inertia forces: far from the steady state it diverges.
 
     Raises:
-        CodeError: no steady state was found, even with the smallest steps.
+        CodeError: no steady state was found, even with the smallest increments.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
-    for steps in RAMPS:
+    for increments in RAMPS:
         data.SetODE2Coordinates(np.zeros(n), configuration=initial)
         try:
-            for k in range(1, steps + 1):
-                rate = omega * np.sqrt(k / steps)
+            for k in range(1, increments + 1):
+                rate = omega * np.sqrt(k / increments)
                 data.SetODE2Coordinates_t(np.append(rate, np.zeros(n - 1)), configuration=initial)
                 ex.settle(exu, mbs, omega)
             return
         except CodeError:
-            if steps == RAMPS[-1]:
+            if increments == RAMPS[-1]:
                 raise
 
 

@@ -23,7 +23,7 @@ from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
-from ..theories.reference_line import element_ends, moments
+from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
 from .reissner_beam import Beam, State, beam_of, skfem, spatial, stiffening, strain, strain_rate
 from .reissner_steady import steady
@@ -80,7 +80,7 @@ class ScikitFemReissner:
         """The lowest modes; see ``interface.Code``.
 
         Every interval between stations where a property or the line has a kink is divided into the same number of
-        elements, at least ``elements`` in total; ``Modes.elements`` gives the number.
+        elements, at least ``elements`` in total; ``Modes.elements`` gives the number, without those at steps.
 
         Raises:
             CodeError: an unsupported blade, too many elements, or no stable steady state at this speed.
@@ -98,7 +98,8 @@ class ScikitFemReissner:
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(beam, coordinates @ vectors)
         largest = float(np.linalg.norm(strain(beam, state)[..., :3], axis=-1).max())
-        return Modes(omega, frequencies, shapes, beam.elements, strain=largest, seconds=time.perf_counter() - begun)
+        refinement = beam.elements - steps(blade)
+        return Modes(omega, frequencies, shapes, refinement, strain=largest, seconds=time.perf_counter() - begun)
 
 
 def _coordinates(beam: Beam, state: State) -> Array:

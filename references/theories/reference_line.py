@@ -88,10 +88,20 @@ def element_ends(blade: Blade, elements: int, most: int) -> Array:
 
     Every interval between two kinks of a property or of the line is divided into the same number of elements, so that
     each element is smooth and the order of convergence is preserved. A blade with more than ``most`` intervals has
-    proportionally more elements, so that refinements stay distinct.
+    proportionally more elements, so that refinements stay distinct. A step of a property is one element at every refinement.
     """
-    ends = intervals(blade) if straight(blade) else blade.stations
-    wide = np.diff(ends) > JUMP * blade.length
+    ends, wide = _intervals(blade)
     pieces = np.where(wide, -(-elements // min(int(wide.sum()), most)), 1)
     parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
     return np.append(np.concatenate(parts), ends[-1])
+
+
+def steps(blade: Blade) -> int:
+    """Number of elements of ``element_ends`` that are not divided; the others' size is in proportion to their number."""
+    return int((~_intervals(blade)[1]).sum())
+
+
+def _intervals(blade: Blade) -> tuple[Array, NDArray[np.bool_]]:
+    """Ends (k+1,) of the intervals between kinks, and which (k,) are no steps."""
+    ends = intervals(blade) if straight(blade) else blade.stations
+    return ends, np.diff(ends) > JUMP * blade.length

@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from southwell.cases.judge.uncertainty import observed_order
 from southwell.core import solve
-from southwell.core.blade import TORSION, section_mass
+from southwell.core.blade import TORSION, Blade, section_mass
 from southwell.core.modes import STATIONS
 from southwell.references.exudyn import hinged_segments
 from southwell.references.exudyn import tree as exudyn_tree
 from southwell.references.exudyn.tree import CODE as TREE
+from southwell.references.scikit_fem.reissner import CODE as REISSNER
 
 from ...support.beams import curved, tapered
 from ...support.exudyn_beams import extrapolated, families, needs_exudyn, unit
@@ -91,6 +93,25 @@ def test_elements_are_shorter_at_the_root_only_where_a_layer_is_thin():
     even = [replace(blade, precone=np.pi / 2), replace(blade, root=np.array([np.inf] * 4 + [0.0, np.inf]))]
     for ends in [hinged_segments.plant(blade, 8).ends, *(hinged_segments.plant(b, 8, omega).ends for b in even)]:
         np.testing.assert_allclose(ends, np.linspace(0, 1, 9), rtol=1e-6)
+
+
+@pytest.mark.parametrize(("code", "order"), [(TREE, 2), (REISSNER, 4)], ids=["tree", "Reissner"])
+def test_elements_at_steps_do_not_count_as_refinement(code, order):
+    """They are as long at every refinement: with them, the observed orders were 2.3 and 4.5."""
+    one = unit()
+    stations = np.array([0.0, 0.3, 0.3 + 1e-5, 0.6, 0.6 + 1e-5, 1.0]) * one.length
+    factor = np.array([1.0, 1.0, 0.5, 0.5, 0.25, 0.25])[:, None, None]
+    stepped = Blade(
+        "stepped",
+        stations,
+        np.where(np.isinf(one.stiffness[:1]), np.inf, one.stiffness[:1] * factor),
+        one.mass[:1] * factor,
+        np.zeros(6),
+        hub_radius=one.hub_radius,
+    )
+    modes = [code.solve(stepped, 0.0, n, 4) for n in (12, 24, 48)]
+    assert [m.elements for m in modes] == [12, 24, 48]
+    assert observed_order([12, 24, 48], [float(m.frequencies[0]) for m in modes]) == pytest.approx(order, rel=0.02)
 
 
 def test_steady_stretch_is_exact_in_the_limit():
