@@ -73,4 +73,9 @@ def _assist() -> None:
         second = subprocess.Popen(
             [sys.executable, "-P", "-m", ASSISTANT], stdin=nothing, stdout=nothing, stderr=nothing
         )
-        atexit.register(second.kill)
+        atexit.register(_end, second)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.wait()

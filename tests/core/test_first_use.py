@@ -44,7 +44,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
 
     def start(command: list[str], **_: Any) -> SimpleNamespace:
         commands.append(command)
-        return SimpleNamespace(kill=lambda: None)
+        return SimpleNamespace(kill=lambda: None, wait=lambda: 0)
 
     monkeypatch.setattr(subprocess, "Popen", start)
     monkeypatch.setattr(first_use, "_processors", lambda: 2)
