@@ -25,7 +25,8 @@ ASSISTANT = f"{__package__}.chain.precompile"
 class FirstUse(event.Listener):
     """Numba's events of compilation; loaded functions cause none.
 
-    Among several worker processes, only one announces it; they all compile, so that they need no second process.
+    Of a process and its workers, only the first to compile announces it. Workers all compile, so that they need no second
+    process.
     """
 
     def __init__(self, folder: Callable[[], Path | None]) -> None:
@@ -41,7 +42,7 @@ class FirstUse(event.Listener):
             return
         self.seen = True
         main = parent_process() is None
-        if main or self._first_worker():
+        if self._first() or main:
             logging.getLogger("southwell").warning(ANNOUNCEMENT)
         if main and self.folder() is not None and _processors() > 1:
             _assist()
@@ -49,7 +50,8 @@ class FirstUse(event.Listener):
     def on_end(self, event: Any) -> None:
         """Nothing to do."""
 
-    def _first_worker(self) -> bool:
+    def _first(self) -> bool:
+        """Whether no process has compiled into the folder before."""
         folder = self.folder()
         if folder is None:
             return True

@@ -85,6 +85,15 @@ def test_it_is_not_started_where_it_would_not_help(
     assert started == []
 
 
+def test_workers_do_not_announce_what_their_parent_has(
+    started: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    begin("southwell.core.chain.steady", first_use.FirstUse(lambda: tmp_path))
+    monkeypatch.setattr(first_use, "parent_process", lambda: "another")
+    begin("southwell.core.chain.steady", first_use.FirstUse(lambda: tmp_path))
+    assert [record.getMessage() for record in caplog.records] == [first_use.ANNOUNCEMENT]
+
+
 def test_without_the_second_process_the_first_compiles_everything(
     started: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
