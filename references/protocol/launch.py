@@ -19,10 +19,11 @@ from .supervisor import REQUEST
 SUPERVISOR = Path(__file__).with_name("supervisor.py")
 
 PRELOADED = ("southwell.references.preloaded",)
-"""What a kept process imports."""
+"""What a kept or prepared process imports."""
 
 _keeping = False
 _kept: "_Forker | None" = None
+_prepared: "deque[_Forker]" = deque()  # one at most
 
 
 @dataclass(frozen=True)
@@ -105,12 +106,18 @@ def keep() -> None:
     _keeping = True
 
 
+def prepare() -> None:
+    """Start the process that forks for the next start: it imports while the request is prepared."""
+    if not _prepared:
+        _prepared.append(_forker(PRELOADED))
+
+
 def start(module: str, space: int) -> Child:
     """Start a process that calls ``main()`` of a module and has at most ``space`` bytes of address space."""
     global _kept
     if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
         _kept = _forker(PRELOADED)
-    forker = _kept or _forker((module,))
+    forker = _kept or _take_prepared() or _forker((module,))
     pipes = [os.pipe() for _ in range(4)]
     theirs = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
     mine = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
@@ -124,6 +131,12 @@ def start(module: str, space: int) -> Child:
         os.set_blocking(number, False)
     stdin, stdout, stderr = (os.fdopen(n, m, buffering=0) for n, m in zip(mine, ("wb", "rb", "rb"), strict=False))
     return Child(stdin, stdout, stderr, mine[3], forker)
+
+
+def _take_prepared() -> _Forker | None:
+    with suppress(IndexError):  # another thread may take it
+        return _prepared.pop()
+    return None
 
 
 def _forker(modules: tuple[str, ...]) -> _Forker:

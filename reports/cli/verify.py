@@ -21,7 +21,7 @@ from ...cases.verify.executors import executor
 from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
 from ...cases.verify.software import Software
-from ...references.protocol import registry, store
+from ...references.protocol import launch, registry, store
 from ...references.protocol.description import describe
 from ...references.protocol.process import Limits
 from ...references.protocol.store import Store
@@ -120,6 +120,7 @@ def command(
         raise UsageError(
             f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
         )
+    launch.prepare()  # for ``describe``, while the cases are read
     decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
     chosen = [changed(case_of(name, decks), given) for name in dict.fromkeys(case or everything())]
