@@ -28,10 +28,14 @@ _prepared: "deque[_Forker]" = deque()  # one at most
 
 @dataclass(frozen=True)
 class _Forker:
-    """The process that forks, and the socket for its requests; it ends when the socket is closed."""
+    """The process that forks, and the socket for its requests; it ends when the socket is closed.
+
+    ``surroundings`` are the environment variables and the current folder that it has inherited.
+    """
 
     process: subprocess.Popen[bytes]
     link: socket.socket
+    surroundings: tuple[dict[str, str], str]
 
     def close(self) -> None:
         self.link.close()
@@ -135,8 +139,15 @@ def start(module: str, space: int) -> Child:
 
 def _take_prepared() -> _Forker | None:
     with suppress(IndexError):  # another thread may take it
-        return _prepared.pop()
+        one = _prepared.pop()
+        if one.surroundings == _surroundings():
+            return one
+        one.close()  # it would look for modules elsewhere
     return None
+
+
+def _surroundings() -> tuple[dict[str, str], str]:
+    return dict(os.environ), os.getcwd()
 
 
 def _forker(modules: tuple[str, ...]) -> _Forker:
@@ -153,7 +164,7 @@ def _forker(modules: tuple[str, ...]) -> _Forker:
             env={**os.environ, **alone},
             start_new_session=True,
         )
-    return _Forker(process, here)
+    return _Forker(process, here, _surroundings())
 
 
 def descendants(pid: int) -> list[int]:
