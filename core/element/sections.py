@@ -9,7 +9,8 @@ for any coupling, taper, twist or curvature. The element's stiffness is f(b)⁻�
 functions describe the effect of loads between the nodes: the element clamped at both ends under uniform loads along its
 sections' axes. They are orthogonal to the shape functions in energy and make axial, torsional and shear motion as accurate as
 bending. Integrals use Gauss quadrature between the stations (properties are linear there), and f(s) the collocation matrix of
-the same points.
+the same points. The inverse of a linear stiffness is not a polynomial: intervals are divided where refinement would not
+resolve it.
 """
 
 from dataclasses import dataclass, replace
@@ -26,6 +27,9 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 GAUSS = 3
+_LARGE = 30.0  # factor by which a stiffness changes in an interval that is divided
+_PIECE = 1.05  # the same in its parts, where the inverse is integrated to 1e-11; and in an interval that no refinement divides
+_STEP, _MANY = 1e-4, 200  # longest such interval, as a fraction of the blade's length; all, if there are more stations
 RIGID_AXIAL = 1e-8  # compliance of a rigid axial strain, as a fraction of L²/EI: a beam 10⁴ times longer than thick
 RIGID_TORSION = 1e-6  # compliance of a rigid torsion, as a fraction of 1/EI
 
@@ -128,12 +132,43 @@ class Quadrature:
 
 
 def quadrature(blade: Blade, nodes: Array, breaks: Array | None = None) -> Quadrature:
-    """Gauss points between the arc lengths ``nodes`` (n+1,), m; intervals also end at stations and at ``breaks`` (m)."""
-    ends = np.unique(np.concatenate([nodes, blade.stations, [] if breaks is None else breaks]))
+    """Gauss points between the arc lengths ``nodes`` (n+1,), m.
+
+    Intervals also end at stations, at ``breaks`` (m), and where the stiffness has changed by a large factor.
+    """
+    ends = np.unique(np.concatenate([nodes, blade.stations, _between(blade), [] if breaks is None else breaks]))
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * blade.length)]
     h = np.diff(ends)
     element = np.searchsorted(nodes, ends[:-1] + 0.5 * h, side="right") - 1
     return Quadrature(ends[:-1], h, element, *gauss.between(ends, GAUSS))
+
+
+def _between(blade: Blade) -> Array:
+    """Arc lengths (m,) that divide the intervals between stations in which a stiffness changes by a large factor.
+
+    From a matrix K₀ to K₁ the stiffness is ``K₀ + t (K₁ − K₀)``. Along the eigenvectors of K₁ relative to K₀, with eigenvalues
+    μ, it grows like ``1 + t (μ − 1)``, so that its inverse has poles at ``t = 1/(1 − μ)`` only. With a pole near an end, halved
+    elements are similar to the ones before: three points would have the same error at every refinement.
+    """
+    soft = np.flatnonzero(np.isfinite(blade.stiffness).all(axis=(0, 2)))
+    k, s = blade.stiffness[:, soft[:, None], soft], blade.stations
+    root = np.linalg.cholesky(k[:-1])
+    growth = np.linalg.eigvalsh(np.linalg.solve(root, np.linalg.solve(root, k[1:]).mT)) - 1.0
+    change = np.exp(np.abs(np.log1p(growth)).max(1, initial=0.0))
+    fixed = (np.diff(s) <= _STEP * blade.length) | (len(s) > _MANY)
+    found = []
+    for i in np.flatnonzero(change > np.where(fixed, _PIECE, _LARGE)):
+        g = growth[i][growth[i] != 0.0]
+        t = 0.0
+        while (t := t + _stride(1.0 + t * g, g)) < 1.0:
+            found.append(s[i] + t * (s[i + 1] - s[i]))
+    return np.array(found)
+
+
+def _stride(size: Array, slope: Array) -> float:
+    """Largest step of t in which none of the sizes (c,), with these slopes (c,), changes by more than ``_PIECE``."""
+    allowed = np.where(slope > 0, _PIECE - 1.0, 1.0 - 1.0 / _PIECE)
+    return float((allowed * size / np.abs(slope)).min())
 
 
 def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:

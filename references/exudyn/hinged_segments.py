@@ -136,9 +136,21 @@ def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
     return at.place[:, 0], at.axes[:, 0]
 
 
+def _pieces(blade: Blade, ends: Array) -> Array:
+    """(k+1,) ends of intervals for the quadrature of compliances: in none does a stiffness change by more than a fifth."""
+    k = np.diagonal(blade.stiffness, axis1=1, axis2=2)[:, np.isfinite(blade.stiffness[0]).diagonal()]
+    inside = [ends, blade.stations]
+    for i, c in np.argwhere(k[1:] != k[:-1]):
+        first, last = k[i, c], k[i + 1, c]
+        sizes = np.geomspace(first, last, int(abs(np.log(last / first)) / np.log(1.2)) + 2)
+        a, b = blade.stations[i : i + 2]
+        inside.append(a + (b - a) * (sizes - first) / (last - first))
+    return np.unique(np.concatenate(inside))
+
+
 def _hinges(blade: Blade, ends: Array) -> Array:
     """(e,) arc lengths of the centroid of each element's bending compliance."""
-    s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
+    s, weight = (part.ravel() for part in gauss.between(_pieces(blade, ends), 3))
     bend = weight * (1.0 / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]]).sum(1)
     element, total = np.searchsorted(ends, s) - 1, np.zeros((2, len(ends) - 1))
     np.add.at(total[0], element, bend)
@@ -151,7 +163,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 
     The two joints of a strain add up to it; their difference has the same stiffness.
     """
-    s, weight = (part.ravel() for part in gauss.between(np.union1d(ends, blade.stations), 3))
+    s, weight = (part.ravel() for part in gauss.between(_pieces(blade, ends), 3))
     element = np.searchsorted(ends, s) - 1
     strains = np.unique(hinge)
     section = np.linalg.inv(stiffness_at(blade, s)[:, strains[:, None], strains])

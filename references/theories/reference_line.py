@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
-from ...core.blade import Blade, straight, twist_at
+from ...core import gauss
+from ...core.blade import Blade, stiffness_at, straight, twist_at
 from .spectral import intervals
 
 Array = NDArray[np.float64]
@@ -88,7 +89,8 @@ def element_ends(blade: Blade, elements: int, most: int) -> Array:
 
     Every interval between two kinks of a property or of the line is divided into the same number of elements, so that
     each element is smooth and the order of convergence is preserved. A blade with more than ``most`` intervals has
-    proportionally more elements, so that refinements stay distinct. A step of a property is one element at every refinement.
+    proportionally more elements, so that refinements stay distinct. A step of a property is one element at every refinement,
+    unless it is so soft that this would be inaccurate.
     """
     ends, wide = _intervals(blade)
     pieces = np.where(wide, -(-elements // min(int(wide.sum()), most)), 1)
@@ -104,4 +106,20 @@ def steps(blade: Blade) -> int:
 def _intervals(blade: Blade) -> tuple[Array, NDArray[np.bool_]]:
     """Ends (k+1,) of the intervals between kinks, and which (k,) are no steps."""
     ends = intervals(blade) if straight(blade) else blade.stations
-    return ends, np.diff(ends) > JUMP * blade.length
+    return ends, (np.diff(ends) > JUMP * blade.length) | ~_flat(blade, ends)
+
+
+def _flat(blade: Blade, ends: Array) -> NDArray[np.bool_]:
+    """Which intervals (k,) have a compliance that three Gauss points integrate, to a millionth of the blade's.
+
+    The stiffness k is linear between the stations, and ``∫ ds/k = h ln(k₁/k₀)/(k₁ − k₀)``.
+    """
+    k = np.diagonal(stiffness_at(blade, ends), axis1=1, axis2=2)
+    first, last = k[:-1, np.isfinite(k[0])], k[1:, np.isfinite(k[0])]
+    h, x, w = np.diff(ends)[:, None], *gauss.rule(3)
+    ratio = last / first
+    exact = (
+        h / first * np.where(np.abs(ratio - 1.0) < 1e-6, 1.0, np.log(ratio) / np.where(ratio == 1.0, 1.0, ratio - 1.0))
+    )
+    found = h * (w / (first[..., None] + (last - first)[..., None] * x)).sum(-1)
+    return (np.abs(found - exact) < 1e-6 * exact.sum(0)).all(1)

@@ -5,6 +5,7 @@ import pytest
 
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.element import sections
+from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
 
 L, EA, GJ, EY, EZ, GA = 3.0, 5e8, 2e6, 4e6, 7e6, 9e7
@@ -87,3 +88,42 @@ def test_quarter_circle_in_plane() -> None:
     )
     exact = radius**3 * (np.pi / 4 / EY + (3 * np.pi / 4 - 2) / GJ)
     assert tip(b, np.array([0, 0, 1.0, 0, 0, 0]), 8)[2] == pytest.approx(exact, rel=2e-6)
+
+
+@pytest.mark.parametrize(("length", "tolerance"), [(0.5 * L, 1e-6), (5e-5 * L, 1e-10)], ids=["long", "a step"])
+def test_a_stiffness_that_changes_a_millionfold(length: float, tolerance: float) -> None:
+    """A tip moment on EI growing linearly over a length h from the root: the tip turns by h ln(EI₁/EI₀)/(EI₁ − EI₀)."""
+    stations, EI = np.array([0.0, length, L]), np.array([1.0, 1e6, 1e6])
+    soft = Blade(
+        "soft root", stations, section_stiffness(EA, GJ, EI, 3 * EI), np.repeat(section_mass(1.0), 3, 0), np.zeros(3)
+    )
+    exact = length * np.log(1e6) / (1e6 - 1.0) + (L - length) / 1e6
+    np.testing.assert_allclose(tip(soft, np.array([0, 0, 0, 0, 1.0, 0]))[4], exact, rtol=tolerance)
+
+
+def test_a_coupling_that_grows_until_the_section_is_almost_singular() -> None:
+    """The diagonal is constant, so that only the matrix as a whole shows the change."""
+    ends = np.zeros((2, 6, 6))
+    ends[:] = section_stiffness(EA, GJ, EY, EZ)
+    ends[1, 3, 4] = ends[1, 4, 3] = 0.9999 * np.sqrt(GJ * EY)
+    coupled = Blade("coupled", np.array([0.0, L]), ends, np.repeat(section_mass(1.0), 2, 0), np.zeros(2))
+    c = np.sqrt(GJ * EY) * 0.9999  # ∫ GJ/(GJ EY − c² t²) L dt
+    exact = L * np.sqrt(GJ / EY) / c * np.arctanh(c / np.sqrt(GJ * EY))
+    np.testing.assert_allclose(tip(coupled, np.array([0, 0, 0, 0, 1.0, 0]))[4], exact, rtol=1e-6)
+
+
+@pytest.mark.parametrize("length", [0.1, 9.9e-5])
+def test_stations_added_on_the_line_change_no_frequency_beyond_its_uncertainty(length: float) -> None:
+    """A root as soft as a hinge (EI 0.1 N m² growing to 1e5 over a part of 10 m): the source of each station is the line."""
+
+    def blade(stations: np.ndarray) -> Blade:
+        EI = np.interp(stations, [0.0, 10 * length, 10.0], [0.1, 1e5, 1e5])
+        mass = np.repeat(section_mass(10.0), len(stations), 0)
+        return Blade("hinge", stations, section_stiffness(1e9, 1e5, EI, 3 * EI), mass, np.zeros(len(stations)))
+
+    sparse = modes(blade(np.array([0.0, 10 * length, 10.0])), 0.0, count=4)
+    added = 10 * length * (0.1 * 1e6 ** (np.arange(61) / 60) - 0.1) / (1e5 - 0.1)
+    dense = modes(blade(np.append(added, 10.0)), 0.0, count=4)
+    assert sparse.uncertainty.max() < 1e-6
+    difference = np.abs(sparse.frequencies / dense.frequencies - 1.0)
+    assert (difference <= sparse.uncertainty + dense.uncertainty).all()
