@@ -33,11 +33,24 @@ LOAD = ("fraction [-]", "fx [N/m]", "fy [N/m]", "fz [N/m]")
 def load(path: Path, blade: Blade) -> Array:
     """A steady load (n, 3) at the blade's stations, N/m, linear between the rows of a CSV file with the columns ``LOAD``.
 
+    The solver takes it as linear between the stations.
+
     Raises:
-        CaseError: if the file is missing or malformed, or its rows do not cover the blade in ascending order.
+        CaseError: if the file is missing or malformed, its rows do not cover the blade in ascending order, or the load is not
+            linear between the stations.
     """
     table = read_table(path, LOAD)
     at = table[LOAD[0]]
     if at[0] != 0.0 or at[-1] != 1.0 or (np.diff(at) <= 0).any():
         raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows must ascend from 0 (root) to 1 (tip)")
-    return np.stack([np.interp(blade.stations / blade.length, at, table[name]) for name in LOAD[1:]], axis=-1)
+    stations = blade.stations / blade.length
+    found = np.stack([np.interp(stations, at, table[name]) for name in LOAD[1:]], axis=-1)
+    given = np.stack([table[name] for name in LOAD[1:]], axis=-1)
+    taken = np.stack([np.interp(at, stations, column) for column in found.T], axis=-1)
+    off = np.abs(taken - given).max(1)
+    if off.max() > 1e-6 * np.abs(given).max():
+        raise CaseError(
+            f"{path}: {LOAD[0]} {at[off.argmax()]:g}: the load is not linear between the blade's {len(stations)} stations: "
+            "add a station to the blade there, or give the load at its stations only"
+        )
+    return found

@@ -246,6 +246,7 @@ def test_a_load_of_the_beams_weight_is_gravity(beam: Path, tmp_path: Path, capsy
     [
         ("0,1,0,0\n0.5,1,0,0\n", ["load.csv", "fraction", "0.5", "tip"]),
         ("0,1,0,0\n1,x,0,0\n", ["load.csv", "line 3", "fx"]),
+        ("0,0,0,0\n0.37,20000,0,0\n1,0,0,0\n", ["load.csv", "fraction", "0.37", "not linear", "stations"]),
     ],
 )
 def test_a_bad_load_is_one_line(
