@@ -40,15 +40,23 @@ class Pool(ProcessPoolExecutor):
     def __init__(self, workers: int, scratch: Path | None = None) -> None:
         os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the children when they load their libraries
         super().__init__(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(scratch,))
+        self._open: set[Future[Any]] = set()
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """See ``Executor``. A task that is pending when the pool stops is not started."""
         with _safe_path(), _held():  # processes start when they are first needed
-            return super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, return-value]
+            future: Future[T] = super().submit(_unless_leaving, fn, *args, **kwargs)  # type: ignore[arg-type, assignment]
+        self._open.add(future)
+        future.add_done_callback(self._open.discard)
+        return future
 
     def stop(self) -> None:
-        """Interrupt every process and drop pending tasks; return when all processes have ended."""
-        for child in active_children():
+        """Interrupt every process and drop pending tasks; return when all processes have ended.
+
+        If all tasks are done, the processes end by themselves: one interrupted while it reads the message to end would leave a
+        part of it to the next one.
+        """
+        for child in active_children() if self._open else ():
             if child.pid is not None:
                 with suppress(ProcessLookupError):  # it has just ended
                     os.kill(child.pid, signal.SIGTERM)  # ends a process silently that is still starting
