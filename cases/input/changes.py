@@ -19,7 +19,7 @@ from .errors import CaseError, nearest
 
 Array = NDArray[np.float64]
 
-FORM = re.compile(r"\s*(\w+)\s*=\s*(\*?)\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*")
+FORM = re.compile(r"\s*(\w+)\s*=\s*(\*?)\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 
 
 @dataclass(frozen=True)

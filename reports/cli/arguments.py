@@ -29,6 +29,7 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
 
 Whole = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1_000_000))]
 Count = Annotated[int, Parameter(converter=_whole, validator=Number(gte=0))]
+NumberOfModes = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1000))]
 Workers = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=1024))]
 
 Elements = Annotated[int, Parameter(converter=_whole, validator=Number(gte=1, lte=20_000))]

@@ -58,6 +58,8 @@ def test_numbers_are_set_in_their_unit_and_scaled() -> None:
     ("text", "phrase"),
     [
         ("EI_flap", "not NAME=*FACTOR or NAME=VALUE"),
+        ("EI_flap=*1..2", "not NAME=*FACTOR"),
+        ("pitch=.", "not NAME=*FACTOR"),
         ("EI_flap=1.1", "varies along the blade: give a factor, as in EI_flap=*1.1"),
         ("EI_flp=*1.1", "did you mean EI_flap?"),
         ("mass=*0", "a factor is positive"),
