@@ -91,7 +91,8 @@ def sweep(
 ) -> Iterator[Modes]:
     """The modes at one speed after another; arguments and errors as for ``modes``.
 
-    Every mesh is made once. Newton's method starts from an extrapolation of the previous steady states.
+    Meshes are kept until |omega| exceeds the power of two for which they were graded. Newton's method starts from an
+    extrapolation of the previous steady states.
     """
     if not accuracy > 0:
         raise ValueError(f"accuracy: {accuracy}: give a positive relative number, such as 1e-6")

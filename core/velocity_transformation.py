@@ -37,8 +37,8 @@ Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
 _ORDER = 4  # of the extrapolation over speeds
-_CONVERGED = 1e-13  # largest last correction of a steady state, as a fraction of the blade's length (or a radian)
-_BALANCED = 1e-8  # largest distance from the steady state, as a fraction of the blade's length (or a radian)
+_CONVERGED = 1e-13  # largest last correction of a steady state, rad, or a fraction of the blade's length (at least 1 m)
+_BALANCED = 1e-8  # largest distance from the steady state, in the same unit
 
 
 def modes(
@@ -53,7 +53,9 @@ def modes(
     gravity: Array | None = None,
     load: Array | None = None,
 ) -> Modes:
-    """The lowest modes of a blade in steady rotation at ``omega``; arguments, units and result as for ``solve.modes``.
+    """The lowest modes of a blade in steady rotation at ``omega``; arguments and units as for ``solve.modes``.
+
+    The result has no uncertainties.
 
     Raises:
         ValueError: as ``solve.modes``; more than ``MAX_ELEMENTS`` elements; effects without prestretch or geometric
@@ -152,7 +154,8 @@ def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects,
     off = np.abs(found.correction).max(initial=0.0) / max(body.scale, 1.0)
     if off > _BALANCED:
         raise SteadyStateError(
-            f"omega: {omega:.6g} rad/s: the state found is {off:.1e} of the blade's length from equilibrium"
+            f"omega: {omega:.6g} rad/s: the state found is {off:.1e} rad, or of the blade's length (at least 1 m), from "
+            "equilibrium"
         )
     return found
 

@@ -75,7 +75,7 @@ class CondenseFile(Model, frozen=True, forbid_unknown_fields=True, kw_only=True)
     root: Annotated[Kind, Meta(description="tie of the first section")] = "rigid"
     weights: Annotated[
         Literal["mass", "mass matrix", "even"],
-        Meta(description="weight of each node of a section in an average tie: see core.ties.average"),
+        Meta(description="weight of each node of a section in an average tie: see core.condense.ties.average"),
     ] = "mass"
     units: Annotated[
         Literal["m kg s", "mm t s"],

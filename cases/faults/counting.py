@@ -44,7 +44,7 @@ COUNTS: dict[str, tuple[Run, int]] = {
     "one that declares nothing": (_run(ONE, (_cell("wren"), None)), 1),
     "one that disagrees in one mode": (
         _run(ONE, TWO, (_cell("wren", mode=2, difference=2e-3, verdict="fail"), None)), 1),
-    "one whose difference is only explained": (
+    "one with a known difference": (
         _run(ONE, (_cell("wren", difference=0.1, verdict="known difference"), _origin("wren"))), 1),
     "an inconclusive one": (
         _run(ONE, (_cell("wren", difference=0.1, uncertainty=0.5, verdict="estimate"), _origin("wren"))), 1),
@@ -81,11 +81,12 @@ FAULTS = (
               (witnesses, "MATTERS", _without("rotation"))),
     _counting("core confirms core", "codes with core's discretisation or frames count", "a group",
               (witnesses, "_kind", lambda right: lambda cell, origin: "code")),
-    _counting("explained is agreed", "every witness agrees", "a group",
+    _counting("known differences count", "every witness agrees", "a group",
               (witnesses, "_worst", lambda right: lambda standings: "agrees")),
     _counting("best mode counts", "agreement in one mode is enough", "a group",
               (witnesses, "_worst", lambda right: lambda standings: next(
-                  (s for s in ("agrees", "explained", "open", "disagrees") if s in set(standings)), "agrees"))),
+                  (s for s in ("agrees", "known difference", "estimate", "open", "disagrees") if s in set(standings)),
+                  "agrees"))),
     _counting("too few groups are accepted", "no number of groups is required", "a group",
               (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9)),
 )  # fmt: skip

@@ -39,7 +39,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     """Suggestion for an unknown word: the nearest known word, else all of them."""
     known = tuple(known)
     near = get_close_matches(word, known, 1, cutoff=0.5)
-    return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+    return f"did you mean {near[0]}?" if near else f"give one of {', '.join(known)}"
 
 
 def rad_s(omega: float) -> str:

@@ -138,7 +138,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ClosedForm(Struct, frozen=True, forbid_unknown_fields=True):
-    """A formula for this mechanism, with separate parameters: see ``references.blade_formulae``."""
+    """A formula for this mechanism, with separate parameters: see ``references.theories.blade_formulae``."""
 
     formula: str
     parameters: Annotated[dict[str, float], Meta(description="SI")]

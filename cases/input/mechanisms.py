@@ -16,7 +16,7 @@ from ...core.multibody.tree import compile_tree
 from ...core.space import spatial as sp
 from .errors import CaseError, nearest
 from .mechanism_schema import BodyData, CoordinateSpringData, Frame, JointData, MechanismFile, MotionData
-from .toml import convert, document, finite
+from .toml import OR_A_NAME, convert, document, finite
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -65,7 +65,7 @@ def is_one(path: Path) -> bool:
     Raises:
         CaseError: if the file does not exist or is not TOML.
     """
-    return "bodies" in document(path)
+    return "bodies" in document(path, OR_A_NAME)
 
 
 def read(path: Path) -> Described:

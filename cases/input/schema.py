@@ -21,7 +21,7 @@ from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
 from .names import Name, Typed
 from .readers.source import Unused
-from .toml import convert, document, finite
+from .toml import OR_A_NAME, convert, document, finite
 
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
 Motion = Literal["axial", "edgewise", "flapwise", "torsion"]
@@ -153,7 +153,7 @@ def read(path: Path) -> Case:
         CaseError: one line with file, field, value, cause and remedy.
     """
     with files.reading(path):
-        return decode(document(path), str(path), path.parent)
+        return decode(document(path, OR_A_NAME), str(path), path.parent)
 
 
 def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
@@ -248,7 +248,7 @@ def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
         raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
     if speeds.max() > FASTEST:
         raise CaseError(
-            f"{path}: speeds.{unit}: {speeds.max():g}: no rotor turns so fast: another unit? at most {FASTEST:g}"
+            f"{path}: speeds.{unit}: {speeds.max():g}: implausibly fast: another unit? give at most {FASTEST:g}"
         )
     if (np.diff(speeds) <= 0).any():
         raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")

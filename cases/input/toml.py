@@ -17,13 +17,13 @@ from .names import RULE
 T = TypeVar("T")
 
 
-def document(path: Path) -> dict[str, Any]:
-    """Read the tables of a TOML file.
+def document(path: Path, absent: str = "correct the path") -> dict[str, Any]:
+    """Read the tables of a TOML file; ``absent`` is the remedy if it does not exist.
 
     Raises:
         CaseError: if the file does not exist, is not text, not TOML, or nested too deeply.
     """
-    text = files.text(path, absent="correct the path, or give the name of a case")
+    text = files.text(path, absent=absent)
     try:
         for k, line in enumerate(text.splitlines(), 1):
             if line.count(".") > DEEPEST and max(part.count(".") for part in re.split("[,=]", line)) > DEEPEST:
@@ -39,6 +39,9 @@ def document(path: Path) -> dict[str, Any]:
         raise _too_deep(path)
     return found
 
+
+OR_A_NAME = "correct the path, or give the name of a case"
+"""The remedy for a missing file where a case may also be named."""
 
 DEEPEST = 32
 """Maximum nesting depth of tables and lists; valid files need at most 6."""

@@ -49,7 +49,7 @@ class Cell:
         difference: relative.
         uncertainty: relative.
         target: relative; upper limit of |difference| + uncertainty.
-        verdict: see ``cases.verdict``.
+        verdict: see ``cases.judge.verdict``.
         reason: reason for any verdict other than a plain pass; names and quantifies the cause of a known difference.
         full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks effects).
         shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``everything`` (core

@@ -1,8 +1,8 @@
 """Independent confirmation of a case's answers, counted by groups of independent origin.
 
 A witness is a column with answers: a code, a closed form or a printed series. It counts if it agrees with core in every
-mode and at every speed that it answers. A witness whose difference is only explained, or whose own error bound is too
-wide, does not count; neither does a measurement.
+mode and at every speed that it answers. A witness with a known difference, or whose own error bound is too wide,
+does not count; neither does a measurement.
 
 Witnesses with the same engine, theory or rotation terms may share an error, so they form one *group*, even if only a
 third witness links them. A code with core's discretisation or frames confirms that core solves its model, not that the
@@ -27,7 +27,10 @@ FINE = 1e-4
 """Relative difference within which independent models should agree after extrapolation."""
 
 Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared", "other release"]
-Standing = Literal["agrees", "explained", "open", "disagrees"]
+Standing = Literal["agrees", "known difference", "estimate", "open", "disagrees"]
+
+INDEPENDENT: tuple[Kind, ...] = ("code", "closed form", "printed source")
+"""Kinds that count."""
 
 MATTERS = ("engine", "theory", "rotation")
 """Two origins that are the same in any of these fields count once."""
@@ -111,20 +114,20 @@ def _standing(cell: Cell, target: float) -> Standing:
     verdict, _ = judge(cell.difference, cell.uncertainty, target)
     if verdict == "pass":
         return "agrees"
-    if cell.verdict in ("known difference", "estimate"):
-        return "explained"
+    if cell.verdict == "known difference" or cell.verdict == "estimate":
+        return cell.verdict
     return "disagrees" if verdict == "fail" else "open"
 
 
 def _worst(standings: Iterable[Standing]) -> Standing:
     found = list(standings)
-    order: tuple[Standing, ...] = ("disagrees", "open", "explained", "agrees")
+    order: tuple[Standing, ...] = ("disagrees", "open", "estimate", "known difference", "agrees")
     return next(s for s in order if s in found)
 
 
 def groups(found: Iterable[Witness]) -> list[tuple[Witness, ...]]:
     """Witnesses that agree and share nothing with core, grouped by common origin; each group counts once."""
-    counted = [w for w in found if w.kind in ("code", "closed form", "printed source") and w.standing == "agrees"]
+    counted = [w for w in found if w.kind in INDEPENDENT and w.standing == "agrees"]
     out: list[list[Witness]] = []
     for witness in counted:
         linked = [group for group in out if any(_linked(witness, other) for other in group)]

@@ -43,24 +43,27 @@ class Cached(Executor):
         if not storable(fn):
             return self.executor.submit(fn, *args, **kwargs)
         key = question(fn, args, kwargs, *self.also)
-        try:
-            value, computed = self._get(key)
-        except KeyError:
+        if (known := self._get(key)) is None:
             future = self.executor.submit(fn, *args, **kwargs)
             future.add_done_callback(lambda done: self._keep(key, fn, done))
             return future
+        value, computed = known
         self.taken.append(computed)
         found: Future[Any] = Future()
         found.set_result(value)
         return found
 
-    def _get(self, key: str) -> tuple[Any, float]:
-        text, computed = self.store.get(key)
+    def _get(self, key: str) -> tuple[Any, float] | None:
+        """A stored answer and its time; None if it is missing or damaged."""
+        try:
+            text, computed = self.store.get(key)
+        except KeyError:
+            return None
         try:
             return stored.decode(msgspec.json.decode(text)), computed
-        except (msgspec.DecodeError, ValueError) as error:
+        except (msgspec.DecodeError, ValueError):
             self.store.remove(key)
-            raise KeyError(key) from error
+            return None
 
     def _keep(self, key: str, fn: Callable[..., Any], done: Future[Any]) -> None:
         if not done.cancelled() and done.exception() is None and not _failing(value := done.result()):

@@ -39,7 +39,7 @@ _BY_HAND = Independence(
     theory="second-order Lagrangian by hand",
     rotation="second-order Lagrangian by hand",
     sections="the case's closed_form.parameters",
-    eigensolver="references.damped",
+    eigensolver="the adapters' own, with damping",
 )
 
 Array = NDArray[np.float64]

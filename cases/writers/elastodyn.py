@@ -31,7 +31,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
     Args:
         blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia, as the format requires.
         path: path of the file.
-        omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.elastodyn_shapes``).
+        omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.campbell.elastodyn_shapes``).
         given: unused quantities of the blade's original file; those in ``CARRIED`` are written.
 
     Raises:

@@ -40,11 +40,12 @@ class Estimate:
 def estimate(f: Array, order: int) -> Estimate:
     """Extrapolate frequencies (3, m) of meshes each twice as fine as the previous one, with a theoretical ``order``.
 
-    Where the observed order agrees with the theoretical one, the error of the finest mesh is Richardson's estimate, and that
-    of the extrapolated value is the larger of that estimate, since three meshes may have the theoretical order by chance, and
-    the change from the extrapolation of the first two meshes. Otherwise the finest
-    value is not extrapolated, and the lower of the two orders is used; for a sequence that does not converge, the
-    uncertainty is three times its spread.
+    With f₁, f₂, f₃ from coarse to fine, Richardson's estimate of the error of f₃ is r = |f₃ − f₂|/(2ᵖ − 1), p the theoretical
+    order, and c is the change between the extrapolations from (f₁, f₂) and (f₂, f₃). Where the observed order agrees with p,
+    the uncertainty of the extrapolated value is max(c, r), since three meshes may have the theoretical order by chance, and
+    that of f₃ is 1.25 r + c. Otherwise f₃ is not extrapolated, and its uncertainty is 3 |f₃ − f₂|/(2^q − 1) with the lower
+    of the two orders, q; for a sequence that does not converge, it is three times the larger difference. No uncertainty is
+    smaller than a tenth of that of a lower mode, since differences may cancel by chance.
     """
     before, last = f[1] - f[0], f[2] - f[1]
     quiet = np.abs(before) <= 1e3 * FLOOR * f[2]  # rounding, which has no order

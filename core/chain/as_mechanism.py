@@ -1,4 +1,4 @@
-"""A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (Park 2010, sec. 3).
+"""A blade's chain as a general mechanism: hub on a revolute, bodies joined by elastic connections (as in Park et al. 2010).
 
 A joint at the root is an elastic connection too, without length, along the root's axes: its clamped coordinates are
 prescribed as zero (Φᴹ), and its springs act on the others.

@@ -134,7 +134,7 @@ def _triplets(name: str, lines: list[str]) -> Exported:
         labels.append([whole(name, number, w) for w in words[:-1]])
         values.append(real(name, number, words[-1]))
     if not labels:
-        raise MatrixFileError(f"{name}: no matrix found: see core.condense.matrix_files for the supported formats")
+        raise MatrixFileError(f"{name}: no matrix found: is it in one of the formats listed in docs/condense.md?")
     at = np.array(labels, dtype=np.intp)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], np.array(values))

@@ -25,8 +25,8 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
 
     Newton's method is used as long as its corrections contract. Otherwise the mechanism relaxes in pseudo-time from a guess
     that was given. Continuation follows the equilibrium from rest, with dead forces that balance the mechanism at the guess:
-    rates and loads grow while the dead forces fade. If a mechanism has no equilibrium at rest, as a pendulum whose weight
-    grows with the loads, only the dead forces fade. Without a guess, relaxation is the last resort.
+    rates, accelerations and gravity grow while the dead forces fade. If a mechanism has no equilibrium at rest, as a pendulum
+    whose weight grows with gravity, only the dead forces fade. Without a guess, relaxation is the last resort.
 
     Raises:
         MechanismError: loops that do not close, motions that contradict them, or no equilibrium found.
@@ -51,7 +51,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     if found is None:
         raise MechanismError(
             "no steady state was found near the guess: neither Newton's method nor relaxation converges from it, and "
-            f"continuation reached {100 * reached[0]:.3g} % from rest with rates and loads growing, {100 * reached[1]:.3g} % "
+            f"continuation reached {100 * reached[0]:.3g} % from rest with rates and gravity growing, {100 * reached[1]:.3g} % "
             f"from the guess with dead forces fading{unguessed}: give a better guess, or check for a missing spring or joint"
         )
     check_rates(tree, found.state)

@@ -17,7 +17,7 @@ Index = NDArray[np.intp]
 
 _MAX_STEPS = 60
 MAX_STEP = 0.2
-"""Longest step of a coordinate while loops close or a path is followed, rad or fraction of the mechanism's length."""
+"""Longest step of a coordinate while loops close or a path is followed, rad or m."""
 
 
 def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:

@@ -39,8 +39,7 @@ def check(linear: Linearization) -> None:
     name = moving[int(np.argmax(alone))].coordinate
     raise MechanismError(
         f"coordinate {name!r}: {what} changes as it moves (by {min(100 * change, 999.0):.3g} % of its size): the equations "
-        "are periodic and have no steady modes; describe the mechanism in a frame that turns with the rotor (multi-blade "
-        "coordinates and Floquet analysis are planned)"
+        "are periodic and have no steady modes; describe the mechanism in a frame that turns with the rotor"
     )
 
 

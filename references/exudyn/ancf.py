@@ -41,7 +41,7 @@ class ExudynAncf:
     name = "exudyn-ancf"
     title = "Exudyn, ANCF cable"
     shares: Shares = "nothing"
-    independence = Independence("Exudyn", "ANCF cable", "references.exudyn_ancf")
+    independence = Independence("Exudyn", "ANCF cable", "exudyn-ancf's adapter")
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(rotary_inertia=False)
     levels = (10, 20, 40)

@@ -80,7 +80,7 @@ class ExudynMechanism:
         theory="tree of rigid bodies, loops by generic joints",
         rotation="Exudyn, differences of its forces",
         sections=CORE,
-        eigensolver="references.damped",
+        eigensolver="the adapters' own, with damping",
     )
 
     def version(self) -> str | None:

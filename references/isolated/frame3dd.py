@@ -51,7 +51,7 @@ class Frame3DD:
     name = "frame3dd"
     title = "Frame3DD, frame elements"
     shares: Shares = "nothing"
-    independence = Independence("Frame3DD", "frame elements", "references.frame3dd_frame", eigensolver="Frame3DD")
+    independence = Independence("Frame3DD", "frame elements", "frame3dd's adapter", eigensolver="Frame3DD")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)

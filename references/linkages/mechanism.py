@@ -73,7 +73,7 @@ class PinocchioMechanism:
         engine="Pinocchio",
         theory="tree of rigid bodies, loops by products of directions",
         rotation="Pinocchio, derivatives of recursive Newton-Euler",
-        eigensolver="references.damped",
+        eigensolver="the adapters' own, with damping",
     )
 
     def version(self) -> str | None:

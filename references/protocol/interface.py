@@ -48,7 +48,7 @@ class Independence:
     theory: str
     rotation: str
     sections: str = "blade"
-    eigensolver: str = "references.quadratic"
+    eigensolver: str = "the adapters' own"
 
 
 CORE = "core"

@@ -102,7 +102,7 @@ def locate(name: str) -> str:
     for entry in entry_points(group=GROUP, name=name):
         return entry.value
     near = get_close_matches(name, names(), 1)
-    advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(names())}"
+    advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(names())}"
     raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
 
 

@@ -120,7 +120,7 @@ def load(name: str) -> Table:
     """
     if name not in names():
         near = get_close_matches(name, names(), 1)
-        advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(names())}"
+        advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(names())}"
         raise TableError(f"table: {name!r} is not known: {advice}")
     return parse((files(__name__) / f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")
 

@@ -42,7 +42,7 @@ class ScikitFemBeam:
     name = "scikit-fem"
     title = "scikit-fem, prestressed beam"
     shares: Shares = "nothing"
-    independence = Independence("scikit-fem", "references.scikit_fem_forms", "references.scikit_fem_forms")
+    independence = Independence("scikit-fem", "prestressed beam", "scikit-fem's adapter")
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4

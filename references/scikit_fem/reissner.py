@@ -46,9 +46,7 @@ class ScikitFemReissner:
     name = "scikit-fem-reissner"
     title = "scikit-fem, geometrically exact beam"
     shares: Shares = "nothing"
-    independence = Independence(
-        "scikit-fem", "references.scikit_fem.reissner_forms", "references.scikit_fem.reissner_forms"
-    )
+    independence = Independence("scikit-fem", "geometrically exact beam", "scikit-fem-reissner's adapter")
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4

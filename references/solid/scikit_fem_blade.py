@@ -36,7 +36,7 @@ class ScikitFemSolid:
     title = "scikit-fem, solid elements"
     shares: Shares = "nothing"
     independence = Independence(
-        "scikit-fem", "three-dimensional solid", "references.solid.hexahedra", sections="the solid's geometry"
+        "scikit-fem", "three-dimensional solid", "scikit-fem-solid's adapter", sections="the solid's geometry"
     )
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = ALL_EFFECTS

@@ -91,7 +91,7 @@ class AssumedModes:
     name = "assumed-modes"
     title = "Putter and Manor, assumed modes"
     shares: Shares = "nothing"
-    independence = Independence("references.ritz", "Putter and Manor 1978", "references.assumed_modes")
+    independence = Independence("Southwell's Ritz method", "Putter and Manor 1978", "assumed-modes")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = LEVELS

@@ -154,7 +154,7 @@ class ExactBeam:
     name = "exact-beam"
     title = "Exact extensible beam, spectral"
     shares: Shares = "nothing"
-    independence = Independence("references.ritz", "Kirchhoff rod", "references.exact_beam")
+    independence = Independence("Southwell's Ritz method", "Kirchhoff rod", "exact-beam")
     effects = ALL_EFFECTS
     levels = LEVELS
     order = 0

@@ -57,7 +57,7 @@ class YooShin:
     name = "yoo-shin"
     title = "Yoo and Shin (1998), Rayleigh–Ritz"
     shares: Shares = "nothing"
-    independence = Independence("references.ritz", "Yoo and Shin 1998", "references.assumed_modes")
+    independence = Independence("Southwell's Ritz method", "Yoo and Shin 1998", "assumed-modes")
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(prestretch=False, rotary_inertia=False)
     levels = LEVELS

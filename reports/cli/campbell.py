@@ -39,7 +39,7 @@ from ..shared.paths import file_name
 from ..shared.units import RPM, Units
 from . import campbell_options as options
 from . import measured
-from .arguments import Accuracy, Changes, Elements, Whole, Workers
+from .arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
 from .errors import UsageError
 from .mounting import Mounting
 from .subjects import Subject, changed, single
@@ -53,7 +53,7 @@ def command(
     rpm: str | None = None,
     omega: str | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-campbell"),
-    modes: Whole = 6,
+    modes: NumberOfModes = 6,
     per_rev: str = "1:6",
     operating: str | None = None,
     margin: str = "10%",

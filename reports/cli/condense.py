@@ -19,7 +19,7 @@ from ..condense import page
 from ..shared.console import output
 from ..shared.units import RAD_S
 from . import campbell_options
-from .arguments import Whole
+from .arguments import NumberOfModes
 
 EXAMPLE = "example"
 FILE, SEGMENTS, DATA = page.FILE, "segments.json", "condensation.json"
@@ -33,7 +33,7 @@ def command(
     example: bool = False,
     omega: str | None = None,
     rpm: str | None = None,
-    modes: Whole = 6,
+    modes: NumberOfModes = 6,
     allow_large_strain: bool = False,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-condensed"),
 ) -> int:

@@ -22,7 +22,7 @@ from ..shared.units import RAD_S, RPM, Units
 from ..verification import terminal
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import Accuracy, Changes, Elements, Whole
+from .arguments import Accuracy, Changes, Elements, NumberOfModes
 from .errors import UsageError
 from .mounting import Mounting
 
@@ -35,7 +35,7 @@ def modes(
     rpm: str | None = None,
     elements: Elements | None = None,
     accuracy: Accuracy = 1e-6,
-    modes: Whole = 10,
+    modes: NumberOfModes = 10,
     method: Method = "chain",
     allow_large_strain: bool = False,
     json: bool = False,
@@ -123,7 +123,7 @@ def mechanism(
     name: str,
     /,
     *,
-    modes: Whole = 10,
+    modes: NumberOfModes = 10,
     time: float = 0.0,
     allow_large_strain: bool = False,
     json: bool = False,

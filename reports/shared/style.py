@@ -8,13 +8,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import StringIO
+from math import log10
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...cases.input import atomic
 from .compact import compact
@@ -22,6 +25,7 @@ from .compact import compact
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LINES = {"edgewise": "-", "flapwise": (0, (5, 2)), "torsion": (0, (1, 1.5)), "axial": (0, (6, 2, 1, 2)), "mixed": "-"}
 
 RC: dict[Any, Any] = {
@@ -33,6 +37,7 @@ RC: dict[Any, Any] = {
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
     "axes.titlepad": 10.0,
+    "axes.titley": 1.0,
     "axes.labelcolor": INK,
     "axes.edgecolor": MUTED,
     "axes.spines.top": False,
@@ -96,6 +101,13 @@ def key(figure: Figure, handles: Sequence[Line2D], left: float, across: int = 4)
 def band(count: int, across: int = 4) -> float:
     """Height (inches) of the band for a legend of ``count`` entries and the axis label above it."""
     return 0.62 + 0.185 * -(-count // across)
+
+
+def decades(axis: Axis, most: int) -> None:
+    """Label at most ``most`` decades of a logarithmic axis: 10⁻⁴ as plain text, which is drawn faster than a formula."""
+    axis.set_major_locator(LogLocator(numticks=most))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: "10" + str(round(log10(value))).translate(_RAISED)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def title(figure: Figure, text: str, below: str = "") -> None:

@@ -154,7 +154,7 @@ def _basis(cell: Cell) -> tuple[str, float, str]:
 def amount(value: float, target: float) -> str:
     """The size of a relative number as short text: in percent, or as a plain number if the target is tiny."""
     if target < TINY:
-        return f"{abs(value):.0e}"
+        return f"{abs(value):.0e}" if value else "0"
     size = 100 * abs(value)
     if 0 < size < 5e-5:
         return "<0.0001 %"

@@ -22,7 +22,8 @@ from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import broad, columns
 from ..verification import bench
-from ..verification.report import LEGEND, comparison, heat, unasked, units
+from ..verification.case_tables import comparison
+from ..verification.report import LEGEND, heat, unasked, units
 
 ROWS = Path(__file__).with_name("readme.jsonl")
 ROOT = Path(__file__).parents[2]
@@ -69,7 +70,9 @@ def condense(run: Run) -> Run:
     table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
     cells += [c for c in table if c.code not in ISOLATED]
     kept = dict.fromkeys(replace(c, seconds=None) for c in cells)
-    return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings)
+    columns_kept = {(c.case, c.code) for c in kept}
+    origins = tuple(o for o in run.origins if (o.case, o.code) in columns_kept)
+    return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings, origins=origins)
 
 
 def five(run: Run) -> str:
@@ -93,7 +96,7 @@ def five(run: Run) -> str:
         rows.append(
             {
                 "blade": what,
-                "agree with core": ", ".join(dict.fromkeys(plain(c.code) for c in codes)),
+                "agree with Southwell": ", ".join(dict.fromkeys(plain(c.code) for c in codes)),
                 "largest difference": summary.plus_minus(worst),
                 "other verdicts": ", ".join(f"{plain(code)} ({verdict})" for code, verdict in short.items()) or "–",
                 "published table": _published(printed) if printed else "–",

@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
 from ...cases.closed_forms.closed_forms import ClosedForm, differences
 from ...core.regular_files import read_bytes
-from ..shared.style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, house, title
+from ..shared.style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, decades, house, title
 from ..shared.style import beside as labels
 
 Complex = NDArray[np.complex128]
@@ -111,7 +111,7 @@ def _differences(axes: Axes, form: ClosedForm, off: Array) -> None:
     axes.axhline(form.target, color=INK, lw=1.2, zorder=1)
     axes.annotate(f"target {form.target:.0e}", (0, form.target), (4, -10), textcoords="offset points", size=8)
     axes.set_ylim(max(LEAST, np.nanmin(off)) / 3, 10 * form.target)
-    axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    decades(axes.yaxis, 5)
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("speed, rad/s")
     axes.set_ylabel("difference")

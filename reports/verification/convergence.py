@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ...cases.judge.results import Cell, Level, Run
-from ..shared.style import FAINT, WIDTH, Look, band, house, key, looks, spread, title
+from ..shared.style import FAINT, WIDTH, Look, band, decades, house, key, looks, spread, title
 from ..shared.summary import column, columns, labels
 from ..shared.units import Units
 
@@ -84,7 +84,7 @@ def _frame(axes: Axes, levels: Sequence[Level], cells: dict[tuple[float, int, st
     axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}"))
-    axes.yaxis.set_major_locator(LogLocator(numticks=8))
+    decades(axes.yaxis, 8)
 
 
 def _error(level: Level, cell: Cell) -> float:

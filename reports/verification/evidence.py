@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from ...cases.judge import releases
 from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
+from ...cases.judge.witnesses import INDEPENDENT, witnesses
 from ..shared import summary
 from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
@@ -75,7 +76,13 @@ def first(run: Run) -> list[str]:
 
     If there are none, the second line is the independent answer that is farthest from core relative to its target.
     """
-    far = farthest(c for c in run.cells if c.shares == "nothing")
+    independent = {
+        (case, w.name)
+        for case in summary.cases(run)
+        for w in witnesses(run, case)
+        if w.kind in (*INDEPENDENT, "coarse source")
+    }
+    far = farthest(c for c in run.cells if (c.case, c.code) in independent)
     data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *urgent(run), *data]

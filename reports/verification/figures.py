@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator
 
 from ...cases.judge.results import Cell, Run, Verdict
-from ..shared.style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, house, key, looks, title
+from ..shared.style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, decades, house, key, looks, title
 from ..shared.summary import allowed, amount, column, columns, counts, labels
 from ..shared.units import Units
 
@@ -192,7 +191,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
             axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
         axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])
         axes.tick_params(axis="y", length=0, pad=8)
-        axes.xaxis.set_major_locator(LogLocator(numticks=20))
+        decades(axes.xaxis, 20)
         axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
         axes.annotate("largest", (1.02, -0.5), (0, 4), ("axes fraction", "data"), "offset points", size=8, color=MUTED)
         title(figure, f"{case}: differences, every mode and speed")

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -17,9 +16,9 @@ from ..shared import summary
 from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.style import save, svg
-from ..shared.summary import SYMBOL, amount, broad, column, columns
+from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import bench, closed_forms_figure, controls, error_budget, evidence, lumped, releases, witnesses
+from . import bench, case_tables, closed_forms_figure, controls, error_budget, evidence, lumped, releases, witnesses
 from .convergence import convergence
 from .figures import campbell, differences
 
@@ -238,8 +237,10 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     speeds = sorted({c.omega for c in judged if c.mode})
     printed = [c.omega for c in cells if c.role == "table"]
     focus = max([omega for omega in printed if omega in speeds] or speeds, default=None)
-    tables = {omega: comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds}
-    reasons, split = why(judged, unit), error_budget.rows(run, case)
+    tables = {
+        omega: case_tables.comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds
+    }
+    reasons, split = case_tables.why(judged, unit), error_budget.rows(run, case)
     return Section(
         name=case,
         setting=setting,
@@ -248,92 +249,11 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         focus=unit.at(focus) if focus is not None else "",
         main=tables[focus] if focus is not None else "",
         rest=[(unit.at(omega), text) for omega, text in tables.items() if omega != focus],
-        verdicts=verdicts(cells),
-        measured=measured(run, case, unit),
+        verdicts=case_tables.verdicts(cells),
+        measured=case_tables.measured(run, case, unit),
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
         error_budget=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
         error_budget_at=error_budget.heading(run, case, unit),
     )
-
-
-def measured(run: Run, case: str, unit: Units) -> str:
-    """The table of a case's measured points and the model errors they show; empty without any."""
-    names = summary.labels(run.cells)
-    cells = [c for c in run.cells if c.case == case and c.role == "measured"]
-    rows = [
-        {
-            "data": plain(c.code),
-            "mode": plain(names.get(c, "")),
-            "speed": unit.at(c.omega),
-            f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
-            f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
-            "measured against core": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
-            "model error": plain(c.reason),
-        }
-        for c in sorted(cells, key=lambda c: (c.code, c.mode, c.omega))
-    ]
-    return table(rows) if rows else ""
-
-
-def verdicts(cells: Sequence[Cell]) -> str:
-    """The number of cells by verdict, with the largest difference of each verdict."""
-    parts = []
-    for verdict, n in summary.counts(cells).items():
-        if n:
-            far = summary.largest(c for c in cells if c.verdict == verdict)
-            parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(far)}' if far else ''}")
-    return "; ".join(parts)
-
-
-def comparison(cells: Sequence[Cell], unit: Units) -> str:
-    """The table modes × columns at one speed: core's frequency, and each column's difference ± uncertainty.
-
-    Published tables and the source's discretisation also show their frequencies. Rows are modes by name: a code that
-    lacks effects is compared with core without them, and its modes may come in another order.
-    """
-    names = summary.labels(cells)
-    full = {names[c]: c.full for c in sorted(cells, key=lambda c: c.reference != c.full) if c.full is not None}
-    rows = []
-    for mode in dict.fromkeys(names[c] for c in sorted(cells, key=lambda c: (c.reference != c.full, c.mode))):
-        core = next(
-            (c.full for c in cells if names[c] == mode and c.full is not None and c.reference == c.full), full.get(mode)
-        )
-        row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
-        for name in columns(cells):
-            mine = next((c for c in cells if column(c) == name and names[c] == mode), None)
-            row[plain(name)] = _entry(mine, unit) if mine else ""
-        rows.append(row)
-    return table(rows)
-
-
-def _entry(cell: Cell, unit: Units) -> str:
-    frequency = ""
-    if cell.role in ("discretisation", "table") and cell.frequency is not None:
-        frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
-    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}{summary.wide(cell)}".strip()
-
-
-def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
-    """One row per cell that needs a reason; neighbours that differ only in speed share one."""
-    names = summary.labels(cells)
-    grave = [
-        c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)
-    ]
-    rows = []
-    for (verdict, name, mode, reason), group in groupby(
-        grave, lambda c: (c.verdict, column(c), names.get(c, ""), c.reason)
-    ):
-        at = [unit.at(c.omega) for c in group]
-        where = at[0] if len(at) == 1 else f"{len(at)} speeds" if not mode else ", ".join(at)
-        rows.append(
-            {
-                "verdict": f"{SYMBOL[verdict]} {verdict}",
-                "code": plain(name),
-                "mode": plain(mode),
-                "speed": where,
-                "reason": plain(reason),
-            }
-        )
-    return rows

@@ -28,11 +28,11 @@ def table(run: Run) -> list[dict[str, str]]:
                 "independent groups": str(len(agreeing)),
                 "required": _required(setting.groups, setting.lacking) if setting else "",
                 "who agrees, group by group": "; ".join(f"({_names(group)})" for group in agreeing),
-                f"within {unsigned(FINE)} too": _names([w for w in counted if w.fine == "agrees"]),
+                f"also within {unsigned(FINE)}": _names([w for w in counted if w.fine == "agrees"]),
                 "confirms the implementation only": _names(
                     [w for w in rest if w.kind == "core's model" and w.standing == "agrees"]
                 ),
-                "counts for nothing": ", ".join(
+                "not counted": ", ".join(
                     f"{w.name} ({w.standing if w.standing != 'agrees' else w.kind}, to {unsigned(w.target)})"
                     for w in rest
                     if w.standing != "agrees" or w.kind in ("undeclared", "coarse source", "other release")

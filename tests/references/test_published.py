@@ -181,5 +181,5 @@ def test_an_invalid_file_is_an_error(old: str, new: str, words: list[str]) -> No
 def test_an_unknown_table_is_an_error_that_suggests_the_nearest() -> None:
     with pytest.raises(TableError, match="'park2011' is not known: did you mean park2010"):
         published.load("park2011")
-    with pytest.raises(TableError, match="known: bir2010, bmodes3"):
+    with pytest.raises(TableError, match="give one of bir2010, bmodes3"):
         published.load("xyz")

@@ -1,6 +1,6 @@
 """Southwell's blade files: TOML with ``name`` and a table ``blade`` of any kind of a case file; CSV of stations.
 
-Axes are those of ``core.blade``. A CSV has the columns of ``cases.blades.Stations``; its length is given separately.
+Axes are those of ``core.blade``. A CSV has the columns of ``cases.input.blades.Stations``; its length is given separately.
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
 from ..names import Name
-from ..toml import convert, document, finite
+from ..toml import OR_A_NAME, convert, document, finite
 from .sections import describe
 from .source import Mount, Reading, Source
 
@@ -34,7 +34,7 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
 
 def is_one(path: Path) -> bool:
     """Whether a TOML file describes a blade, not a case or a mechanism."""
-    found = document(path)
+    found = document(path, OR_A_NAME)
     return "blade" in found and "speeds" not in found and "compare" not in found
 
 

@@ -75,7 +75,7 @@ def test_who_has_something_of_cores_confirms_the_implementation_only(field: str)
 def test_who_declares_nothing_counts_for_nothing() -> None:
     one = replace(run(origin("a", "A")), origins=())
     assert count(one) == []
-    assert "a (undeclared" in reported.table(one)[0]["counts for nothing"]
+    assert "a (undeclared" in reported.table(one)[0]["not counted"]
 
 
 @pytest.mark.parametrize(

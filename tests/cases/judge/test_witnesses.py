@@ -67,7 +67,7 @@ def test_kinds_and_count() -> None:
         ({"difference": 5e-6, "uncertainty": 2e-4}, "agrees", "open"),
         ({"difference": 2e-3, "verdict": "fail"}, "disagrees", "disagrees"),
         ({"uncertainty": None, "verdict": "inconclusive"}, "open", "open"),
-        ({"difference": 3e-2, "uncertainty": 8e-2, "verdict": "estimate"}, "explained", "explained"),
+        ({"difference": 3e-2, "uncertainty": 8e-2, "verdict": "estimate"}, "estimate", "estimate"),
         ({"full": 11.8, "verdict": "known difference"}, "agrees", "agrees"),  # like with like it agrees
     ],
 )
@@ -101,7 +101,7 @@ def test_the_report_counts_them() -> None:
     assert first["who agrees, group by group"] == "(alpha); (exact); (author2000/a, author2000/b)"
     assert first["confirms the implementation only"] == "twin, chain"
     assert second["independent groups"] == "1"
-    assert second["counts for nothing"].startswith("rough (disagrees")
+    assert second["not counted"].startswith("rough (disagrees")
     assert "for each blade: 1 (other: beta) to 3" in reported.headline(RUN)
     assert [row["engine"] for row in reported.origins(RUN)][:2] == ["alpha", "exact"]
 

@@ -26,6 +26,7 @@ from southwell.references.protocol.process import Failure
 from southwell.reports.shared import summary
 from southwell.reports.verification import evidence, terminal
 from southwell.reports.verification import report as matrix_report
+from southwell.reports.verification.case_tables import comparison
 
 from ...reports.cli.test_cli import southwell
 from ...support import samples
@@ -154,7 +155,7 @@ def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:
     )
     page = Run((wide,))
     assert "1.40 % (target 2.00 %)" in matrix_report.heat(page)
-    assert "(target 2.00 %)" in matrix_report.comparison([wide], matrix_report.units(page, "beam"))
+    assert "(target 2.00 %)" in comparison([wide], matrix_report.units(page, "beam"))
     (table,) = terminal.matrix(page, 100)
     assert "1.4 of 2" in str(list(table.columns[1].cells))
 

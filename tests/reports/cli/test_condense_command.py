@@ -196,7 +196,7 @@ def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
         ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie prevents warping"),
         ("sections =", 'rotor = "x"\nsections =', "rotor: along the span"),
         ("sections =", "span = [0, 0, 0]\nsections =", r"span: \[0.0, 0.0, 0.0\]: not a direction"),
-        ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': not one of its values: known: average, rigid"),
+        ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': not one of its values: give one of average, rigid"),
     ],
 )
 def test_wrong_files_are_one_line(folder: Path, old: str, new: str, message: str) -> None:

@@ -140,6 +140,8 @@ def test_differences_draw_every_number_and_each_rows_target() -> None:
     assert count == sum(c.case == "beam" and c.difference is not None for c in samples.run().cells)
     assert "target 0.10 %" in {t.get_text() for t in axes.texts}
     assert [t.get_text() for t in axes.get_yticklabels()] == list(samples.CODES)
+    assert {t.get_text() for t in axes.get_xticklabels(which="both")} >= {"10⁻⁴", "10⁻³"}
+    assert not any("$" in t.get_text() for t in axes.get_xticklabels(which="both"))  # a formula is drawn slowly
 
 
 @pytest.mark.parametrize("draw", [campbell, differences, convergence])

@@ -15,6 +15,7 @@ from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
 from southwell.reports.verification import evidence
 from southwell.reports.verification import report as matrix_report
+from southwell.reports.verification.case_tables import comparison
 
 from ...support import samples
 
@@ -223,18 +224,25 @@ def test_a_discretisation_shows_its_own_error_not_the_effects_it_lacks() -> None
     assert summary.plus_minus(cell).startswith("−0.132 %")
 
 
-def test_modes_of_a_code_with_fewer_effects_stand_in_the_row_of_their_name() -> None:
+def test_modes_of_a_code_with_fewer_effects_are_in_the_row_of_the_mode_with_all_effects() -> None:
     full = [
         samples.cell(mode=k, family=f, full=w, reference=w, code="all")
         for k, f, w in ((1, "edgewise", 5.0), (2, "axial", 9.0))
     ]
     less = [
-        samples.cell(mode=1, family="axial", full=9.0, reference=4.0, code="less", verdict="known difference"),
+        samples.cell(mode=1, family="mixed", full=9.0, reference=4.0, code="less", verdict="known difference"),
         samples.cell(mode=2, family="edgewise", full=5.0, reference=6.0, code="less", verdict="known difference"),
+        samples.cell(mode=3, family="torsion", full=9.0, reference=9.5, code="less", verdict="known difference"),
     ]
-    table = matrix_report.comparison([*full, *less], matrix_report.BY_KEY["rad_s"])
-    assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == ["edgewise 1", "axial 1"]
-    assert [row.split("|")[2].strip() for row in table.splitlines()[2:]] == ["5", "9"]
+    table = comparison([*full, *less], matrix_report.BY_KEY["rad_s"])
+    assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == [
+        "edgewise 1",
+        "axial 1",
+        "torsion 1",  # a second mode of one code near the same one: not lost
+    ]
+    assert [row.split("|")[2].strip() for row in table.splitlines()[2:]] == ["5", "9", "9"]
+    less_in_second = table.splitlines()[3].split("|")[4]
+    assert less_in_second.strip().endswith("<br>mixed 1")  # its name in that code's own order
 
 
 @pytest.mark.parametrize(

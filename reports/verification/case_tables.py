@@ -1,0 +1,103 @@
+"""The tables of one case in the report: differences by mode and column, reasons, verdicts and measured points."""
+
+from collections import Counter
+from collections.abc import Sequence
+from itertools import groupby
+
+from ...cases.judge.results import Cell, Run
+from ..shared import summary
+from ..shared.markdown import plain, table
+from ..shared.summary import SYMBOL, column, columns
+from ..shared.units import Units
+
+
+def measured(run: Run, case: str, unit: Units) -> str:
+    """The table of a case's measured points and the model errors they show; empty without any."""
+    names = summary.labels(run.cells)
+    cells = [c for c in run.cells if c.case == case and c.role == "measured"]
+    rows = [
+        {
+            "data": plain(c.code),
+            "mode": plain(names.get(c, "")),
+            "speed": unit.at(c.omega),
+            f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
+            f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
+            "measured against core": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
+            "model error": plain(c.reason),
+        }
+        for c in sorted(cells, key=lambda c: (c.code, c.mode, c.omega))
+    ]
+    return table(rows) if rows else ""
+
+
+def verdicts(cells: Sequence[Cell]) -> str:
+    """The number of cells by verdict, with the largest difference of each verdict."""
+    parts = []
+    for verdict, n in summary.counts(cells).items():
+        if n:
+            far = summary.largest(c for c in cells if c.verdict == verdict)
+            parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(far)}' if far else ''}")
+    return "; ".join(parts)
+
+
+def comparison(cells: Sequence[Cell], unit: Units) -> str:
+    """The table modes × columns at one speed: core's frequency, and each column's difference ± uncertainty.
+
+    Published tables and the source's discretisation also show their frequencies. Rows are core's modes with all effects: a code
+    that lacks effects is compared with core without them, and its modes may come in another order or have other names, which
+    are then shown.
+    """
+    names, at = summary.labels(cells), _rows(cells)
+    rows = []
+    for key in dict.fromkeys(at[c] for c in sorted(cells, key=lambda c: (c.full is None, c.full or 0.0))):
+        here = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
+        mode, core = names[here[0]], here[0].full
+        row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        for name in columns(cells):
+            mine = next((c for c in here if column(c) == name), None)
+            other = f"<br>{plain(names[mine])}" if mine and names[mine] != mode else ""
+            row[plain(name)] = f"{_entry(mine, unit)}{other}" if mine else ""
+        rows.append(row)
+    return table(rows)
+
+
+def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
+    """The row of each cell: core's frequency with all effects, and the place among the column's cells with that frequency."""
+    names, found = summary.labels(cells), dict[Cell, tuple[float | str, int]]()
+    seen: Counter[tuple[str, float | str]] = Counter()
+    for c in sorted(cells, key=lambda c: c.mode):
+        key = names[c] if c.full is None else c.full
+        found[c] = (key, seen[column(c), key])
+        seen[column(c), key] += 1
+    return found
+
+
+def _entry(cell: Cell, unit: Units) -> str:
+    frequency = ""
+    if cell.role in ("discretisation", "table") and cell.frequency is not None:
+        frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
+    return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}{summary.wide(cell)}".strip()
+
+
+def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
+    """One row per cell that needs a reason; neighbours that differ only in speed share one."""
+    names = summary.labels(cells)
+    grave = [
+        c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)
+    ]
+    rows = []
+    for (verdict, name, mode, reason), group in groupby(
+        grave, lambda c: (c.verdict, column(c), names.get(c, ""), c.reason)
+    ):
+        at = [unit.at(c.omega) for c in group]
+        where = at[0] if len(at) == 1 else f"{len(at)} speeds" if not mode else ", ".join(at)
+        rows.append(
+            {
+                "verdict": f"{SYMBOL[verdict]} {verdict}",
+                "code": plain(name),
+                "mode": plain(mode),
+                "speed": where,
+                "reason": plain(reason),
+            }
+        )
+    return rows
