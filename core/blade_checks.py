@@ -25,6 +25,9 @@ MAX_ROOT_OFFSET = 0.2
 MIN_LENGTH, MAX_LENGTH = 1e-6, 1e4
 """Limits of the length, m; the second also of the hub radius. Beyond them a length is in another unit."""
 
+MAX_PRECONE, MAX_PITCH = 89.0, 180.0
+"""Largest magnitudes, degrees. At a precone of 90° the blade lies on the rotor's axis."""
+
 ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
 """Largest difference between the length of the curve and the stations: fractions of the interval and of the blade's length.
 
@@ -106,9 +109,10 @@ def _stations(blade: "Blade") -> None:
             f"hub_radius: {blade.hub_radius:g} m: a distance from the rotor's axis, 0 to {MAX_LENGTH:g} m: another unit? "
             "correct it"
         )
-    for name in ("precone", "pitch"):
-        if not np.isfinite(getattr(blade, name)):
-            raise BladeError(f"{name}: {getattr(blade, name)}: not a finite number; give an angle in radians")
+    for name, most in (("precone", MAX_PRECONE), ("pitch", MAX_PITCH)):
+        angle = np.degrees(getattr(blade, name))
+        if not abs(angle) <= most + 1e-9:
+            raise BladeError(f"{name}: {angle:.6g} degrees: beyond ±{most:g}: another unit? correct it")
     if (blade.root < 0).any():
         raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for clamped")
 

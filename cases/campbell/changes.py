@@ -7,7 +7,8 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ..judge.pairing import aligned, families, numbered, pair, weights
+from ...core.participation import families, numbered, participation
+from ..judge.pairing import aligned, pair, weights
 from .diagram import Wanted, solver
 
 
@@ -51,13 +52,13 @@ def changes(
     weight = weights(blade)
     asked = Wanted(tuple(speeds), modes=modes, elements=elements)
     first, second = (solver(b, asked) for b in (blade, against))
-    return tuple(row for omega in speeds for row in _at(first(omega), second(omega), modes, weight))
+    return tuple(row for omega in speeds for row in _at(blade, first(omega), second(omega), modes, weight))
 
 
-def _at(found: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
+def _at(blade: Blade, found: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
     found, other = aligned(found, weight), aligned(other, weight)
     wanted = range(min(modes, len(found.frequencies)))
-    names = numbered(families(found, weight))
+    names = numbered(families(participation(found, blade)))
     out = []
     for k, partner in zip(wanted, pair(found, other, wanted, weight), strict=True):
         theirs = float(other.frequencies[partner.mode]) if partner.mode is not None else np.nan

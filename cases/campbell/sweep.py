@@ -11,8 +11,9 @@ from ...core import solve, velocity_transformation
 from ...core.blade import Blade
 from ...core.chain.refinement import AccuracyWarning
 from ...core.modes import Modes
+from ...core.participation import families, numbered, participation
 from ..input.errors import NO_STATE, rad_s, unsteady
-from ..judge.pairing import aligned, families, numbered, weights
+from ..judge.pairing import aligned, weights
 
 Method = Literal["chain", "velocity-transformation"]
 """Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
@@ -71,7 +72,7 @@ def sweep(
                 one = aligned(next(found), weight)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error, at) from error
-        known = zip(numbered(families(one, weight)), one.frequencies, one.uncertainty, strict=True)
+        known = zip(numbered(families(participation(one, blade))), one.frequencies, one.uncertainty, strict=True)
         yield [
             Named(float(omega), mode, name, float(frequency), float(sure), one.strain)
             for mode, (name, frequency, sure) in enumerate(known, 1)

@@ -50,7 +50,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     modes: Annotated[int, Meta(ge=1, le=100, description="number of modes, from the lowest, of those that qualify")]
     motions: Annotated[
         tuple[Motion, ...],
-        Meta(min_length=1, description="a mode qualifies if at least half its modal mass moves in these directions"),
+        Meta(min_length=1, description="a mode qualifies if at least half its kinetic energy is in these motions"),
     ] = get_args(Motion)
     target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest difference, relative")] = 1e-3
     tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()

@@ -1,24 +1,22 @@
 """Pairing of the modes of two codes by mass-weighted shape, never by number.
 
 The modal assurance criterion (Allemang and Brown, 1982) uses the blade's mass as the metric, so that displacements and
-rotations can be added: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass per length
-for the three displacements and the rotation about x, times a quadrature weight. Shapes are complex: gyroscopic phase
+rotations can be added: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass of
+the blade near it, for the three displacements and the rotation about x. Shapes are complex: gyroscopic phase
 differences affect the MAC.
 """
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import simpson
 from scipy.linalg import eigh, subspace_angles
 from scipy.optimize import linear_sum_assignment
 
+from ...core import gauss
 from ...core.blade import Blade, mass_at, twist_at
 from ...core.modes import STATIONS, Modes
-from ...core.participation import DOMINANT_FRACTION
 
 Array = NDArray[np.float64]
 
@@ -53,17 +51,21 @@ class Pair:
 
 
 def weights(blade: Blade) -> Array:
-    """Metric ``W`` (21, 4, 4): mass at the common stations, kg, kg m and kg m², in blade axes, with the tip mass."""
-    s = STATIONS * blade.length
+    """Metric ``W`` (21, 4, 4): mass at the common stations, kg, kg m and kg m², in blade axes, with the tip mass.
+
+    A slice of the blade is divided between the two nearest common stations by the lever rule.
+    """
+    between, weight = gauss.between(np.union1d(blade.stations, STATIONS * blade.length), 3)
+    s = np.append(between, blade.length)
+    mass = np.concatenate([weight.reshape(-1, 1, 1) * mass_at(blade, s[:-1]), blade.tip_mass[None]])[:, :4, :4]
     angle = twist_at(blade, s) + blade.pitch
-    mass = mass_at(blade, s) * np.asarray(simpson(np.eye(len(s)), x=s, axis=1))[:, None, None]
-    mass[-1] += blade.tip_mass
     cos, sin = np.cos(angle), np.sin(angle)
     turn = np.zeros((len(s), 4, 4))  # section axes → blade axes, for (x, y, z, rotation about x)
     turn[:, 0, 0] = turn[:, 3, 3] = 1.0
     turn[:, 1, 1] = turn[:, 2, 2] = cos
     turn[:, 1, 2], turn[:, 2, 1] = -sin, sin
-    return turn @ mass[:, :4, :4] @ turn.swapaxes(1, 2)
+    shares = np.maximum(0.0, 1.0 - np.abs(s / blade.length - STATIONS[:, None]) / STATIONS[1])
+    return np.einsum("ns,sij->nij", shares, turn @ mass @ turn.swapaxes(1, 2))
 
 
 def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
@@ -75,29 +77,6 @@ def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> 
 
 def _norm(shapes: NDArray[np.complex128], weight: Array) -> Array:
     return np.einsum("msi,sij,msj->m", shapes.conj(), weight, shapes, optimize=True).real
-
-
-def mass_fractions(modes: Modes, weight: Array) -> Array:
-    """Fractions (m, 4) of each mode's modal mass in motion along x, y, z and about x; each row sums to 1."""
-    parts = np.einsum("msi,sij,msj->mi", modes.shapes.conj(), weight, modes.shapes, optimize=True).real
-    total = parts.sum(1, keepdims=True)
-    return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0)
-
-
-def families(modes: Modes, weight: Array) -> tuple[str, ...]:
-    """Name of each mode: the motion that carries at least ``DOMINANT_FRACTION`` of its modal mass, else ``mixed``."""
-    share = mass_fractions(modes, weight)
-    return tuple(MOTIONS[row.argmax()] if row.max() >= DOMINANT_FRACTION else "mixed" for row in share)
-
-
-def numbered(families: Iterable[str]) -> list[str]:
-    """Each family with its number within it: ``flapwise 1``, ``edgewise 1``, ``flapwise 2``."""
-    seen: Counter[str] = Counter()
-    out = []
-    for family in families:
-        seen[family] += 1
-        out.append(f"{family} {seen[family]}")
-    return out
 
 
 def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from msgspec import Meta, Struct
 
 from ...core.blade import Blade
-from ...core.blade_checks import MAX_LENGTH, MIN_LENGTH
+from ...core.blade_checks import MAX_LENGTH, MAX_PITCH, MAX_PRECONE, MIN_LENGTH
 from ..input import files, library, readers
 from ..input.errors import CaseError
 from ..input.names import Typed
@@ -30,8 +30,12 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     main: Annotated[str, Meta(description="main file that defines how the blade is mounted")] = ""
     length: Annotated[float, Meta(ge=MIN_LENGTH, le=MAX_LENGTH, description="m")] | None = None
     hub_radius: Annotated[Length, Meta(description="m")] | None = None
-    precone: Annotated[float, Meta(ge=-89, le=89, description="degrees, positive downwind")] | None = None
-    pitch: Annotated[float, Meta(ge=-180, le=180, description="degrees, leading edge downwind")] | None = None
+    precone: (
+        Annotated[float, Meta(ge=-MAX_PRECONE, le=MAX_PRECONE, description="degrees, positive downwind")] | None
+    ) = None
+    pitch: Annotated[float, Meta(ge=-MAX_PITCH, le=MAX_PITCH, description="degrees, leading edge downwind")] | None = (
+        None
+    )
 
     def mount(self, folder: Path) -> Mount:
         """The mount for a reader, in radians."""

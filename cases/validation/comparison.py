@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ...core import multibody as mb
+from ...core.participation import numbered
 from ..judge.measured import Validation
-from ..judge.pairing import numbered
 from . import sandia34
 from .points import RPM, Point
 from .sandia34 import Variation

@@ -16,10 +16,10 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
+from ...core.participation import numbered
 from ...references.protocol.process import Failure
 from ..input.schema import Compare
 from ..judge.measured import Validation
-from ..judge.pairing import numbered
 from ..verify.core_solver import converged
 from .points import RPM, Point
 

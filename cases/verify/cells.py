@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.modes import Modes
+from ...core.participation import numbered
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..judge.measured import Validation, explained
-from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, mass_fractions, numbered, pair
+from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, pair
 from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
 from ..judge.verdict import Judgement, bracketed, discretised, judge, known
@@ -299,8 +300,7 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
 
     The shapes themselves are not inspected: a column that is empty because of an adapter fault looks the same.
     """
-    wanted = reference.core.wanted
-    motion = MOTIONS[int(mass_fractions(wanted.reference, wanted.weight)[wanted.indices[i]].argmax())]
+    motion = reference.core.motions[i]
     return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 

@@ -13,8 +13,9 @@ from ...core.chain.steady import SteadyStateError
 from ...core.effects import ALL_EFFECTS
 from ...core.eigen import UnstableError
 from ...core.modes import Modes
+from ...core.participation import families, participation
 from ..input.schema import Compare, Variant
-from ..judge.pairing import aligned, families, pair, weights
+from ..judge.pairing import aligned, pair, weights
 from .core_faults import CORE_FAULTS, Solve
 from .core_solver import COARSEST, qualifying
 
@@ -77,7 +78,7 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
     """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
-    wanted, family = qualifying(right, weight, compare), families(right, weight)
+    wanted, family = qualifying(right, blade, compare), families(participation(right, blade))
     names = [f"{family[k]} {sum(family[j] == family[k] for j in wanted if j <= k)}" for k in wanted]
     partners = [p.mode for p in pair(right, wrong, wanted, weight)]
     return tuple(

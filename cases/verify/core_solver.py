@@ -11,12 +11,13 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
+from ...core.participation import FAMILIES, families, participation
 from ...core.solve import mesh_modes, rigid_strain_bias
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE, CaseError
 from ..input.schema import Compare, Discretisation
-from ..judge.pairing import MOTIONS, Array, aligned, families, mass_fractions, weights
+from ..judge.pairing import Array, aligned, weights
 from ..judge.uncertainty import widened
 from .refinement import RefinedMode, Refining, Wanted, follow, solve
 
@@ -42,11 +43,12 @@ Solver = Callable[..., Modes]
 
 @dataclass(frozen=True)
 class Converged:
-    """Core's modes at one speed, with the compared modes, their estimates and families in the same order."""
+    """Core's modes at one speed, with the compared modes, their estimates, families and dominant motions in the same order."""
 
     wanted: Wanted
     modes: tuple[RefinedMode, ...]
     names: tuple[str, ...]
+    motions: tuple[str, ...]
 
     @property
     def count(self) -> int:
@@ -120,7 +122,7 @@ def _converged(
 
     def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
         finest = aligned(solved[-1], weight)
-        return Wanted(finest, qualifying(finest, weight, compare), weight)
+        return Wanted(finest, qualifying(finest, blade, compare), weight)
 
     plan = refining(blade)
     (refinements,) = solve(ask, [omega], plan, count, wanted)
@@ -134,14 +136,14 @@ def _converged(
                 f"{len(refinements.answers[-1].frequencies)} modes qualify; reduce it"
             )
         return _converged(blade, omega, compare, effects, weight, DEEPER * count)
-    named = families(target.reference, weight)
+    energies = participation(target.reference, blade)[list(target.indices)]
     meshes = [answer.elements for answer in refinements.answers]
     factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, effects)
     refined_modes = tuple(
         _corrected(one, float(factor[k]), float(unsure[k]))
         for k, one in zip(target.indices, follow(refinements.answers, target, plan.order), strict=True)
     )
-    return Converged(target, refined_modes, tuple(named[k] for k in target.indices))
+    return Converged(target, refined_modes, families(energies), tuple(FAMILIES[k] for k in energies.argmax(1)))
 
 
 def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
@@ -152,7 +154,7 @@ def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
     return replace(one, estimate=replace(known, value=factor * known.value))
 
 
-def qualifying(modes: Modes, weight: Array, compare: Compare) -> tuple[int, ...]:
-    """Indices of the lowest ``compare.modes`` modes with at least half their modal mass in ``compare.motions``."""
-    share = mass_fractions(modes, weight)[:, [MOTIONS.index(m) for m in compare.motions]].sum(1)
+def qualifying(modes: Modes, blade: Blade, compare: Compare) -> tuple[int, ...]:
+    """Indices of the lowest ``compare.modes`` modes with at least half their kinetic energy in ``compare.motions``."""
+    share = participation(modes, blade)[:, [FAMILIES.index(m) for m in compare.motions]].sum(1)
     return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

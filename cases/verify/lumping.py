@@ -13,8 +13,9 @@ from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
+from ...core.participation import families, participation
 from ...core.solve import mesh_modes
-from ..judge.pairing import MOTIONS, aligned, families, weights
+from ..judge.pairing import MOTIONS, aligned, weights
 from ..judge.results import Level
 
 CASE, OMEGA = "park-cantilever", 10.0
@@ -48,7 +49,7 @@ def lumping(blade: Blade) -> tuple[Level, ...]:
         found = aligned(
             mesh_modes(blade, OMEGA, n, 3 * COUNT, mass=mass, stiffness=stiffness, effects=POINT_MASSES), weight
         )
-        named = zip(families(found, weight), found.frequencies.tolist(), strict=True)
+        named = zip(families(participation(found, blade)), found.frequencies.tolist(), strict=True)
         edgewise = [f for family, f in named if family == MOTIONS[1]][:COUNT]
         rows += [Level(CASE, OMEGA, k, variant(mass, stiffness), n, f) for k, f in enumerate(edgewise, 1)]
     return tuple(rows)

@@ -7,10 +7,10 @@ import numpy as np
 
 from ...core.blade import Blade, sample, uniform
 from ...core.effects import Effects
+from ...core.participation import numbered
 from ...references.protocol.worker import Answer, Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
-from ..judge.pairing import numbered
 from ..judge.results import Cell, Level
 from ..judge.uncertainty import from_print
 from ..judge.verdict import unsigned

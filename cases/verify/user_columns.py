@@ -6,14 +6,16 @@ speeds of a case, so core is solved at the measured speeds.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
+from math import inf
 from pathlib import Path
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
+from ...core.participation import MIXED, numbered
 from ...references.protocol.process import Failure
 from ..input.schema import Compare, Variant
-from ..judge.pairing import numbered
 from ..judge.results import Cell
 from ..judge.uncertainty import Estimate
 from .cells import Datum, Head, empty, measured, printed
@@ -49,9 +51,27 @@ def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
             cells.append(
                 _without_partner(head, omega, row, reference)
                 if k is None
-                else printed(head, omega, k, reference, sure, "")
+                else _unless_misnamed(printed(head, omega, k, reference, sure, ""), row, k, reference)
             )
     return cells, []
+
+
+def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Cell:
+    """The cell, but inconclusive if its frequency is that of another mode and core has a mixed mode up to there.
+
+    A program that names such a mode by its largest motion counts it in a family, and core does not.
+    """
+    f, named = cell.frequency, _names(reference)
+    off = [abs(f / m.estimate.value - 1.0) if m.estimate and f else inf for m in reference.core.modes]
+    best = off.index(min(off))
+    mixed = MIXED in reference.core.names[: max(k, best) + 1]
+    if cell.verdict != "fail" or not row.family or off[best] > cell.target or not mixed:
+        return cell
+    reason = (
+        f"line {row.line}: the frequency is not that of {named[k]} but of {named[best]}; core has a mixed mode, "
+        "whose name is a convention: give the mode's number among all modes"
+    )
+    return replace(cell, verdict="inconclusive", reason=reason)
 
 
 def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
@@ -90,7 +110,7 @@ def _without_partner(head: Head, omega: float, row: Given, reference: Reference)
     return empty(head, omega, "not applicable", reason)
 
 
-def _names(reference: Reference) -> list[str]:
+def _names(reference: Reference) -> tuple[str, ...]:
     return numbered(reference.core.names)
 
 

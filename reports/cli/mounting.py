@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from ...cases.input.errors import CaseError
 from ...cases.input.readers import Mount
-from ...core.blade_checks import MAX_LENGTH, MIN_LENGTH
+from ...core.blade_checks import MAX_LENGTH, MAX_PITCH, MAX_PRECONE, MIN_LENGTH
 
 
 @Parameter(name="*")
@@ -66,12 +66,12 @@ class Mounting:
                 raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
         if self.pitch is None and self.pitch_convention != "southwell":
             raise CaseError(f"--pitch-convention {self.pitch_convention}: no pitch is given: add --pitch")
-        pitch = angle("--pitch", self.pitch, most=180.0)
+        pitch = angle("--pitch", self.pitch, most=MAX_PITCH)
         return Mount(
             main=self.main,
             length=self.length,
             hub_radius=self.hub_radius,
-            precone=angle("--precone", self.precone, most=89.0),
+            precone=angle("--precone", self.precone, most=MAX_PRECONE),
             pitch=-pitch if pitch and self.pitch_convention == "openfast" else pitch,
             subset=None if self.subset is None else _subset(self.subset),
             multipliers=None if self.multipliers is None else _multipliers(self.multipliers),

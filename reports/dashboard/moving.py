@@ -7,13 +7,14 @@ import numpy as np
 
 from ...cases.input import library
 from ...cases.input.errors import CaseError
-from ...cases.judge.pairing import aligned, families, weights
+from ...cases.judge.pairing import aligned, weights
 from ...cases.judge.results import Cell
 from ...core.blade import Blade
 from ...core.chain.steady import SteadyStateError
 from ...core.eigen import UnstableError
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
+from ...core.participation import families, participation
 from ...core.solve import modes
 from ..shared.units import Units
 
@@ -48,7 +49,8 @@ def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
             continue
         if not _same(found, cells):
             return None
-        solved.append(_at(aligned(found, weight), families(aligned(found, weight), weight), radius, u))
+        found = aligned(found, weight)
+        solved.append(_at(found, families(participation(found, blade)), radius, u))
     frames = sections.frames(blade, STATIONS * blade.length)
     return {
         "elements": ELEMENTS,

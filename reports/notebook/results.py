@@ -8,10 +8,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.judge.pairing import MOTIONS, aligned, families, numbered, weights
+from ...cases.judge.pairing import MOTIONS, aligned, weights
 from ...cases.judge.results import Run
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
+from ...core.participation import families, numbered, participation
 from ..campbell import page, tables
 from ..campbell.figure import lines
 from ..shared import summary
@@ -61,7 +62,7 @@ class ModesResult(Modes):
     def names(self) -> list[str]:
         """Name of each mode, its family and ordinal in the family, such as ``flapwise 2``."""
         weight = weights(self.blade)
-        return numbered(families(aligned(self, weight), weight))
+        return list(numbered(families(participation(aligned(self, weight), self.blade))))
 
     def plot(self, modes: int = 4, axes: Axes | None = None) -> Axes:
         """Draw the dominant motion of the lowest ``modes`` shapes along the span, scaled to 1; return the axes."""

@@ -58,11 +58,6 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(
             f"{path}: name: {found.blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters"
         )
-    for what, angle, most in (("precone", found.blade.precone, 90.0), ("pitch", found.blade.pitch, 180.0)):
-        if abs(np.degrees(angle)) > most:
-            raise CaseError(
-                f"{path}: {what}: {np.degrees(angle):.6g} degrees: beyond ±{most:g}: another unit? correct it"
-            )
     if np.abs(found.blade.twist).max() > np.pi:
         k = int(np.abs(found.blade.twist).argmax())
         raise CaseError(

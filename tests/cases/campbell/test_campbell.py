@@ -12,10 +12,11 @@ from scipy.special import jn_zeros
 
 from southwell.cases.campbell.diagram import Campbell, Wanted, campbell, rises
 from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
+from southwell.cases.campbell.sweep import sweep
 from southwell.cases.campbell.variation import Variation, variations
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
-from southwell.core.blade import uniform_blade
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import modes
 from southwell.reports.campbell import csv_tables, encounters, variation
@@ -325,3 +326,16 @@ def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:
     for name, count in (("resonances", len(veering.resonances)), ("margins", 9)):
         with (tmp_path / f"{name}.csv").open() as file:
             assert len(list(csv.DictReader(file))) == count
+
+
+def test_a_mode_has_one_name_in_every_command() -> None:
+    """A beam twisted by a quarter turn, of which some modes are mixed, and an offset mass between two of the 21 stations."""
+    stations = np.array([0.0, 1.44, 1.442, 1.456, 1.458, 2.0])
+    mass = section_mass([1.2, 1.2, 200.0, 200.0, 1.2, 1.2], [1e-3, 1e-3, 1.0, 1.0, 1e-3, 1e-3])
+    stiffness = np.repeat(section_stiffness(1e7, 1e3, 1e4, 2e4), 6, axis=0)
+    blade = Blade("twisted", stations, stiffness, mass, stations * np.pi / 4)
+    speeds = (0.0, 10.0)
+    found = campbell(blade, Wanted(speeds, modes=8, elements=20))
+    for k, rows in enumerate(sweep(blade, speeds, 20, 8)):
+        assert tuple(row.name for row in rows) == found.local[k][: len(rows)]
+        assert any(row.name.startswith("mixed") for row in rows)

@@ -10,9 +10,16 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
+from southwell.cases.judge.pairing import Pair
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
-from southwell.cases.verify import matrix, user_results
+from southwell.cases.verify import matrix, user_columns, user_results
+from southwell.cases.verify.cells import Head
+from southwell.cases.verify.core_solver import Converged
+from southwell.cases.verify.reference import Reference
+from southwell.cases.verify.refinement import RefinedMode, Wanted
+from southwell.core.modes import Modes
 from southwell.reports.cli import app as cli
 
 HEAD = "speed [rad/s], frequency [rad/s], mode\n"
@@ -217,3 +224,31 @@ def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
     one = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
     with pytest.raises(CaseError, match="another file has this name"):
         user_results.check([one, one], park().variants, ["yoo-shin"])
+
+
+def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Reference:
+    """Core's modes at one speed, known by name and frequency only."""
+    values = np.array(frequencies)
+    found = Modes(1.0, values, np.zeros((len(names), 21, 4), complex), 10)
+    wanted = Wanted(found, tuple(range(len(names))), np.zeros((21, 4, 4)))
+    modes = tuple(RefinedMode(Estimate(f, 1e-9), Pair(k, 1.0), ()) for k, f in enumerate(frequencies))
+    return Reference(Converged(wanted, modes, names, names), frequencies, (1.0,) * len(names), ((),) * len(names))
+
+
+@pytest.mark.parametrize(
+    ("names", "verdict"),
+    [(("mixed", "mixed", "flapwise"), "inconclusive"), (("edgewise", "torsion", "flapwise"), "fail")],
+)
+def test_a_family_is_a_convention_only_where_core_has_mixed_modes(
+    tmp_path: Path, names: tuple[str, ...], verdict: str
+) -> None:
+    """5.355 is core's second mode, named flapwise: an error, unless core itself cannot name a mode."""
+    core = [(1.0, hand_made(names, (5.2, 5.355, 7.8)))]
+    head = Head("blade", "rig", "from results.csv", "code", 1e-3, "nothing")
+    rows = read(tmp_path, HEAD + "1.0000, 5.35500, flapwise 1\n1.0000, 5.35500, 2").rows
+    rows = [*rows, *read(tmp_path, HEAD + "1.0000, 6.50000, flapwise 1").rows]
+    (named, numbered, wrong), _ = user_columns._rows(head, rows, core)
+    assert [c.verdict for c in (named, wrong, numbered)] == [verdict, "fail", "pass"]
+    if verdict == "inconclusive":
+        assert "not that of flapwise 1 but of mixed 2" in named.reason
+        assert "number among all modes" in named.reason
