@@ -138,7 +138,8 @@ def test_a_misplaced_point_is_located() -> None:
 def test_rounded_coordinates_are_accepted(digits: int) -> None:
     """A 60 m blade with 3 m of prebend, rounded to millimetres as in published tables."""
     s = np.linspace(0.0, 60.0, 41)
-    blade(np.round(s, digits), np.round(arc(s, 600.0), digits) + 0.0)
+    rounded = np.round(arc(s, 600.0), digits) + 0.0
+    np.testing.assert_array_equal(blade(np.round(s, digits), rounded).curve, rounded)
 
 
 def test_a_curve_may_begin_off_the_pitch_axis() -> None:

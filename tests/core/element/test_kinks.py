@@ -211,7 +211,8 @@ def test_a_corner_between_even_points_is_refused(n: int, degrees: float) -> None
 @pytest.mark.parametrize(("degrees", "n"), [(10, 3), (30, 4), (60, 6), (90, 8)])
 def test_smooth_curves_with_points_every_fifteen_degrees_are_accepted(degrees: float, n: int) -> None:
     s, a = np.linspace(0.0, 10.0, n), np.radians(degrees) / 10
-    beam(s, np.stack([np.sin(a * s), 1 - np.cos(a * s), 0 * s], axis=1) / [a, a, 1])
+    curve = np.stack([np.sin(a * s), 1 - np.cos(a * s), 0 * s], axis=1) / [a, a, 1]
+    np.testing.assert_array_equal(beam(s, curve).curve, curve)
 
 
 @pytest.mark.parametrize(

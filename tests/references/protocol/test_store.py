@@ -30,8 +30,10 @@ def test_several_writers_lose_nothing(file: Path) -> None:
 
 def test_a_new_file_is_opened_by_many_at_once(tmp_path: Path) -> None:
     for n in range(20):
+        new = tmp_path / f"cache{n}" / store.NAME
         with ThreadPoolExecutor(8) as pool:
-            list(pool.map(lambda _, n=n: Store(tmp_path / f"cache{n}" / store.NAME).close(), range(8)))
+            list(pool.map(lambda _, new=new: Store(new).close(), range(8)))
+        assert Store(new).kept() == []
 
 
 def test_a_damaged_answer_is_found_and_removed(file: Path) -> None:

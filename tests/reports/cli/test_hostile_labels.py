@@ -32,18 +32,15 @@ def variants(folder: Path, label: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["show", "campbell"])
-@pytest.mark.parametrize(
-    "label", ["../../x", "/var/tmp/southwell-escaped", "..", ".", "a/../../b", "[/]", "<img src=x>"]
-)
+@pytest.mark.parametrize("label", ["../../x", "{absolute}/escaped", "..", ".", "a/../../b", "[/]", "<img src=x>"])
 def test_a_label_stays_in_the_folder_given(folder: Path, command: str, label: str) -> None:
-    out = folder / "out"
+    out, label = folder / "out", label.format(absolute=folder.parent)
     before = set(folder.parents[1].rglob("*"))
     more = ["--rpm", "10,20", "--modes", "1", "--elements", "3"] if command == "campbell" else []
     assert southwell(command, variants(folder, label), *more, "--out", str(out)) == 0
     new = set(folder.parents[1].rglob("*")) - before
     assert all(p == out or p.is_relative_to(out) for p in new)
     assert len([p for p in out.iterdir() if p.is_dir()]) == 2
-    assert not Path("/var/tmp/southwell-escaped").exists()
 
 
 def test_two_labels_never_share_a_folder() -> None:
