@@ -25,8 +25,8 @@ MAX_ROOT_OFFSET = 0.2
 MIN_LENGTH, MAX_LENGTH = 1e-6, 1e4
 """Limits of the length, m; the second also of the hub radius. Beyond them a length is in another unit."""
 
-MAX_PRECONE, MAX_PITCH = 89.0, 180.0
-"""Largest magnitudes, degrees. At a precone of 90° the blade lies on the rotor's axis."""
+MAX_PRECONE, MAX_PITCH = 90.0, 180.0
+"""Largest magnitudes, degrees. At a precone of 90° the blade is parallel to the rotor's axis, like a shaft."""
 
 ARC_TOLERANCE, COORDINATE_ROUNDING = 2e-4, 1e-5
 """Largest difference between the length of the curve and the stations: fractions of the interval and of the blade's length.

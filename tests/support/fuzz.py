@@ -350,7 +350,7 @@ def take(kind: str, path: Path, rng: random.Random) -> None:
 def _sound(blade) -> None:
     assert 0 < blade.length <= 1e4
     assert 0 <= blade.hub_radius <= 1e4
-    assert abs(np.degrees(blade.precone)) <= 89.0001
+    assert abs(np.degrees(blade.precone)) <= 90.0001
     assert abs(np.degrees(blade.pitch)) <= 180
     assert np.isfinite(blade.mass).all()
     assert (blade.mass[:, 0, 0] > 0).all()

@@ -176,7 +176,7 @@ def test_precone_of_a_deck(folder: Path) -> None:
     text = (folder / "elastodyn_main.dat").read_text()
     (line,) = (line for line in text.splitlines() if "PreCone(1)" in line)
     changed(folder / "elastodyn_main.dat", line, "-2.5e9 PreCone(1)")
-    with pytest.raises(CaseError, match=r"precone: -2.5e.09 degrees: beyond ±89"):
+    with pytest.raises(CaseError, match=r"precone: -2.5e.09 degrees: beyond ±90"):
         readers.read(folder / "elastodyn_main.dat")
 
 

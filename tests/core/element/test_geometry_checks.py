@@ -195,13 +195,13 @@ def test_a_hub_radius_in_another_unit_is_refused(radius: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "angle"), [("precone", 89.5), ("precone", -100.0), ("pitch", 36000.0), ("pitch", np.nan)]
+    ("name", "angle"), [("precone", 90.5), ("precone", -100.0), ("pitch", 36000.0), ("pitch", np.nan)]
 )
 def test_an_angle_in_another_unit_is_an_error(name: str, angle: float) -> None:
-    with pytest.raises(BladeError, match=rf"{name}: {angle:g} degrees: beyond ±(89|180): another unit\?"):
+    with pytest.raises(BladeError, match=rf"{name}: {angle:g} degrees: beyond ±(90|180): another unit\?"):
         replace(tapered(), **{name: np.radians(angle)})
 
 
-@pytest.mark.parametrize(("name", "angle"), [("precone", 89.0), ("pitch", -180.0)])
+@pytest.mark.parametrize(("name", "angle"), [("precone", 90.0), ("pitch", -180.0)])
 def test_the_largest_angles_are_accepted(name: str, angle: float) -> None:
     assert getattr(replace(tapered(), **{name: np.radians(angle)}), name) == np.radians(angle)

@@ -422,7 +422,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
         ("mechanism {folder}.toml", "cannot be read (a folder, not a file)"),
         ("condense {folder}.toml", "cannot be read (a folder, not a file)"),
         ("show {blade} --subset 1:1", "subset: ElastoDyn has none, HAWC2 has"),
-        ("show {blade} --precone 95", "--precone 95: beyond ±89 degrees"),
+        ("show {blade} --precone 95", "--precone 95: beyond ±90 degrees"),
         ("show {blade} --pitch 1e6", "--pitch 1e+06: beyond ±180 degrees"),
         ("show {blade} --length 1e300", "--length 1e+300: not a length"),
         ("show {blade} --main {blade}", "TipRad: missing"),
