@@ -44,13 +44,17 @@ def load(path: Path, blade: Blade) -> Array:
     if at[0] != 0.0 or at[-1] != 1.0 or (np.diff(at) <= 0).any():
         raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows must ascend from 0 (root) to 1 (tip)")
     stations = blade.stations / blade.length
-    found = np.stack([np.interp(stations, at, table[name]) for name in LOAD[1:]], axis=-1)
     given = np.stack([table[name] for name in LOAD[1:]], axis=-1)
-    taken = np.stack([np.interp(at, stations, column) for column in found.T], axis=-1)
-    off = np.abs(taken - given).max(1)
+    found = _linear(stations, at, given)
+    off = np.abs(_linear(at, stations, found) - given).max(1)
     if off.max() > 1e-6 * np.abs(given).max():
         raise CaseError(
             f"{path}: {LOAD[0]} {at[off.argmax()]:g}: the load is not linear between the blade's {len(stations)} stations: "
             "add a station to the blade there, or give the load at its stations only"
         )
     return found
+
+
+def _linear(where: Array, at: Array, values: Array) -> Array:
+    """Linear interpolation (k, 3) at ``where`` (k,) between the ``values`` (n, 3) at ``at`` (n,)."""
+    return np.stack([np.interp(where, at, column) for column in values.T], axis=-1)

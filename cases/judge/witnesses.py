@@ -114,7 +114,7 @@ def _standing(cell: Cell, target: float) -> Standing:
     verdict, _ = judge(cell.difference, cell.uncertainty, target)
     if verdict == "pass":
         return "agrees"
-    if cell.verdict == "known difference" or cell.verdict == "estimate":
+    if cell.verdict in ("known difference", "estimate"):
         return cell.verdict
     return "disagrees" if verdict == "fail" else "open"
 

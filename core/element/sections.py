@@ -27,9 +27,10 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 GAUSS = 3
-_LARGE = 30.0  # factor by which a stiffness changes in an interval that is divided
-_PIECE = 1.05  # the same in its parts, where the inverse is integrated to 1e-11; and in an interval that no refinement divides
-_STEP, _MANY = 1e-4, 200  # longest such interval, as a fraction of the blade's length; all, if there are more stations
+_LARGE = 30.0  # an interval is divided if a stiffness changes by more than this factor in it
+_PIECE = 1.05  # the largest factor in a part: the inverse is integrated to 1e-11 there; also for a short interval
+_STEP = 1e-4  # an interval up to this fraction of the blade's length is short: no refinement divides it
+_MANY = 200  # with more stations than this, every interval counts as short
 RIGID_AXIAL = 1e-8  # compliance of a rigid axial strain, as a fraction of L²/EI: a beam 10⁴ times longer than thick
 RIGID_TORSION = 1e-6  # compliance of a rigid torsion, as a fraction of 1/EI
 

@@ -117,9 +117,7 @@ def _flat(blade: Blade, ends: Array) -> NDArray[np.bool_]:
     k = np.diagonal(stiffness_at(blade, ends), axis1=1, axis2=2)
     first, last = k[:-1, np.isfinite(k[0])], k[1:, np.isfinite(k[0])]
     h, x, w = np.diff(ends)[:, None], *gauss.rule(3)
-    ratio = last / first
-    exact = (
-        h / first * np.where(np.abs(ratio - 1.0) < 1e-6, 1.0, np.log(ratio) / np.where(ratio == 1.0, 1.0, ratio - 1.0))
-    )
+    growth = last / first - 1.0
+    exact = h / first * np.divide(np.log1p(growth), growth, out=np.ones_like(growth), where=growth != 0.0)
     found = h * (w / (first[..., None] + (last - first)[..., None] * x)).sum(-1)
     return (np.abs(found - exact) < 1e-6 * exact.sum(0)).all(1)

@@ -51,7 +51,7 @@ ROOTS = {
 }
 
 
-def both(blade: Blade, omega: float, elements: int, count: int = 6, **options: Any) -> tuple[Modes, Modes]:
+def assert_agreement(blade: Blade, omega: float, elements: int, count: int = 6, **options: Any) -> tuple[Modes, Modes]:
     ours, theirs = (solver(blade, omega, elements, count, **options) for solver in (vt.modes, solve.mesh_modes))
     assert ours.elements == theirs.elements
     np.testing.assert_allclose(ours.frequencies, theirs.frequencies, rtol=AGREE)
@@ -68,7 +68,7 @@ def mac(ours: Modes, theirs: Modes) -> np.ndarray:
 def test_every_blade_with_consistent_mass(name: str) -> None:
     blade, omega = BLADES[name][1].blade, float(BLADES[name][1].speeds[-1])
     elements = 50 if name == "rotating-cable" else 16  # whose fewer elements have no stable state
-    both(blade, omega, elements)
+    assert_agreement(blade, omega, elements)
 
 
 @pytest.mark.parametrize("name", BLADES)
@@ -81,7 +81,7 @@ def test_every_blade_with_the_papers_elements(name: str) -> None:
             with pytest.raises(UnstableError, match="not positive definite"):
                 method.modes(blade, omega, 50, 3, **options)
         return
-    both(blade, omega, 50, **options)
+    assert_agreement(blade, omega, 50, **options)
 
 
 def test_the_papers_table() -> None:
@@ -99,7 +99,7 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
     blade = make() if root is None else replace(make(), root=np.array(ROOTS[root]))
     weight = blade.mass[:, 0, 0][:, None]
     options: dict[str, Any] = {"mass": mass, "load": weight * [1.0, -2.0, 3.0], "gravity": np.array([3.0, 5.0, -9.81])}
-    loaded, theirs = both(blade, 2.5, 10, **options)
+    loaded, theirs = assert_agreement(blade, 2.5, 10, **options)
     assert mac(loaded, theirs).min() > 1 - 1e-9
     bare = vt.modes(blade, 2.5, 10, 6, mass=mass)
     for name in ("load", "gravity"):
@@ -122,7 +122,7 @@ def test_a_sweep_agrees_with_single_speeds(root: str | None) -> None:
 
 @pytest.mark.parametrize("effects", [Effects(coriolis=False), Effects(rotary_inertia=False)])
 def test_effects_left_out(effects: Effects) -> None:
-    ours, _ = both(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, effects=effects)
+    ours, _ = assert_agreement(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, effects=effects)
     full = vt.modes(yoo_shin(0.1) if effects.rotary_inertia else PARK, 10.0, 12, 6)
     assert np.abs(ours.frequencies / full.frequencies - 1).max() > 1e-4
 

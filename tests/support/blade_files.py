@@ -23,7 +23,7 @@ def real(name: str) -> Path:
     return Path(folder) / name
 
 
-def same(a: Blade, b: Blade, rtol: float = 1e-14) -> None:
+def assert_same(a: Blade, b: Blade, rtol: float = 1e-14) -> None:
     for field in FIELDS:
         x, y = np.array(getattr(a, field)), np.array(getattr(b, field))
         there = np.isfinite(x)

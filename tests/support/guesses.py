@@ -32,7 +32,7 @@ def perturbed(tree: Tree, guess: Mapping[str, float], k: int) -> dict[str, float
     return {name: guess.get(name, 0.0) + size * float(rng.uniform(-1.0, 1.0)) for name in names}
 
 
-def same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen: list[int]) -> None:
+def assert_same(tree: Tree, guess: Mapping[str, float] | None, expected: State, chosen: list[int]) -> None:
     """Find the state again from these guesses, or an error that names it.
 
     Compared by the stiffness about it, which knows nothing of a top's azimuth; of one that drifts, by its shape.
@@ -77,7 +77,7 @@ def every_steady_state_again():
         if CHOSEN:
             if not by_law[0]:
                 periodic.check(linear)
-            same(tree, guesses[0], state, CHOSEN)
+            assert_same(tree, guesses[0], state, CHOSEN)
         return linear
 
     with pytest.MonkeyPatch.context() as patch:

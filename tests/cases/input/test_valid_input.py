@@ -11,9 +11,9 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.schema import speed_range
 from southwell.reports.cli.campbell_options import margin
+from southwell.tests.support.blade_files import assert_same
 
 from ...reports.cli.test_cli import southwell
-from .readers.test_readers_elastodyn import same
 from .readers.test_readers_windio_as_beamdyn import samples, written
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
@@ -52,7 +52,7 @@ def test_a_root_that_is_rounded(
     tmp_path: Path, file: str, old: str, new: str, others: tuple[str, ...], first: str
 ) -> None:
     changed(tmp_path, file, old, new, *others)
-    same(readers.read(tmp_path / first), readers.read(DATA / first), 1e-12)
+    assert_same(readers.read(tmp_path / first), readers.read(DATA / first), 1e-12)
 
 
 def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
     for k in rows:
         lines[k] = lines[k].replace("0.000000e+00", "3.6e-12", 1)
     (tmp_path / "hawc2_st.dat").write_text("\n".join(lines) + "\n")
-    same(readers.read(tmp_path / "hawc2.htc"), readers.read(DATA / "hawc2.htc"), 1e-12)
+    assert_same(readers.read(tmp_path / "hawc2.htc"), readers.read(DATA / "hawc2.htc"), 1e-12)
 
 
 def test_a_root_that_is_elsewhere_is_still_refused(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_yaml_whose_anchor_is_used_again(tmp_path: Path) -> None:
     plain = readers.read(path)
     again = "one: &x [1, 2]\ntwo: *x\nthree: &x [3, 4]\nfour: *x\n"
     path.write_text(again + path.read_text())
-    same(readers.read(path), plain)
+    assert_same(readers.read(path), plain)
     from southwell.cases.input.readers import text, yaml_fields
 
     top = yaml_fields.fields(text.load(path))

@@ -22,7 +22,7 @@ def test_many_guesses_reach_one_state(name: str) -> None:
     mechanism, guess = CASES[name]()
     tree = compile_tree(at_time(mechanism, 0.0))
     chosen = guesses.CHOSEN if len(guesses.CHOSEN) > 20 else list(range(0, guesses.GUESSES, 10))
-    guesses.same(tree, guess, equilibrium.steady(tree, guess), chosen)
+    guesses.assert_same(tree, guess, equilibrium.steady(tree, guess), chosen)
 
 
 def test_another_state_is_detected() -> None:
@@ -31,7 +31,7 @@ def test_another_state_is_detected() -> None:
     tree = compile_tree(at_time(mechanism, 0.0))
     there = equilibrium.steady(tree, guess)
     with pytest.raises(AssertionError, match="another state"):
-        guesses.same(tree, {"swing.rz": math.pi}, there, [100])
+        guesses.assert_same(tree, {"swing.rz": math.pi}, there, [100])
 
 
 def pendulums() -> mb.Mechanism:

@@ -38,7 +38,7 @@ from southwell.tests.support.linkages import (
 pytestmark = pytest.mark.skipif(em.CODE.version() is None, reason=f"not installed: {em.CODE.hint}")
 
 
-def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linearization, em.Stages]:
+def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linearization, em.Stages]:
     """Compare every stage, K̂ to 1e-9 because Exudyn computes it by differences; return both results."""
     linear = lz.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state
@@ -85,17 +85,17 @@ def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linear
 
 @pytest.mark.parametrize("cut", ["B", "C", "D"])
 def test_four_bar(cut: str) -> None:
-    linear, _ = compare(four_bar(cut), FOUR)
+    linear, _ = assert_agreement(four_bar(cut), FOUR)
     assert len(linear.partition.redundant) == 3
 
 
 def test_driven_slider_crank_with_a_damped_spring_between_points() -> None:
-    linear, _ = compare(*slider_crank())
+    linear, _ = assert_agreement(*slider_crank())
     assert linear.names
 
 
 def test_spatial_loop_on_a_rotating_hub() -> None:
-    compare(*spatial_loop())
+    assert_agreement(*spatial_loop())
 
 
 @pytest.mark.slow
@@ -115,7 +115,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
         lz.linearize(m, guess)
     except mb.MechanismError:
         assume(False)
-    compare(m, guess)
+    assert_agreement(m, guess)
 
 
 def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvature() -> None:
@@ -130,7 +130,7 @@ def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvatu
         gravity=(0, -G, 0),
     )
     guess = {"plane.x": 0.1, "plane.rz": 0.1}
-    _, theirs = compare(m, guess)
+    _, theirs = assert_agreement(m, guess)
     answer = em.CODE.solve_mechanism(m, guess)
     assert np.abs(answer.values[0]) == pytest.approx(np.sqrt(mass * G * arm / (moment + mass * arm**2)), rel=1e-9)
     assert np.abs(theirs.K).max() < 1e-9 * theirs.curvature.max()

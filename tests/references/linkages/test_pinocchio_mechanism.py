@@ -33,7 +33,7 @@ from southwell.tests.support.linkages import (
 pytestmark = pytest.mark.skipif(lm.CODE.version() is None, reason=f"not installed: {lm.CODE.hint}")
 
 
-def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Reduced:
+def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Reduced:
     """Compare steady state, eigenvalues with damping, and shapes; return the adapter's equations."""
     found, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
     ours = [found.coordinates.index(name) for name in answer.coordinates]
@@ -53,15 +53,15 @@ def compare(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Reduced:
 
 @pytest.mark.parametrize("cut", ["", "B", "C", "D"])
 def test_four_bar(cut: str) -> None:
-    assert compare(four_bar(cut), FOUR).null.shape[1] == 1
+    assert assert_agreement(four_bar(cut), FOUR).null.shape[1] == 1
 
 
 def test_slider_crank_with_a_damped_spring_between_points() -> None:
-    compare(*slider_crank())
+    assert_agreement(*slider_crank())
 
 
 def test_spatial_loop_on_a_rotating_hub() -> None:
-    compare(*spatial_loop())
+    assert_agreement(*spatial_loop())
 
 
 def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvature() -> None:
@@ -101,7 +101,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
         assume(False)
         return
     state = found.linear.state
-    compare(m, dict(zip(found.linear.tree.coordinates, state.q.tolist(), strict=True)))
+    assert_agreement(m, dict(zip(found.linear.tree.coordinates, state.q.tolist(), strict=True)))
 
 
 def every_element() -> tuple[Plant, np.ndarray]:
@@ -178,7 +178,7 @@ def test_joints_with_springs_and_motions_are_in_the_tree_and_cut_joints_are_not(
     assert [j.name for j in spanning(m).loops] != ["A"]
     assert [j.name for j in spanning(replace(m, coordinate_springs=())).loops] == ["A"]
     assert compile_tree(m).weld_names == ("A",)
-    compare(m, FOUR)
+    assert_agreement(m, FOUR)
 
 
 def test_a_joint_closed_with_opposed_axes_is_an_error() -> None:

@@ -72,7 +72,9 @@ def in_house() -> list:
     return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
 
 
-def same(found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia ride") -> None:
+def assert_same(
+    found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia ride"
+) -> None:
     for a, b in zip(found, expected, strict=True):
         for field in fields.split():
             x, y = getattr(a, field), getattr(b, field)
@@ -83,8 +85,8 @@ def same(found: list, expected: list, within: float = 1e-8, fields: str = "undef
 def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
     """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
     found = condensing.condense(toml(folder, WHOLE)).blade
-    same(found.segments, in_house(), 1e-7, "undeformed stiffness")
-    same(found.segments, in_house(), 1e-3, "inertia")
+    assert_same(found.segments, in_house(), 1e-7, "undeformed stiffness")
+    assert_same(found.segments, in_house(), 1e-3, "inertia")
     expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
     np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
 
@@ -115,7 +117,7 @@ def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None
     text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
     found = condensing.condense(toml(tmp_path, text)).blade
     expected = condensing.condense(toml(folder, WHOLE)).blade
-    same(found.segments, expected.segments, 1e-7)
+    assert_same(found.segments, expected.segments, 1e-7)
     np.testing.assert_allclose(found.root, expected.root, atol=1e-12)
 
 
@@ -126,7 +128,7 @@ def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
         exported(tmp_path, bricks().part(k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS), f"part{k}")
         text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
     found = condensing.condense(toml(tmp_path, text)).blade
-    same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
+    assert_same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
 
 
 def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
@@ -167,7 +169,7 @@ def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
     found = condensing.condense(toml(folder, WHOLE)).blade
     condensed.write(tmp_path / "segments.json", found)
     kept = condensed.read(tmp_path / "segments.json")
-    same(kept.segments, found.segments, 0.0)
+    assert_same(kept.segments, found.segments, 0.0)
     np.testing.assert_array_equal(kept.root, found.root)
     (tmp_path / "segments.json").write_text(
         (tmp_path / "segments.json").read_text().replace('"undeformed"', '"deformed"', 1)

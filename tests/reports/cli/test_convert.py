@@ -7,8 +7,8 @@ import pytest
 
 from southwell.cases.input import library, readers
 from southwell.cases.input.readers import Mount
+from southwell.tests.support.blade_files import assert_same
 
-from ...cases.input.readers.test_readers_elastodyn import same
 from .test_cli import southwell
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
@@ -20,7 +20,7 @@ def test_any_blade_in_toml(tmp_path: Path, capsys: pytest.CaptureFixture[str], f
     status, shown, err = southwell(f"convert {DATA / file} {out}", capsys)
     assert (status, err) == (0, "")
     assert str(out) in shown
-    same(readers.read(out), readers.read(DATA / file))
+    assert_same(readers.read(out), readers.read(DATA / file))
 
 
 def test_for_beamdyn_two_files_and_what_the_main_file_must_say(
@@ -34,7 +34,7 @@ def test_for_beamdyn_two_files_and_what_the_main_file_must_say(
     assert "must say HubRad = 2, PreCone(1) = -2.5; the pitch is in none of the files" in shown
     assert "BlPitch(1) = -3 in OpenFAST, --pitch 3 here" in shown  # OpenFAST's pitch has the other sign
     mount = Mount(hub_radius=2.0, precone=np.radians(-2.5), pitch=np.radians(3.0))
-    same(readers.read(out, mount), readers.read(DATA / "beamdyn_main.dat", mount), 1e-12)
+    assert_same(readers.read(out, mount), readers.read(DATA / "beamdyn_main.dat", mount), 1e-12)
 
 
 def test_for_elastodyn_with_its_length(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -47,14 +47,14 @@ def test_for_elastodyn_with_its_length(tmp_path: Path, capsys: pytest.CaptureFix
     assert "must say TipRad = 51.5, HubRad = 1.5, PreCone(1) = 0" in shown
     assert "BlPitch(1) =" not in shown
     mount = Mount(length=50.0, hub_radius=1.5)
-    same(readers.read(out, mount), readers.read(source, mount), 1e-12)
+    assert_same(readers.read(out, mount), readers.read(source, mount), 1e-12)
 
 
 def test_one_blade_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, *_ = southwell(f"convert park-blade/windpact {tmp_path / 'w.toml'}", capsys)
     assert status == 0
     (blade,) = [v.blade for v in library.load("park-blade").variants if v.name == "park-blade/windpact"]
-    same(readers.read(tmp_path / "w.toml"), blade)
+    assert_same(readers.read(tmp_path / "w.toml"), blade)
 
 
 @pytest.mark.parametrize(

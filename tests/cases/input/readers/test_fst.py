@@ -9,8 +9,7 @@ import pytest
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
-
-from .test_readers_elastodyn import same
+from southwell.tests.support.blade_files import assert_same
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 
@@ -45,7 +44,7 @@ def primary(
 
 def test_to_elastodyns_blade(folder: Path) -> None:
     found = readers.reading(primary(folder))
-    same(found.blade, readers.read(DATA / "elastodyn_main.dat"))
+    assert_same(found.blade, readers.read(DATA / "elastodyn_main.dat"))
     assert [p.name for p in found.source.files] == ["machine.fst", "elastodyn_blade.dat", "elastodyn_main.dat"]
     assert "BlPitch" in {u.name for u in found.source.unused}
 
@@ -65,7 +64,7 @@ def test_to_beamdyns_blade_on_elastodyns_hub(folder: Path) -> None:
 def test_a_primary_file_of_fast_8_without_compelast(folder: Path) -> None:
     path = primary(folder)
     path.write_text("\n".join(line for line in path.read_text().splitlines() if "CompElast" not in line))
-    same(readers.read(path), readers.read(DATA / "elastodyn_main.dat"))
+    assert_same(readers.read(path), readers.read(DATA / "elastodyn_main.dat"))
 
 
 def test_fast_7s_primary_file_is_the_main_file() -> None:
@@ -73,7 +72,7 @@ def test_fast_7s_primary_file_is_the_main_file() -> None:
     assert found.blade.hub_radius == 1.5
     assert np.degrees(found.blade.precone) == pytest.approx(3.0)
     assert found.blade.curve[-1, 0] == 40.0
-    same(found.blade, readers.read(DATA / "fast7_blade.dat"))  # which finds the .fst beside it
+    assert_same(found.blade, readers.read(DATA / "fast7_blade.dat"))  # which finds the .fst beside it
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,7 @@ from southwell.cases.input import files, readers, schema
 from southwell.cases.input.properties import about_root, sections
 from southwell.cases.input.readers import Mount
 from southwell.core.blade import Blade, section_mass, section_stiffness
-
-from .test_readers_elastodyn import same
+from southwell.tests.support.blade_files import assert_same
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 BLADE, MAIN = DATA / "fast7_blade.dat", DATA / "fast7_main.fst"
@@ -145,7 +144,7 @@ modes = 2
     with files.outside_allowed():
         (variant,) = schema.read(tmp_path / "old.toml").variants
     np.testing.assert_allclose(variant.speeds * 30 / np.pi, [0, 10, 20.5])
-    same(variant.blade, readers.read(MAIN, Mount(offsets=False)))
+    assert_same(variant.blade, readers.read(MAIN, Mount(offsets=False)))
     assert "PrecrvRef" in {u.name for u in variant.unused}
 
 

@@ -13,7 +13,7 @@ from southwell.cases.input.readers import Mount, beamdyn, elastodyn
 from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
-from southwell.tests.support.blade_files import real, same
+from southwell.tests.support.blade_files import assert_same, real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 BLADE, MAIN, OLD = DATA / "beamdyn_blade.dat", DATA / "beamdyn_main.dat", DATA / "beamdyn_old_main.dat"
@@ -75,7 +75,7 @@ def test_sections_stand_in_space_as_beamdyn_stands_them(tmp_path: Path) -> None:
 
 
 def test_old_and_new_headers_are_read_alike() -> None:
-    same(beamdyn.read(OLD).blade, beamdyn.read(MAIN).blade)
+    assert_same(beamdyn.read(OLD).blade, beamdyn.read(MAIN).blade)
 
 
 def test_two_main_files_beside_a_blade_file_are_not_chosen_from() -> None:
@@ -99,7 +99,7 @@ def test_elastodyns_main_file_says_how_it_is_mounted(tmp_path: Path) -> None:
 def test_written_and_read_again_it_is_the_same(tmp_path: Path, path: Path) -> None:
     found = beamdyn.read(path, Mount(hub_radius=1.5, precone=-0.04, pitch=0.1)).blade
     mount = beamdyn_write.write(found, tmp_path / path.name)
-    same(found, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
+    assert_same(found, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
 
 
 def test_rigid_strains_are_not_written(tmp_path: Path) -> None:
@@ -147,7 +147,7 @@ def edited(tmp_path: Path, file: Path, old: str, new: str, count: int = 1) -> Pa
     ids=["CRLF", "tabs", "Fortran", "no blank lines", "no ruler", "Fortran key points", "no units"],
 )
 def test_files_written_another_way_are_read_alike(tmp_path: Path, file: Path, old: str, new: str, count: int) -> None:
-    same(readers.read(edited(tmp_path, file, old, new, count)), readers.read(MAIN))
+    assert_same(readers.read(edited(tmp_path, file, old, new, count)), readers.read(MAIN))
 
 
 NINE = "9.000000000E+09"

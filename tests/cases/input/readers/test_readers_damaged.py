@@ -10,7 +10,7 @@ import pytest
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount, Reading, matrices
-from southwell.tests.support.blade_files import same, samples, written
+from southwell.tests.support.blade_files import assert_same, samples, written
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 
@@ -70,7 +70,7 @@ def read(path: Path) -> Reading | None:
 def honest(whole: Reading, found: Reading) -> bool:
     """Whether the blade is the same, or the notes say what is not."""
     try:
-        same(whole.blade, found.blade)
+        assert_same(whole.blade, found.blade)
     except AssertionError:
         return set(found.source.notes) != set(whole.source.notes)
     return True

@@ -11,7 +11,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount, elastodyn
 from southwell.cases.writers import elastodyn as elastodyn_write
 from southwell.core.blade import mass_at, uniform_blade
-from southwell.tests.support.blade_files import real, same
+from southwell.tests.support.blade_files import assert_same, real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 BLADE, MAIN = DATA / "elastodyn_blade.dat", DATA / "elastodyn_main.dat"
@@ -84,7 +84,7 @@ def test_what_else_lies_beside_it_does_not_matter(tmp_path: Path) -> None:
 def test_written_and_read_again_it_is_the_same(tmp_path: Path) -> None:
     found = elastodyn.read(BLADE, MOUNT).blade
     path = tmp_path / BLADE.name
-    same(found, elastodyn.read(path, elastodyn_write.write(found, path)).blade)
+    assert_same(found, elastodyn.read(path, elastodyn_write.write(found, path)).blade)
 
 
 def test_what_the_format_cannot_hold_is_not_written(tmp_path: Path) -> None:
@@ -164,7 +164,7 @@ def edited(tmp_path: Path, old: str, new: str, count: int = 1) -> Path:
     ids=["CRLF", "tabs", "Fortran", "plain", "comment", "ruler", "units"],
 )
 def test_files_written_another_way_are_read_alike(tmp_path: Path, change: tuple[str, str, int]) -> None:
-    same(elastodyn.read(edited(tmp_path, *change), MOUNT).blade, elastodyn.read(BLADE, MOUNT).blade)
+    assert_same(elastodyn.read(edited(tmp_path, *change), MOUNT).blade, elastodyn.read(BLADE, MOUNT).blade)
 
 
 BAD = {

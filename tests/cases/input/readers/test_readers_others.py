@@ -12,7 +12,7 @@ from southwell.cases.input.properties import sections
 from southwell.cases.input.readers import Mount, bmodes, elastodyn, hawc2, southwell_toml
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes
-from southwell.tests.support.blade_files import real, same
+from southwell.tests.support.blade_files import assert_same, real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 ST, HTC, BMI, SECTIONS = (DATA / n for n in ("hawc2_st.dat", "hawc2.htc", "bmodes.bmi", "bmodes_sections.dat"))
@@ -83,7 +83,7 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
     assert note.startswith(
         "stations: 3 of the structural file and 3 more of c2_def; between them curve and twist stray"
     )
-    same(blade, readers.read(ST, Mount(main=HTC, hub_radius=2.0)))
+    assert_same(blade, readers.read(ST, Mount(main=HTC, hub_radius=2.0)))
 
 
 def test_hawc2_structural_pitch_turns_bending_about_the_elastic_centre(tmp_path: Path) -> None:
@@ -183,7 +183,7 @@ def test_toml_written_and_read_again_is_the_same(tmp_path: Path) -> None:
     for k, path in enumerate((BMI, HTC, DATA / "beamdyn_main.dat", DATA / "elastodyn_main.dat")):
         blade = readers.read(path)
         southwell_toml.write(blade, tmp_path / f"{k}.toml")
-        same(blade, readers.read(tmp_path / f"{k}.toml"))
+        assert_same(blade, readers.read(tmp_path / f"{k}.toml"))
 
 
 BEAM = """name = "b"
@@ -343,5 +343,5 @@ def test_bad_sections(tmp_path: Path) -> None:
 
 
 def test_modules_read_what_the_package_reads() -> None:
-    same(hawc2.read(HTC).blade, readers.read(HTC))
-    same(bmodes.read(BMI).blade, readers.read(BMI))
+    assert_same(hawc2.read(HTC).blade, readers.read(HTC))
+    assert_same(bmodes.read(BMI).blade, readers.read(BMI))

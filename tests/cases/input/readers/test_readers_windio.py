@@ -11,7 +11,7 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import sections
 from southwell.cases.input.readers import Mount, text, yaml_fields
-from southwell.tests.support.blade_files import real, same, samples, written
+from southwell.tests.support.blade_files import assert_same, real, samples, written
 
 MB = "components.blade.elastic_properties_mb.six_x_six"
 EP = "components.blade.structure.elastic_properties"
@@ -118,7 +118,7 @@ def test_line_ends_and_fortran_exponents_are_read(tmp_path: Path) -> None:
     path = written(tmp_path / "b.yaml", samples()[0])
     expected = readers.read(path)
     path.write_bytes(path.read_text().replace("9000000000.0", "9.0D+09").replace("\n", "\r\n").encode())
-    same(readers.read(path), expected)
+    assert_same(readers.read(path), expected)
 
 
 def test_twist_in_degrees_in_windio_1_is_noticed_and_said(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_twist_in_degrees_in_windio_1_is_noticed_and_said(tmp_path: Path) -> Non
     expected = readers.read(written(tmp_path / "c.yaml", one))
     one["components"]["blade"]["outer_shape_bem"]["twist"] = two["components"]["blade"]["outer_shape"]["twist"]
     found = readers.reading(written(tmp_path / "b.yaml", one))
-    same(found.blade, expected, 1e-13)
+    assert_same(found.blade, expected, 1e-13)
     assert any("taken for degrees" in note for note in found.source.notes)
 
 

@@ -8,14 +8,14 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.tests.support.blade_files import BLADES as DATA
-from southwell.tests.support.blade_files import same, samples, written
+from southwell.tests.support.blade_files import assert_same, samples, written
 
 
 @pytest.mark.parametrize("version", [1, 2])
 def test_it_is_the_beamdyn_blade(tmp_path: Path, version: int) -> None:
     found = readers.reading(written(tmp_path / "b.yaml", samples()[version - 1]))
     expected = readers.read(DATA / "beamdyn_main.dat", Mount(hub_radius=1.5, precone=-0.04))
-    same(found.blade, expected, 1e-13)
+    assert_same(found.blade, expected, 1e-13)
     assert found.blade.name == "invented"
     assert found.source.format == f"windIO {version}"
 
@@ -25,7 +25,7 @@ def test_numbers_without_a_point_in_their_exponent_are_numbers(tmp_path: Path) -
     path = written(tmp_path / "b.yaml", samples()[0])
     path.write_text(path.read_text().replace("9000000000.0", "9e9"))
     assert "9e9" in path.read_text()
-    same(readers.read(path), readers.read(written(tmp_path / "c.yml", samples()[0])))
+    assert_same(readers.read(path), readers.read(written(tmp_path / "c.yml", samples()[0])))
 
 
 def test_a_hub_of_another_unit_is_refused(tmp_path: Path) -> None:
