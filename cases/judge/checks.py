@@ -67,9 +67,9 @@ def _cell(row: Any) -> Iterator[str]:
     measured = getattr(row, "role", row.verdict) == "measured"
     if measured != (row.verdict == "measured") and not (measured and row.verdict in UNANSWERED):
         yield f"verdict: {row.verdict}, with the role {getattr(row, 'role', '')}: this verdict and this role belong together"
-    ordinal = getattr(row, "ordinal", None)
-    if ordinal is not None and not 1 <= ordinal <= MOST_MODES:
-        yield f"ordinal: {ordinal}: counted from 1"
+    ordinal = getattr(row, "ordinal", row.mode)
+    if bool(ordinal) != bool(row.mode) or not 0 <= ordinal <= MOST_MODES:
+        yield f"ordinal: {ordinal}, of mode {row.mode}: counted from 1, and 0 without a mode"
     if row.frequency is not None and row.frequency < 0:
         yield f"frequency: {row.frequency:g}: negative"
     if row.uncertainty is not None and row.uncertainty < 0:

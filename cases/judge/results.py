@@ -38,7 +38,7 @@ class Cell:
         case: name of the case; if it has several blades, followed by a slash and the blade's name.
         omega: rotor speed, rad/s.
         mode: number of the mode within the reference's modes at this speed, from 1.
-        family: edgewise, flapwise, torsion, axial, mixed; ``flapwise 1`` is family plus ordinal within it.
+        family: edgewise, flapwise, torsion, axial, mixed; of a mechanism's mode, the joint that moves most.
         code: short name of the code.
         version: version of the code.
         role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),
@@ -58,7 +58,8 @@ class Cell:
         order: observed order of convergence, if available.
         mac: mass-weighted MAC of the pairing.
         seconds: wall time of the finest solution.
-        ordinal: number of the mode within its family, given if the run has no rows for the others at this speed.
+        ordinal: number of the mode within its family, counted over all of core's modes at this speed, from 1; 0 without a
+            mode.
     """
 
     case: str
@@ -81,7 +82,12 @@ class Cell:
     mac: float | None = None
     seconds: float | None = None
     shares: str = ""
-    ordinal: int | None = None
+    ordinal: int = 0
+
+    @property
+    def name(self) -> str:
+        """Name of the mode, such as ``flapwise 2``; empty without a mode."""
+        return f"{self.family} {self.ordinal}" if self.mode else ""
 
 
 @dataclass(frozen=True)

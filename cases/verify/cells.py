@@ -2,11 +2,11 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ...core.modes import Modes
-from ...core.participation import numbered
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..judge.measured import Validation, explained
@@ -187,11 +187,8 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     """
     cell = replace(
         empty(head, omega, "measured", ""),
-        mode=i + 1,
-        family=reference.core.names[i],
-        full=reference.full[i],
-        ordinal=int(numbered(reference.core.names)[i].split()[-1]),
         frequency=datum.value,
+        **_mode(reference, i),
     )
     base = reference.core.modes[i].estimate
     if base is None:
@@ -276,13 +273,17 @@ def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes |
     """A cell without numbers, valid as the cell of a mode without a partner."""
     return replace(
         empty(head, omega, "fail", partner.note),
-        mode=i + 1,
-        family=reference.core.names[i],
-        full=reference.full[i],
+        **_mode(reference, i),
         elements=finest.elements if finest else None,
         seconds=finest.seconds if finest else None,
         mac=partner.mac if finest else None,
     )
+
+
+def _mode(reference: Reference, i: int) -> dict[str, Any]:
+    """Fields of a cell that follow from core's ``i``-th compared mode."""
+    family, _, ordinal = reference.core.names[i].rpartition(" ")
+    return {"mode": i + 1, "family": family, "ordinal": int(ordinal), "full": reference.full[i]}
 
 
 def _known(reference: Reference, i: int, target: float) -> Judgement:

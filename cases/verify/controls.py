@@ -13,7 +13,7 @@ from ...core.chain.steady import SteadyStateError
 from ...core.effects import ALL_EFFECTS
 from ...core.eigen import UnstableError
 from ...core.modes import Modes
-from ...core.participation import families, participation
+from ...core.participation import families, numbered, participation
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, pair, weights
 from .core_faults import CORE_FAULTS, Solve
@@ -78,10 +78,9 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
     """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
-    wanted, family = qualifying(right, blade, compare), families(participation(right, blade))
-    names = [f"{family[k]} {sum(family[j] == family[k] for j in wanted if j <= k)}" for k in wanted]
+    wanted, names = qualifying(right, blade, compare), numbered(families(participation(right, blade)))
     partners = [p.mode for p in pair(right, wrong, wanted, weight)]
     return tuple(
-        Changed(name, float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
-        for name, k, p in zip(names, wanted, partners, strict=True)
+        Changed(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
+        for k, p in zip(wanted, partners, strict=True)
     )

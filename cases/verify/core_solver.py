@@ -11,7 +11,7 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
-from ...core.participation import FAMILIES, families, participation
+from ...core.participation import FAMILIES, families, numbered, participation
 from ...core.solve import mesh_modes, rigid_strain_bias
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
@@ -43,12 +43,20 @@ Solver = Callable[..., Modes]
 
 @dataclass(frozen=True)
 class Converged:
-    """Core's modes at one speed, with the compared modes, their estimates, families and dominant motions in the same order."""
+    """Core's modes at one speed, with the compared modes, their estimates and dominant motions in the same order.
+
+    ``every`` has the names of all modes, such as ``flapwise 2``, also of those that are not compared.
+    """
 
     wanted: Wanted
     modes: tuple[RefinedMode, ...]
-    names: tuple[str, ...]
+    every: tuple[str, ...]
     motions: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the compared modes."""
+        return tuple(self.every[k] for k in self.wanted.indices)
 
     @property
     def count(self) -> int:
@@ -136,14 +144,15 @@ def _converged(
                 f"{len(refinements.answers[-1].frequencies)} modes qualify; reduce it"
             )
         return _converged(blade, omega, compare, effects, weight, DEEPER * count)
-    energies = participation(target.reference, blade)[list(target.indices)]
+    energies = participation(target.reference, blade)
     meshes = [answer.elements for answer in refinements.answers]
     factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, effects)
     refined_modes = tuple(
         _corrected(one, float(factor[k]), float(unsure[k]))
         for k, one in zip(target.indices, follow(refinements.answers, target, plan.order), strict=True)
     )
-    return Converged(target, refined_modes, families(energies), tuple(FAMILIES[k] for k in energies.argmax(1)))
+    motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
+    return Converged(target, refined_modes, numbered(families(energies)), motions)
 
 
 def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:

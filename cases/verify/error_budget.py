@@ -131,7 +131,7 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
     """Largest numerical uncertainty of the codes and rounding of printed numbers, for the modes and speed of ``rows``."""
     out = []
     for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
-        here = [c for c in cells if c.omega == omega and c.uncertainty is not None and _name(c, cells) == name]
+        here = [c for c in cells if c.omega == omega and c.uncertainty is not None and c.name == name]
         known = [c for c in here if c.verdict in ("pass", "known difference")]
         for cause, part, role in (
             ("discretisation", "codes, refined", "code"),
@@ -143,10 +143,3 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
             if sizes:
                 out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out
-
-
-def _name(cell: Cell, cells: Sequence[Cell]) -> str:
-    """``flapwise 2``: family and ordinal among all modes that the case compares at that speed with all effects."""
-    whole = [c for c in cells if c.reference == c.full] or cells
-    lower = {c.mode for c in whole if (c.omega, c.family) == (cell.omega, cell.family) and 0 < c.mode <= cell.mode}
-    return f"{cell.family} {len(lower)}"

@@ -18,6 +18,7 @@ from ...core import multibody as mb
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.eigen import EigenError
 from ...core.multibody.dynamics import reduced_mass
+from ...core.participation import numbered
 from ...references.protocol.description import Description
 from ...references.protocol.interface import Independence
 from ...references.protocol.mechanism_interface import MechanismModes
@@ -50,7 +51,7 @@ Work = Callable[[Sequence[tuple[float, Any]]], Rows]
 
 @dataclass(frozen=True)
 class Reference:
-    """Core's modes at one speed; ``weight`` (k, k) is the mass matrix over the coordinates."""
+    """Core's modes at one speed, named by the joint that moves most; ``weight`` (k, k): mass matrix over the coordinates."""
 
     modes: MechanismModes
     damping: Array
@@ -80,7 +81,8 @@ def _reference(variant: Turning, omega: float) -> Reference:
     state = found.linear.state
     weight = reduced_mass(state.kinematics, state.cartesian)
     modes = MechanismModes(found.coordinates, state.q, found.values, found.shapes)
-    return Reference(modes, found.damping, tuple(name.partition(".")[0] for name in found.leading), weight)
+    joints = [name.partition(".")[0] for name in found.leading]
+    return Reference(modes, found.damping, numbered(joints), weight)
 
 
 def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -> list[Column]:
@@ -152,7 +154,9 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
     out = []
     for i in range(count):
         mine = abs(complex(reference.modes.values[i]))
-        cell = replace(empty(head, omega, "fail", ""), mode=i + 1, family=reference.names[i], full=mine, reference=mine)
+        family, _, ordinal = reference.names[i].rpartition(" ")
+        which = {"mode": i + 1, "family": family, "ordinal": int(ordinal)}
+        cell = replace(empty(head, omega, "fail", ""), **which, full=mine, reference=mine)
         k = partners.get(i)
         if k is None or likeness[i, k] < LEAST_MAC:
             best = f", its most similar has MAC {likeness[i].max():.2f}" if likeness.size else ""

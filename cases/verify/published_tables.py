@@ -7,7 +7,6 @@ import numpy as np
 
 from ...core.blade import Blade, sample, uniform
 from ...core.effects import Effects
-from ...core.participation import numbered
 from ...references.protocol.worker import Answer, Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
@@ -38,12 +37,12 @@ class Printed:
     unit: float
     speed: float
 
-    def at(self, omega: float, families: Sequence[str]) -> list[Datum | None]:
-        """The number for each of a reference's modes, by family and ordinal within it, at rotor speed ``omega``."""
+    def at(self, omega: float, names: Sequence[str]) -> list[Datum | None]:
+        """The number for each mode, given by names such as ``flapwise 2``, at rotor speed ``omega``."""
         here = {
             f"{d.family} {d.mode}": d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)
         }
-        return [here.get(name) for name in numbered(families)]
+        return [here.get(name) for name in names]
 
 
 def about(blade: Blade, names: Sequence[str]) -> list[Printed]:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
-from ...core.participation import MIXED, numbered
+from ...core.participation import MIXED
 from ...references.protocol.process import Failure
 from ..input.schema import Compare, Variant
 from ..judge.results import Cell
@@ -61,14 +61,14 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
 
     A program that names such a mode by its largest motion counts it in a family, and core does not.
     """
-    f, named = cell.frequency, _names(reference)
-    off = [abs(f / m.estimate.value - 1.0) if m.estimate and f else inf for m in reference.core.modes]
+    f, core = cell.frequency, reference.core
+    off = [abs(f / m.estimate.value - 1.0) if m.estimate and f else inf for m in core.modes]
     best = off.index(min(off))
-    mixed = MIXED in reference.core.names[: max(k, best) + 1]
+    mixed = any(name.startswith(MIXED) for name in core.every[: core.wanted.indices[max(k, best)] + 1])
     if cell.verdict != "fail" or not row.family or off[best] > cell.target or not mixed:
         return cell
     reason = (
-        f"line {row.line}: the frequency is not that of {named[k]} but of {named[best]}; core has a mixed mode, "
+        f"line {row.line}: the frequency is not that of {core.names[k]} but of {core.names[best]}; core has a mixed mode, "
         "whose name is a convention: give the mode's number among all modes"
     )
     return replace(cell, verdict="inconclusive", reason=reason)
@@ -105,19 +105,13 @@ def _off(row: Given, omega: float) -> float:
 
 def _without_partner(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
     """The cell of a row for a mode that the case does not compare."""
-    called, known = f"{row.family} {row.mode}".strip(), ", ".join(_names(reference))
+    called, known = f"{row.family} {row.mode}".strip(), ", ".join(reference.core.names)
     reason = f"line {row.line}: the case does not compare mode {called} at this speed; it compares {known}"
     return empty(head, omega, "not applicable", reason)
 
 
-def _names(reference: Reference) -> tuple[str, ...]:
-    return numbered(reference.core.names)
-
-
 def _place(row: Given, reference: Reference) -> int | None:
     """Index of a row's mode among the modes that the case compares; None if it is not compared."""
-    if row.family:
-        name = f"{row.family} {row.mode}"
-        return _names(reference).index(name) if name in _names(reference) else None
-    indices = reference.core.wanted.indices
-    return indices.index(row.mode - 1) if row.mode - 1 in indices else None
+    found: tuple[object, ...] = reference.core.names if row.family else reference.core.wanted.indices
+    wanted = f"{row.family} {row.mode}" if row.family else row.mode - 1
+    return found.index(wanted) if wanted in found else None

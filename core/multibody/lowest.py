@@ -35,7 +35,7 @@ _PANEL = 64  # rows of LAPACK's blocks
 
 @dataclass(frozen=True)
 class Definite:
-    """M, C, K (n, n) with coordinates scaled by ``scale`` (n,), and L (n, n) of K = L Lᵀ."""
+    """M, C, K (n, n) with coordinates scaled by ``scale`` (n,), and L of K = L Lᵀ, the lower half of ``root`` (n, n)."""
 
     M: Array
     C: Array
@@ -64,7 +64,7 @@ def definite(M: Array, C: Array, K: Array) -> Definite:
     M, C, K = M + M.T, C - C.T, K + K.T
     for a in (M, C, K):
         a *= half
-    root, info = _LAPACK.dpotrf(K.T, lower=1)  # the transpose has the order that LAPACK needs
+    root, info = _LAPACK.dpotrf(K.T, lower=1, clean=0)  # the transpose has the order that LAPACK needs
     if info:
         raise eigen.unstable()
     return Definite(M, C, K, scale, root)

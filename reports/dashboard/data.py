@@ -10,7 +10,7 @@ from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ..shared import summary
-from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, labels, plus_minus, size
+from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, plus_minus, size
 from ..shared.units import BY_KEY, Units
 from ..verification import code_pages, controls, evidence, witnesses
 from ..verification.figures import core_lines
@@ -38,7 +38,6 @@ def verdicts() -> list[dict[str, str]]:
 def first(run: Run, name: str) -> dict[str, Any]:
     """The matrix: cells, cases, columns, and results of the negative controls."""
     known, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
-    named = labels(run.cells)
     titles = {s.case: s.title for s in run.settings}
     return {
         "run": name,
@@ -57,7 +56,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
                 known.index(c.case),
                 heads.index(broad(c)),
                 round(c.omega * units(run, c.case).speeds, 6),
-                named.get(c, ""),
+                c.name,
                 WORST_FIRST.index(c.verdict),
                 size(c),
                 plus_minus(c) if size(c) is not None else "",
@@ -108,7 +107,6 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     """The data of one case: setting, cells, refinements, and core's shapes at the lowest and highest speed."""
     u = units(run, case)
     cells = [c for c in run.cells if c.case == case]
-    named = labels(run.cells)
     setting = next((s for s in run.settings if s.case == case), None)
     return {
         "name": case,
@@ -120,7 +118,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
         "perSpeed": u.frequencies / u.speeds,
         "verdicts": verdicts(),
         "columns": columns(cells),
-        "cells": [_cell(c, named.get(c, ""), u) for c in cells],
+        "cells": [_cell(c, u) for c in cells],
         "lines": _lines(cells, u),
         "levels": [
             [v.code, v.omega * u.speeds, v.mode, v.elements, v.frequency * u.frequencies]
@@ -145,7 +143,7 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
         mine = [c for c in cells if c.verdict == verdict]
         far = summary.largest(mine) if verdict == "known difference" else evidence.farthest(mine)
         text = plus_minus(far) if far and size(far) is not None else ""
-        parts = (summary.column(far), labels(run.cells).get(far), units(run, case).at(far.omega)) if far else ()
+        parts = (summary.column(far), far.name, units(run, case).at(far.omega)) if far else ()
         where = ", ".join(part for part in parts if part)
         more = f"; target {summary.allowed(far.target)}" if far and verdict != "known difference" else ""
         if n:
@@ -153,7 +151,7 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
     return out
 
 
-def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
+def _cell(c: Cell, u: Units) -> dict[str, Any]:
     frequencies = {"f": c.frequency, "full": c.full, "ref": c.reference}
     scaled = {name: None if value is None else value * u.frequencies for name, value in frequencies.items()}
     return {
@@ -161,7 +159,7 @@ def _cell(c: Cell, name: str, u: Units) -> dict[str, Any]:
         "code": summary.column(c),
         "speed": c.omega * u.speeds,
         "mode": c.mode,
-        "name": name,
+        "name": c.name,
         "verdict": WORST_FIRST.index(c.verdict),
         "text": plus_minus(c) if size(c) is not None else "",
         "reason": c.reason,
@@ -212,12 +210,12 @@ def _placed(cell: Cell | None) -> list[Any] | None:
 
 def of_code(run: Run, name: str) -> dict[str, Any]:
     """One code: version, what it shares with core and lacks, its worst difference on every blade, known defects."""
-    cells, named = code_pages.own(run, name), labels(run.cells)
+    cells = code_pages.own(run, name)
     worst = []
     for case in dict.fromkeys(c.case for c in cells):
         mine = [c for c in cells if c.case == case]
         far = summary.worst(mine)
-        where = f"{named[far]}, {units(run, case).at(far.omega)}" if far else ""
+        where = f"{far.name}, {units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in mine))
         verdict = WORST_FIRST.index(summary.worst_verdict(mine))
         worst.append([case, page(case), verdict, len(mine), plus_minus(far) if far else "", where, reason])

@@ -156,12 +156,11 @@ class VerifyResult:
         """One row per code, speed and mode: ``case``, ``omega_rad_s``, ``mode``, ``code``, ``frequency`` and
         ``reference`` (rad/s), ``difference``, ``uncertainty``, ``target`` (relative), ``verdict``, ``shares`` (what the code
         has in common with the in-house solver), ``reason``."""
-        labels = summary.labels(self.run.cells)
         rows = [
             {
                 "case": c.case,
                 "omega_rad_s": c.omega,
-                "mode": labels.get(c, ""),
+                "mode": c.name,
                 "code": summary.column(c),
                 "frequency": c.frequency,
                 "reference": c.reference,

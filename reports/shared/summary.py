@@ -4,7 +4,7 @@ Pure functions of a run, shared by terminal, Markdown and figures, so that all r
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import get_args
 
 from ...cases.judge.results import Cell, Run, Verdict
@@ -125,30 +125,6 @@ def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[s
     first = ("discretisation", "table")
     ranked = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
     return list(dict.fromkeys(of(c) for c in ranked))
-
-
-def labels(cells: Sequence[Cell]) -> dict[Cell, str]:
-    """Mode names such as ``flapwise 2``: the family, and the ordinal in the family at that speed.
-
-    Modes are counted among all modes that the case compares, so that gaps in a printed table do not change the numbers.
-    A code that lacks effects is compared with core without them; its modes may come in another order and are counted
-    separately.
-    """
-    groups: dict[tuple[str, float, str], dict[int, str]] = {}
-    for cell in cells:
-        if cell.ordinal is None:
-            groups.setdefault(_basis(cell), {})[cell.mode] = cell.family
-    ordinals = {}
-    for group, families in groups.items():
-        seen: Counter[str] = Counter()
-        for mode in sorted(families):
-            seen[families[mode]] += 1
-            ordinals[group, mode] = seen[families[mode]]
-    return {c: f"{c.family} {c.ordinal or ordinals[_basis(c), c.mode]}" for c in cells if c.mode}
-
-
-def _basis(cell: Cell) -> tuple[str, float, str]:
-    return cell.case, cell.omega, "" if cell.reference == cell.full else column(cell)
 
 
 def amount(value: float, target: float) -> str:

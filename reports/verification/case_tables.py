@@ -13,12 +13,11 @@ from ..shared.units import Units
 
 def measured(run: Run, case: str, unit: Units) -> str:
     """The table of a case's measured points and the model errors they show; empty without any."""
-    names = summary.labels(run.cells)
     cells = [c for c in run.cells if c.case == case and c.role == "measured"]
     rows = [
         {
             "data": plain(c.code),
-            "mode": plain(names.get(c, "")),
+            "mode": plain(c.name),
             "speed": unit.at(c.omega),
             f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
             f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
@@ -47,15 +46,14 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
     that lacks effects is compared with core without them, and its modes may come in another order or have other names, which
     are then shown.
     """
-    names, at = summary.labels(cells), _rows(cells)
-    rows = []
+    at, rows = _rows(cells), []
     for key in dict.fromkeys(at[c] for c in sorted(cells, key=lambda c: (c.full is None, c.full or 0.0))):
         here = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
-        mode, core = names[here[0]], here[0].full
+        mode, core = here[0].name, here[0].full
         row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
         for name in columns(cells):
             mine = next((c for c in here if column(c) == name), None)
-            other = f"<br>{plain(names[mine])}" if mine and names[mine] != mode else ""
+            other = f"<br>{plain(mine.name)}" if mine and mine.name != mode else ""
             row[plain(name)] = f"{_entry(mine, unit)}{other}" if mine else ""
         rows.append(row)
     return table(rows)
@@ -63,10 +61,10 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
 
 def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
     """The row of each cell: core's frequency with all effects, and the place among the column's cells with that frequency."""
-    names, found = summary.labels(cells), dict[Cell, tuple[float | str, int]]()
+    found: dict[Cell, tuple[float | str, int]] = {}
     seen: Counter[tuple[str, float | str]] = Counter()
     for c in sorted(cells, key=lambda c: c.mode):
-        key = names[c] if c.full is None else c.full
+        key = c.name if c.full is None else c.full
         found[c] = (key, seen[column(c), key])
         seen[column(c), key] += 1
     return found
@@ -81,14 +79,11 @@ def _entry(cell: Cell, unit: Units) -> str:
 
 def why(cells: Sequence[Cell], unit: Units) -> list[dict[str, str]]:
     """One row per cell that needs a reason; neighbours that differ only in speed share one."""
-    names = summary.labels(cells)
     grave = [
         c for verdict in summary.WORST_FIRST for c in cells if c.verdict == verdict and (verdict != "pass" or c.reason)
     ]
     rows = []
-    for (verdict, name, mode, reason), group in groupby(
-        grave, lambda c: (c.verdict, column(c), names.get(c, ""), c.reason)
-    ):
+    for (verdict, name, mode, reason), group in groupby(grave, lambda c: (c.verdict, column(c), c.name, c.reason)):
         at = [unit.at(c.omega) for c in group]
         where = at[0] if len(at) == 1 else f"{len(at)} speeds" if not mode else ", ".join(at)
         rows.append(

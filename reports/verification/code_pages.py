@@ -116,12 +116,11 @@ def version(run: Run, code: Description) -> str:
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:
     """One row per blade: cells by verdict, the largest difference, where it is and why; empty without cells."""
-    labels = summary.labels(run.cells)
     rows = []
     for case in dict.fromkeys(c.case for c in cells):
         here = [c for c in cells if c.case == case]
         far = summary.worst(here)
-        where = f"{labels[far]}, {units(run, case).at(far.omega)}" if far else ""
+        where = f"{far.name}, {units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
         counted = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(here).items() if n)
         rows.append(

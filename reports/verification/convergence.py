@@ -11,7 +11,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ...cases.judge.results import Cell, Level, Run
 from ..shared.style import FAINT, WIDTH, Look, band, decades, house, key, looks, spread, title
-from ..shared.summary import column, columns, labels
+from ..shared.summary import column, columns
 from ..shared.units import Units
 
 FLOOR = 1e-12
@@ -37,9 +37,9 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         return None
     omega = max(v.omega for v in levels)
     levels = [v for v in levels if v.omega == omega]
-    style, names = looks(among or columns(run.cells)), labels(rows)
+    style = looks(among or columns(run.cells))
     at_omega = sorted((c for c in rows if c.omega == omega), key=lambda c: (c.reference != c.full, c.mode))
-    modes = list(dict.fromkeys(names[c] for c in at_omega if c.mode <= PANELS))[:PANELS]
+    modes = list(dict.fromkeys(c.name for c in at_omega if c.mode <= PANELS))[:PANELS]
     across = min(3, len(modes))
     down = -(-len(modes) // across)
     drawn = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
@@ -51,7 +51,7 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         figure.subplots_adjust(0.095, low / height, 0.985, 1 - 0.62 / height, 0.08, 0.22)
         _frame(grid[0, 0], levels, cells)
         for axes, mode in zip(grid.flat, modes, strict=False):
-            _panel(axes, [c for c in at_omega if names[c] == mode], levels, style)
+            _panel(axes, [c for c in at_omega if c.name == mode], levels, style)
             axes.set_title(mode, size=9, pad=4)
         for k, axes in enumerate(grid.flat):
             axes.set_visible(k < len(modes))

@@ -162,8 +162,7 @@ def _shown(run: Run, cell: Cell | None) -> str:
 
 def where(run: Run, cell: Cell) -> str:
     """Case, code, mode and speed of a cell as text."""
-    mode = summary.labels(run.cells)[cell]
-    return f"{cell.case}, {summary.column(cell)}, {mode}, {_units(run, cell).at(cell.omega)}"
+    return f"{cell.case}, {summary.column(cell)}, {cell.name}, {_units(run, cell).at(cell.omega)}"
 
 
 def _units(run: Run, cell: Cell) -> Units:

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared.style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, decades, house, key, looks, title
-from ..shared.summary import allowed, amount, column, columns, counts, labels
+from ..shared.summary import allowed, amount, column, columns, counts
 from ..shared.units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
@@ -70,14 +70,13 @@ def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
 
     Modes go by name if the same names occur at every speed, otherwise by number.
     """
-    names = labels(cells)
     full = [c for c in cells if c.full is not None and c.reference == c.full]
     full = full or [c for c in cells if c.full is not None]
     speeds = {c.omega for c in full}
     by_name: dict[str, dict[float, float]] = {}
     by_number: dict[str, dict[float, float]] = {}
     for c in sorted(full, key=lambda c: (c.mode, c.omega)):
-        by_name.setdefault(names[c], {})[c.omega] = c.full or 0.0
+        by_name.setdefault(c.name, {})[c.omega] = c.full or 0.0
         by_number.setdefault(f"mode {c.mode}", {})[c.omega] = c.full or 0.0
     lasting = all(set(line) == speeds for line in by_name.values())
     return by_name if lasting else by_number
@@ -172,7 +171,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
     cells = [c for c in run.cells if c.case == case and c.difference is not None and c.role != "measured"]
     if not cells:
         return None
-    names, style, modes = columns(cells), looks(among or columns(run.cells)), labels(cells)
+    names, style = columns(cells), looks(among or columns(run.cells))
     tracks = max(c.mode for c in cells)
     with house():
         low, height = band(1), 1.36 + 0.6 * len(names)
@@ -187,7 +186,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
                 axes.axhspan(row - 0.5, row + 0.5, color="#f5f5f5", lw=0, zorder=0)
             _row(axes, row, mine, tracks, style[name])
             worst = max(mine, key=lambda c: abs(c.difference or 0.0))
-            text = f"{amount(worst.difference or 0.0, worst.target)}\n{modes[worst]}, {units.at(worst.omega)}"
+            text = f"{amount(worst.difference or 0.0, worst.target)}\n{worst.name}, {units.at(worst.omega)}"
             axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
         axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])
         axes.tick_params(axis="y", length=0, pad=8)

@@ -29,7 +29,7 @@ def run() -> Run:
     silent = dict.fromkeys(
         ("frequency", "reference", "full", "difference", "uncertainty", "elements", "order", "mac", "seconds")
     )
-    said = {"mode": 0, "family": "", "version": "", "verdict": "not run", "reason": "not installed"}
+    said = {"mode": 0, "family": "", "ordinal": 0, "version": "", "verdict": "not run", "reason": "not installed"}
     absent = {(c.case, c.omega): replace(c, **said, **silent) for c in plain.cells if c.code == ABSENT}
     return replace(plain, cells=(*(c for c in plain.cells if c.code != ABSENT), *absent.values()), levels=levels)
 

@@ -245,6 +245,7 @@ def _run():
             "omega": 10.0,
             "mode": mode,
             "family": "flapwise",
+            "ordinal": mode,
             "code": code,
             "version": "1",
             "role": "code",

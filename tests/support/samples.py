@@ -29,6 +29,7 @@ def cell(**changes: object) -> Cell:
         "omega": 10.0,
         "mode": 1,
         "family": "edgewise",
+        "ordinal": 1,
         "code": "alpha",
         "version": "2.1",
         "role": "code",
@@ -52,7 +53,7 @@ def empty(verdict: str, reason: str, **changes: object) -> Cell:
     blank = dict.fromkeys(
         ("frequency", "reference", "difference", "uncertainty", "full", "elements", "order", "mac", "seconds")
     )
-    return cell(mode=0, family="", verdict=verdict, reason=reason, **blank, **changes)
+    return cell(mode=0, family="", ordinal=0, verdict=verdict, reason=reason, **blank, **changes)
 
 
 def run() -> Run:
@@ -77,6 +78,7 @@ def run() -> Run:
                         omega=omega,
                         mode=mode,
                         family=family,
+                        ordinal=(mode + 1) // 2,
                         code=code,
                         version=version,
                         frequency=f * (1 + d),

@@ -22,6 +22,7 @@ CELL = Cell(
     omega=10.0,
     mode=1,
     family="edgewise",
+    ordinal=1,
     code="some-code",
     version="1.0",
     role="code",
@@ -34,7 +35,7 @@ CELL = Cell(
     seconds=0.25,
 )
 RUN = Run(
-    cells=(CELL, replace(CELL, mode=0, family="", frequency=None, verdict="not run")),
+    cells=(CELL, replace(CELL, mode=0, family="", ordinal=0, frequency=None, verdict="not run")),
     versions={"some-code": "1.0"},
     controls=(Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("some-code",), -0.24),),
 )

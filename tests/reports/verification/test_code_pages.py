@@ -27,6 +27,7 @@ def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode:
         omega=10.0,
         mode=0 if difference is None else mode,
         family="" if difference is None else "flapwise",
+        ordinal=0 if difference is None else mode,
         code=code,
         version="9.9",
         role="code",
