@@ -22,15 +22,15 @@ from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
-from .multibody import equilibrium
-from .multibody import linear as lz
+from .multibody import equilibrium, linearization
 from .multibody.dynamics import unbalanced
 from .multibody.loops import size_of
 from .multibody.lowest import Definite, definite, lowest
 from .multibody.mechanism import MechanismError, at_rate
+from .multibody.spanning import compile_tree
 from .multibody.state import State, state_at
 from .multibody.strained import out_of_range
-from .multibody.tree import Tree, compile_tree
+from .multibody.tree import Tree
 from .space import spatial as sp
 
 Array = NDArray[np.float64]
@@ -123,7 +123,7 @@ def sweep(
 class _Linear:
     """M̂, Ĉ, K̂ about a state, factored, and Newton's correction of the state, −K̂⁻¹ Q̂ over the free coordinates."""
 
-    about: lz.Linearization
+    about: linearization.Linearization
     pencil: Definite
     correction: Array
 
@@ -182,13 +182,15 @@ def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
 
 
 def _linear(tree: Tree, state: State, effects: Effects) -> _Linear:
-    of = lz.about(tree, state)
+    of = linearization.about(tree, state)
     pencil = definite(of.M, of.C if effects.coriolis else np.zeros_like(of.C), of.K)
     left = unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[of.partition.free]
     return _Linear(of, pencil, -pencil.displacement(left))
 
 
-def _shapes(body: Chain, linear: lz.Linearization, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _shapes(
+    body: Chain, linear: linearization.Linearization, vectors: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
     """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the independent coordinates."""
     k, n = linear.state.kinematics, len(body.nodes)
     dq = np.zeros((len(k.q), vectors.shape[1]), complex)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.multibody import linearize, periodic
-from ...core.multibody.linear import Linearization
+from ...core.multibody import modal, periodic
+from ...core.multibody.linearization import Linearization
 from ...core.multibody.mechanism import Mechanism, inertia
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer
@@ -40,7 +40,7 @@ def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
     def make(right: Any) -> Any:
         return lambda *args, **kwargs: alter(right(*args, **kwargs))
 
-    return (linearize, "about", make), (periodic, "about", make)
+    return (modal, "about", make), (periodic, "about", make)
 
 
 def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:

@@ -2,7 +2,7 @@
 
 A fault replaces a named object of a module (a *seam*) while the real matrix runs a small case. It is detected by cells
 that are bad with the fault and not without it. A fault in judging may make cells better instead of worse; it is
-detected if another fault, which must be caught, no longer is. Faults in counting, history and gate are detected by
+detected if another fault, which must be detected, no longer is. Faults in counting, history and gate are detected by
 their canaries.
 
 A fault acts only in the thread that runs its trial, so that trials may share a process with real work. Compiled loops
@@ -84,7 +84,7 @@ class Fault:
         size: size of its effect on the compared quantities of the trial.
         seams: the replaced objects.
         trial: the case to run; None for counting, history and gate, whose canaries are run.
-        blinds: name of a fault that must be caught and, with this fault, no longer is.
+        blinds: name of a fault that must be detected and, with this fault, no longer is.
         fast: whether every run includes it.
     """
 
@@ -192,19 +192,19 @@ def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[]
     return _judged(fault, right, wrong)
 
 
-def _blinding(fault: Fault, caught: Fault) -> Control:
-    """Result for a fault in judging: another fault is no longer caught, or correct cells are bad."""
-    assert caught.trial
-    if absent := [one.asked for one in known(caught.trial) if not one.version]:
+def _blinding(fault: Fault, other: Fault) -> Control:
+    """Result for a fault in judging: another fault is no longer detected, or correct cells are bad."""
+    assert other.trial
+    if absent := [one.asked for one in known(other.trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
-    right = faultless(caught.trial)
+    right = faultless(other.trial)
     with seeded(fault.seams):
-        before = cells(caught.trial)
-        with seeded(caught.seams):
-            after = cells(caught.trial)
-    found = _judged(caught, before, after).caught
-    bad = _judged(fault, right, before).caught
-    return _control(fault, bad if found else (*bad, f"negative control not caught: {caught.name}"))
+        before = cells(other.trial)
+        with seeded(other.seams):
+            after = cells(other.trial)
+    found = _judged(other, before, after).detected_by
+    bad = _judged(fault, right, before).detected_by
+    return _control(fault, bad if found else (*bad, f"negative control not detected: {other.name}"))
 
 
 def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:
@@ -224,7 +224,7 @@ def _name(cell: Cell) -> str:
     return f"{cell.case}, {cell.code}{mode}, {cell.omega:g} rad/s: {cell.verdict}"
 
 
-def _control(fault: Fault, caught: tuple[str, ...]) -> Control:
+def _control(fault: Fault, detected_by: tuple[str, ...]) -> Control:
     trial = fault.trial
     return Control(
         control=fault.name,
@@ -233,5 +233,5 @@ def _control(fault: Fault, caught: tuple[str, ...]) -> Control:
         size=fault.size,
         case=trial.case if trial else "",
         omega=max(trial.speeds) if trial else 0.0,
-        caught=caught,
+        detected_by=detected_by,
     )

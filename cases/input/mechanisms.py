@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core import multibody as mb
 from ...core.eigen import EigenError
 from ...core.multibody.mechanism import at_time
-from ...core.multibody.tree import compile_tree
+from ...core.multibody.spanning import compile_tree
 from ...core.space import spatial as sp
 from .errors import CaseError, nearest
 from .mechanism_schema import BodyData, CoordinateSpringData, Frame, JointData, MechanismFile, MotionData

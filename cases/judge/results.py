@@ -113,7 +113,7 @@ class Control:
         size: size of its effect, in words.
         case: the trial's blade, as in ``Cell``; empty for faults in history and gate.
         omega: the trial's highest rotor speed, rad/s.
-        caught: cells (or lines of the gate) that are bad with the fault and not without it; empty if not detected.
+        detected_by: cells (or lines of the gate) that are bad with the fault and not without it; empty if not detected.
         change: largest difference among those cells, relative.
         needs: required codes that are not installed; if any, the trial was not run.
     """
@@ -124,14 +124,14 @@ class Control:
     size: str
     case: str
     omega: float
-    caught: tuple[str, ...]
+    detected_by: tuple[str, ...]
     change: float | None = None
     needs: str = ""
 
     @property
     def missed(self) -> bool:
         """Whether the control was run and not detected."""
-        return not self.caught and not self.needs
+        return not self.detected_by and not self.needs
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..judge.results import Verdict
-from .history import Caught, Entry, Key, Point
+from .history import Detection, Entry, Key, Point
 
 MOVED = 1e-9
 """Relative change above which a frequency counts as moved."""
@@ -89,7 +89,7 @@ class Comparison:
         better: cells with a better verdict.
         gone: missing answers.
         new: cells with an answer that had none.
-        uncaught: seeded faults that are no longer caught; all of them if none is run any more.
+        undetected: seeded faults that are no longer detected; all of them if none is run any more.
         timings: times by code; informational.
         missed: seeded faults that this run does not detect.
     """
@@ -101,7 +101,7 @@ class Comparison:
     better: tuple[Change, ...]
     gone: tuple[Gone, ...]
     new: tuple[Point, ...]
-    uncaught: tuple[Caught, ...]
+    undetected: tuple[Detection, ...]
     timings: tuple[Timing, ...]
     missed: tuple[str, ...] = ()
     loosened: tuple[Change, ...] = ()
@@ -116,7 +116,7 @@ class Comparison:
 
     def passed(self, strict: bool = False) -> bool:
         """Whether nothing got worse; with ``strict``, also whether nothing moved."""
-        worse = self.worse or self.loosened or self.gone or self.uncaught or self.missed
+        worse = self.worse or self.loosened or self.gone or self.undetected or self.missed
         return not (worse or (strict and self.moved))
 
 
@@ -154,7 +154,7 @@ def compare(
     moved = [c for c in changes if abs(c.moved or 0.0) > tolerance]
     worse = sorted((c for c in changes if _worse(c)), key=lambda c: -RANK[c.after.verdict])
     listed = {c.after.key for c in worse}
-    tried = {c.control: bool(c.caught) for c in after.controls}
+    tried = {c.control: bool(c.detected_by) for c in after.controls}
     return Comparison(
         before=before,
         after=after,
@@ -163,7 +163,7 @@ def compare(
         better=tuple(c for c in changes if _better(c)),
         gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
         new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
-        uncaught=tuple(c for c in before.controls if c.caught and not tried.get(c.control, bool(tried))),
+        undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, bool(tried))),
         timings=tuple(_timings(before, after, [e for e in earlier if e.machine == after.machine][-RUNS:])),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),

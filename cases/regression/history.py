@@ -44,13 +44,13 @@ Key = tuple[str, str, float, int]
 """Case, code, rotor speed (rad/s), mode."""
 
 
-class Caught(msgspec.Struct, frozen=True, array_like=True):
+class Detection(msgspec.Struct, frozen=True, array_like=True):
     """Detections of one seeded fault in one case at one speed (rad/s); an array in the file."""
 
     control: str
     case: str
     omega: float
-    caught: tuple[str, ...]
+    detected_by: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Entry:
     machine: str
     versions: dict[str, str]
     cells: tuple[Point, ...]
-    controls: tuple[Caught, ...] = ()
+    controls: tuple[Detection, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
             )
             for c in run.cells
         ),
-        controls=tuple(Caught(c.control, c.case, c.omega, c.caught) for c in run.controls if not c.needs),
+        controls=tuple(Detection(c.control, c.case, c.omega, c.detected_by) for c in run.controls if not c.needs),
     )
 
 

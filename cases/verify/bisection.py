@@ -30,7 +30,7 @@ from .matrix import dated
 from .mechanism_case import MechanismCase
 from .reference import references
 
-Tell = Callable[[str], None]
+Report = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def bisections(
     codes: Sequence[Description],
     executor: Executor,
     limits: Callable[[Case | MechanismCase], Limits],
-    tell: Tell,
+    report: Report,
 ) -> tuple[Bisection, ...]:
     """One bisection for each column of another release that moves a frequency, or gives or lacks an answer.
 
@@ -70,7 +70,7 @@ def bisections(
         cases, codes: those of the run.
         executor: where questions are answered.
         limits: of one solution, by case.
-        tell: called with one line before and after each release that is tried.
+        report: called with one line before and after each release that is tried.
     """
     known = {code.name: code for code in codes}
     out = []
@@ -83,7 +83,7 @@ def bisections(
             release = release_of(known[found.other].asked)  # its code may not say, if it cannot be imported
             ends = [End(code.version, one.before, _why(run, found.code, one.cell))]
             ends.append(End(release, one.after, _why(run, found.other, one.cell)))
-            out.append(_bisect(found.other, question, ends, executor, tell))
+            out.append(_bisect(found.other, question, ends, executor, report))
     return tuple(out)
 
 
@@ -103,22 +103,22 @@ class End:
     skip: bool = False
 
 
-def _bisect(other: str, question: Question, ends: Sequence[End], executor: Executor, tell: Tell) -> Bisection:
+def _bisect(other: str, question: Question, ends: Sequence[End], executor: Executor, report: Report) -> Bisection:
     before, first = old, _ = sorted(ends, key=lambda end: Version(end.release))
     both = all(end.cell for end in ends)
     code, ask, tried = question.code, _Asker(question, executor), 0
-    todo, skipped = _between(code.distribution, before.release, first.release, tell), dict[str, str]()
+    todo, skipped = _between(code.distribution, before.release, first.release, report), dict[str, str]()
     while todo:
         middle = len(todo) // 2
         what = f"bisection: {code.name}, {code.distribution} {todo[middle]}"
-        tell(f"{what}: {question.name}, {question.omega:g} rad/s; releases left: {len(todo)}")
+        report(f"{what}: {question.name}, {question.omega:g} rad/s; releases left: {len(todo)}")
         here = ask(todo[middle])
         if here.skip or (both and not here.cell):
-            tell(f"{what}: skipped: {here.why}")
+            report(f"{what}: skipped: {here.why}")
             skipped[todo.pop(middle)] = here.why
             continue
         tried += 1
-        tell(f"{what}: {_difference(old, here)}")
+        report(f"{what}: {_difference(old, here)}")
         if _differs(old, here):
             first, todo = here, todo[:middle]
         else:
@@ -157,12 +157,12 @@ def _difference(old: End, new: End) -> str:
     return f"{'moved' if here.moved else 'not moved'}, {here.relative:+.1e} from {old.release}"
 
 
-def _between(distribution: str, older: str, newer: str, tell: Tell) -> list[str]:
+def _between(distribution: str, older: str, newer: str, report: Report) -> list[str]:
     """Releases strictly between two, oldest first; none if they cannot be listed."""
     try:
         return [v for v in overlay.releases(distribution) if Version(older) < Version(v) < Version(newer)]
     except ReleaseError as error:
-        tell(f"bisection: {error}: only the two releases of the run are known")
+        report(f"bisection: {error}: only the two releases of the run are known")
         return []
 
 

@@ -97,7 +97,7 @@ def _failing(value: Any) -> bool:
     if isinstance(value, Failure):
         return True
     if isinstance(value, Control):
-        return not value.caught
+        return not value.detected_by
     if isinstance(value, Cell):
         return value.verdict == "fail" or (value.frequency is None and value.verdict != "not applicable")
     if isinstance(value, dict):

@@ -110,16 +110,16 @@ def _with_other_strains(blade: Blade) -> Iterator[tuple[str, Blade]]:
     rigid = np.isinf(blade.stiffness[:, shear, shear])
     axial = blade.stiffness[:, AXIAL, AXIAL]
     if np.isfinite(axial).all():
-        yield "no stretch", _held(blade, [AXIAL])
+        yield "no stretch", _rigid(blade, [AXIAL])
         if rigid.all():
             stiffness = blade.stiffness.copy()
             stiffness[:, shear, shear] = SHEAR * axial[:, None]
             yield "with shear (κ = 5/6, ν = 0.3)", replace(blade, stiffness=stiffness)
     if not rigid.any():
-        yield "no shear", _held(blade, shear)
+        yield "no shear", _rigid(blade, shear)
 
 
-def _held(blade: Blade, strains: Sequence[int]) -> Blade:
+def _rigid(blade: Blade, strains: Sequence[int]) -> Blade:
     stiffness = blade.stiffness.copy()
     for k in strains:
         stiffness[:, k, :] = stiffness[:, :, k] = 0.0

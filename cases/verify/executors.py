@@ -30,7 +30,7 @@ def executor(
     scheduler: str | None = None,
     scratch: Path | None = None,
     software: Software | None = None,
-    tell: Callable[[str], None] = lambda line: None,
+    report: Callable[[str], None] = lambda line: None,
 ) -> Iterator[Executor]:
     """Context manager that yields the executor of a run.
 
@@ -40,7 +40,7 @@ def executor(
             ``slurm``, for jobs as configured for Dask-Jobqueue.
         scratch: folder for temporary files of local processes.
         software: what the workers of a cluster must have in the versions of this process; this package by default.
-        tell: called with a line on the workers of a cluster.
+        report: called with a line on the workers of a cluster.
 
     Raises:
         CaseError: if the scheduler cannot be reached, is not configured, or Dask is not installed.
@@ -57,7 +57,7 @@ def executor(
         address = scheduler if scheduler != SLURM else stack.enter_context(_slurm(workers or 1))
         client = stack.enter_context(_client(address, scheduler))
         count = len(client.nthreads())
-        tell(f"{scheduler}: {count} worker{'s' * (count != 1)}{'' if count else ' so far: waiting for the first'}")
+        report(f"{scheduler}: {count} worker{'s' * (count != 1)}{'' if count else ' so far: waiting for the first'}")
         from .cluster import Cluster
 
         yield Cluster(client, software or Software())

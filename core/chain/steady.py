@@ -98,7 +98,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
         energy = abs(float(relative @ p.residual))
-        if _settled(energy, before, rounding_energy(p, shape)):
+        if _converged(energy, before, rounding_energy(p, shape)):
             if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
                 raise SteadyStateError("elements are deformed beyond the range of their strain measure")
             return Steady(displaced(shape, step), p)
@@ -107,7 +107,7 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     raise SteadyStateError("no convergence")
 
 
-def _settled(energy: float, before: float, rounding: float) -> bool:
+def _converged(energy: float, before: float, rounding: float) -> bool:
     """Whether a step is the last one.
 
     It is if its energy is that of rounding errors, and it is the first step or hardly smaller than the last one, or if the next

@@ -50,7 +50,7 @@ class _Sums(NamedTuple):
 def assemble(
     beams: BeamArrays,
     cardan: bool | None,
-    held: bool | None,
+    fixed: bool | None,
     x: Array,
     beta: Array,
     frame: Array,
@@ -65,7 +65,7 @@ def assemble(
 ) -> None:
     """Residual (n, d), M, C, ``remainder`` (n, d, d) and spring (n, 6, 6) of ``beams.OnStrain``.
 
-    ``cardan`` is that of ``measures``; ``held`` is None without loads on the points and without components that stay fixed.
+    ``cardan`` is that of ``measures``; ``fixed`` is None without loads on the points and without components that stay fixed.
     Numba does not compile the branches that None excludes.
     """
     eta, back = np.empty(6), np.empty((6, 6))
@@ -80,7 +80,7 @@ def assemble(
         for matrix in (sums.M, sums.C, sums.K, spring[k]):
             clear(matrix)
         if len(beams.mass):
-            _add_inertia(beams, held, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
+            _add_inertia(beams, fixed, k, eta, back, beta[k], frame[k], fall[k], axes[k], geometric, sums, spring[k])
             for i in range(6):
                 sums.f[12 + i] += beams.inner_preload[k, i] + beta[k, i]
                 sums.K[12 + i, 12 + i] += 1.0
@@ -133,7 +133,7 @@ def _add_elastic(
 @compiled
 def _add_inertia(
     beams: BeamArrays,
-    held: bool | None,
+    fixed: bool | None,
     k: int,
     eta: Array,
     back: Array,
@@ -161,7 +161,7 @@ def _add_inertia(
         change[i] = eta[i] - beams.law.eta[k, i]
     for p in range(per):
         point = per * k + p
-        if held is None and beams.mass[point, 0, 0] == 0.0:
+        if fixed is None and beams.mass[point, 0, 0] == 0.0:
             continue  # a copy that ``beams.alike`` added
         shape = beams.shape[point]
         ride(beams.zeta0[point], shape, beams.bubble[point], change, back, beta, zeta, slope, T, H)
@@ -170,7 +170,7 @@ def _add_inertia(
         rigid.adjoint(pose, to_point)
         congruence(to_point, beams.mass[point], work, M)
         inertia.carry(M, frame, turn, fall, g, C, K)
-        if held is not None:
+        if fixed is not None:
             for i in range(3):
                 push[i] = 0.0
                 for j in range(3):

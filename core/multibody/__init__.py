@@ -22,7 +22,7 @@ Lengths in m, angles in rad, SI throughout. A joint's axis is the z axis of its 
 
 from ..element.beams import bushing
 from .joints import Joint, at
-from .mechanism import Beam, Body, CoordinateSpring, Mechanism, MechanismError, Motion, Spring, inertia
+from .mechanism import Beam, Body, CoordinateSpring, Load, Mechanism, MechanismError, Motion, Spring, inertia
 from .motion import Harmonic, Sum
 from .solution import Solution, solve, straight_beam
 
@@ -32,6 +32,7 @@ __all__ = [
     "CoordinateSpring",
     "Harmonic",
     "Joint",
+    "Load",
     "Mechanism",
     "MechanismError",
     "Motion",

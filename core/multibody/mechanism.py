@@ -111,7 +111,7 @@ class Beam:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The parts of a mechanism, with gravity (3,) in m/s², in the ground's axes; ``tree.compile_tree`` makes arrays of it."""
+    """The parts of a mechanism; gravity (3,) in m/s², in the ground's axes. ``spanning.compile_tree`` makes arrays of it."""
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import equilibrium
-from .linear import Linearization, about
+from .linearization import Linearization, about
 from .mechanism import MechanismError
 from .motion import Motion
 

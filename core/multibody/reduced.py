@@ -1,6 +1,6 @@
 """The paper's reduction, in its order and symbols: from M Ẏ + Φ_Zᵀ λ = Q to M̂ v̇_I = Q̂ (Park et al. 2010, eq. 1–25).
 
-Valid at any state, not only a steady one. ``equilibrium`` finds the state where Q̂ vanishes, and ``linear`` varies
+Valid at any state, not only a steady one. ``equilibrium`` finds the state where Q̂ vanishes, and ``linearization`` varies
 M̂ v̇_I = Q̂ about it; this module gives each term, the accelerations and the reactions.
 """
 

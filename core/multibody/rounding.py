@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .. import eigen
 from .equilibrium import again
-from .linear import Linearization, about
+from .linearization import Linearization, about
 from .mechanism import MechanismError
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from ..eigen import Damped, Eigen
 from ..element.beams import Beams
 from ..element.discretize import discretize
 from ..element.measures import LARGEST_STRAIN
-from .linearize import Linearization, linearize, modes
 from .mechanism import Mechanism, MechanismError
+from .modal import Linearization, linearize, modes
 from .rounding import rounding
 from .strained import largest_strain
 

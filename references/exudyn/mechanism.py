@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
 from ...core.multibody.mechanism import Mechanism
-from ...core.multibody.tree import Tree, compile_tree
+from ...core.multibody.spanning import compile_tree
+from ...core.multibody.tree import Tree
 from ...core.rank import ranked
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CORE, CodeError, Independence, Shares

@@ -80,7 +80,7 @@ def modes(
         )
     begun = time.perf_counter()
     places, nodes = numbered(bricks)
-    fixed = _fixed(clamp, nodes) if callable(clamp) else _held(clamp, places)
+    fixed = _fixed(clamp, nodes) if callable(clamp) else _restrained(clamp, places)
     steps = [*fixed, "*STEP"]
     if omega:
         load = f"ALL,CENTRIF,{omega**2:.12g},0.,0.,0.,0.,0.,1."
@@ -102,7 +102,7 @@ def _fixed(clamp: Clamp, nodes: Array) -> list[str]:
     return ["*BOUNDARY", *(f"{node + 1},{d + 1},{d + 1}" for node, d in np.argwhere(fixed_by(clamp, nodes)))]
 
 
-def _held(forces: Array, places: Index) -> list[str]:
+def _restrained(forces: Array, places: Index) -> list[str]:
     """Equations for a root on whose motion nodal forces (3n, 6) of the complete lattice do no work.
 
     The node in the middle of a face, which 20-node elements lack, moves by −¼ of the corners and ½ of the mid-edges.

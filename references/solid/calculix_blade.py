@@ -10,7 +10,7 @@ from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from . import bar, calculix, hexahedra
-from .curved import held
+from .curved import with_root_forces
 from .known import ACROSS, recognised
 from .materials import Orthotropic
 from .mesh import Bricks, clamped
@@ -53,7 +53,7 @@ class Calculix:
             raise CodeError(f"{blade.name}: {reason}")
         solid, _ = recognised(blade)
         if solid:
-            bricks, root = held(solid, bar.LAYERS * -(-elements // bar.LAYERS), ACROSS)
+            bricks, root = with_root_forces(solid, bar.LAYERS * -(-elements // bar.LAYERS), ACROSS)
             points = solid.place(STATIONS * solid.length)
             return calculix.modes(bricks, solid.material, omega, count, root, points)
 

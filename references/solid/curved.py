@@ -124,8 +124,8 @@ def layer(bricks: Bricks, at: int) -> NDArray[np.intp]:
     return np.arange(at * size, (at + 1) * size)
 
 
-def held(solid: CurvedSolid, layers: int, across: tuple[int, int]) -> tuple[Bricks, Array]:
-    """The mesh of a solid with ``layers`` along the span, and the nodal forces (3n, 6) that hold its root."""
+def with_root_forces(solid: CurvedSolid, layers: int, across: tuple[int, int]) -> tuple[Bricks, Array]:
+    """The mesh of a solid with ``layers`` along the span, and the nodal forces (3n, 6) at its root, one column per reaction."""
     bricks = solid.bricks(np.linspace(0.0, solid.length, layers + 1), across)
     force = np.zeros((3, bricks.lattice().size // 3, 6))
     force[:, layer(bricks, 0)] = inside(solid, 0.0, across).force

@@ -18,7 +18,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from . import bar, hexahedra
-from .curved import CurvedSolid, held, layer
+from .curved import CurvedSolid, layer, with_root_forces
 from .known import ACROSS, recognised
 from .materials import Orthotropic
 from .mesh import Bricks, clamped
@@ -86,10 +86,10 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
     Raises:
         CodeError: no stable steady state.
     """
-    bricks, root = held(solid, layers, ACROSS)
+    bricks, root = with_root_forces(solid, layers, ACROSS)
     start = None
     if omega and layers > COARSE:
-        first, hold = held(solid, COARSE, ACROSS)
+        first, hold = with_root_forces(solid, COARSE, ACROSS)
         coarse = hexahedra.solid(first, solid.material)
         u, _ = hexahedra.steady(coarse, omega, hexahedra.motions(coarse, hold))
         along = CubicSpline(np.linspace(0.0, 1.0, 2 * COARSE + 1), u.reshape(3, 2 * COARSE + 1, -1), axis=1)

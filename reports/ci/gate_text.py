@@ -15,7 +15,7 @@ from rich.table import Table
 from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone, Timing
-from ...cases.regression.history import Caught, Entry, Point
+from ...cases.regression.history import Detection, Entry, Point
 from ..shared.markdown import plain, table
 
 ROWS = 50
@@ -30,7 +30,7 @@ def verdict(found: Comparison, strict: bool) -> str:
         "worse": len(found.worse),
         "with a wider target": len(found.loosened),
         "gone": len(found.gone),
-        "controls no longer caught": len(found.uncaught),
+        "controls no longer detected": len(found.undetected),
         "seeded faults missed": len(found.missed),
         "moved": len(found.moved),
         "better": len(found.better),
@@ -52,7 +52,7 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
         ("Worse", [_change(c) for c in found.worse]),
         ("Wider target than before", [_loosened(c) for c in found.loosened]),
         ("Gone", _gone(found.gone)),
-        ("Seeded faults that are no longer detected", [_uncaught(c) for c in found.uncaught]),
+        ("Seeded faults that are no longer detected", [_undetected(c) for c in found.undetected]),
         ("Required seeded faults that are not detected", [{"fault": name} for name in found.missed]),
         ("Moved", [_change(c) for c in found.moved]),
         ("Better", [_change(c) for c in found.better]),
@@ -121,12 +121,12 @@ def _column(gone: Gone) -> tuple[str, str]:
     return gone.point.case, gone.point.code
 
 
-def _uncaught(control: Caught) -> Row:
+def _undetected(control: Detection) -> Row:
     return {
         "fault": control.control,
         "case": control.case,
         "speed, rad/s": f"{control.omega:.6g}",
-        "was detected by": ", ".join(control.caught),
+        "was detected by": ", ".join(control.detected_by),
     }
 
 
@@ -178,7 +178,7 @@ def annotations(found: Comparison, folder: Path) -> list[str]:
     rows += [
         ("error", r["case"], f"{r['code']}: {r['answers']} answers missing, now {r['now']}") for r in _gone(found.gone)
     ]
-    for control, case in dict.fromkeys((c.control, c.case) for c in found.uncaught):
+    for control, case in dict.fromkeys((c.control, c.case) for c in found.undetected):
         rows.append(("error", case, f"{control}: a fault in core that is no longer detected"))
     rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing])]
     return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]

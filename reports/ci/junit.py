@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...cases.judge.results import Cell, Run
 from ...cases.regression.gate import Comparison
-from ...cases.regression.history import Caught, Point
+from ...cases.regression.history import Detection, Point
 from ..shared import summary
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -63,20 +63,20 @@ def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, in
 
 def _regressions(root: Element, found: Comparison) -> None:
     """Add test cases for missing answers and for faults that are no longer detected."""
-    if not (found.gone or found.uncaught):
+    if not (found.gone or found.undetected):
         return
     suite = SubElement(root, "testsuite", name="against the earlier run")
     for gone in found.gone:
         p: Point = gone.point
         test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega), 0.0)
         _failed(test, "gone", f"the answer {p.frequency!r} rad/s is missing; now {gone.instead or 'nothing'}")
-    for control in found.uncaught:
+    for control in found.undetected:
         _lost(suite, control)
 
 
-def _lost(suite: Element, control: Caught) -> None:
+def _lost(suite: Element, control: Detection) -> None:
     test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s", 0.0)
-    _failed(test, "not caught", f"was detected by {', '.join(control.caught)}; no code detects it now")
+    _failed(test, "not detected", f"was detected by {', '.join(control.detected_by)}; no code detects it now")
 
 
 def _name(code: str, mode: int, family: str, omega: float) -> str:

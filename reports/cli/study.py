@@ -99,7 +99,7 @@ def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: st
         return None
     counter = Counter("samples", journal.header.tasks)
     try:
-        with counter, executor(workers, scheduler, tell=counter.tell) as pool:
+        with counter, executor(workers, scheduler, report=counter.report) as pool:
             run(study, pool, journal, counter.show)
     except KeyboardInterrupt:
         return "interrupted", INTERRUPTED

@@ -160,7 +160,7 @@ def command(
         tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
     )
     with writing(out), ExitStack() as started:
-        pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _tell))
+        pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
         with _journal(out) as kept:
             run, stopped = solve(
                 chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
@@ -206,7 +206,7 @@ def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
     return [names[k : k + size] for k in range(0, len(names), size)] if names else []
 
 
-def _tell(line: str) -> None:
+def _report(line: str) -> None:
     print(f"southwell: {line}", file=sys.stderr)
 
 

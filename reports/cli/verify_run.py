@@ -77,7 +77,7 @@ def solve(
         with watch:
             done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
             moved = bisection.bisections(
-                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.tell
+                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.report
             )
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}

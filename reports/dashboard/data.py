@@ -84,10 +84,10 @@ def headline(run: Run) -> list[str]:
 def _control(control: Control) -> dict[str, Any]:
     return {
         "name": control.control,
-        "status": "missed" if control.missed else "needs a code" if control.needs else "caught",
+        "status": "missed" if control.missed else "needs a code" if control.needs else "detected",
         "change": control.change,
         "where": control.what,
-        "caught": list(control.caught),
+        "detected_by": list(control.detected_by),
         "cases": [control.case] if control.case else [],
     }
 

@@ -40,7 +40,7 @@ def _run(e: Entry) -> dict[str, Any]:
         "machine": e.machine,
         "versions": e.versions,
         "counts": [[k, n] for k, v in enumerate(WORST_FIRST) if (n := sum(p.verdict == v for p in e.cells))],
-        "caught": len({c.control for c in e.controls if c.caught}),
+        "detected": len({c.control for c in e.controls if c.detected_by}),
         "controls": len({c.control for c in e.controls}),
     }
 

@@ -57,7 +57,7 @@ class _Display:
     ) -> None:
         self.bar.stop()
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         """Print a line above the bar."""
         self.console.print(f"southwell: {line}", markup=False, soft_wrap=True)
 

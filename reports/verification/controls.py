@@ -37,12 +37,12 @@ def overview(run: Run) -> list[dict[str, str]]:
             "size": control.size,
             "outcome": said(control),
             "largest difference": percent(control.change) if control.change is not None else "",
-            "noticed by": _named(control.caught),
+            "noticed by": _named(control.detected_by),
         }
         for control in run.controls
     ]
 
 
-def _named(caught: tuple[str, ...]) -> str:
-    more = f"; and {len(caught) - SHOWN} more" if len(caught) > SHOWN else ""
-    return "; ".join(caught[:SHOWN]) + more
+def _named(detected_by: tuple[str, ...]) -> str:
+    more = f"; and {len(detected_by) - SHOWN} more" if len(detected_by) > SHOWN else ""
+    return "; ".join(detected_by[:SHOWN]) + more

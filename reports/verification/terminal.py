@@ -72,7 +72,7 @@ def controls(run: Run) -> Table:
     for head in ("seeded fault", "in", "outcome", "largest difference", "noticed by"):
         out.add_column(head, overflow="fold")
     for control, row in zip(run.controls, faults.overview(run), strict=True):
-        first = control.caught[0] if control.caught else ""
+        first = control.detected_by[0] if control.detected_by else ""
         cells = (row["fault"], row["in"], row["outcome"], row["largest difference"], first)
         out.add_row(*map(escape, cells), style="bold red" if control.missed else "")
     return out

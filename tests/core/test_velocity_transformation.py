@@ -24,8 +24,8 @@ from southwell.core.eigen import UnstableError
 from southwell.core.element.discretize import Mass, discretize
 from southwell.core.modes import Modes
 from southwell.core.multibody.joints import Joint
-from southwell.core.multibody.linearize import linearize
 from southwell.core.multibody.mechanism import Body, Load, Mechanism, MechanismError, Motion, inertia
+from southwell.core.multibody.modal import linearize
 from southwell.core.space import spatial as sp
 from southwell.references.protocol.process import Limits
 from southwell.reports.cli import app as cli

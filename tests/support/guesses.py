@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from southwell.core.multibody import equilibrium, linearize, periodic
+from southwell.core.multibody import equilibrium, modal, periodic
 from southwell.core.multibody.equilibrium import State
-from southwell.core.multibody.linear import Linearization, about
+from southwell.core.multibody.linearization import Linearization, about
 from southwell.core.multibody.mechanism import Mechanism, MechanismError, at_time
 from southwell.core.multibody.tree import Tree
 
@@ -81,7 +81,7 @@ def every_steady_state_again():
         return linear
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(linearize, "at_time", frozen)
-        patch.setattr(linearize, "steady", steady)
-        patch.setattr(linearize, "about", checked)
+        patch.setattr(modal, "at_time", frozen)
+        patch.setattr(modal, "steady", steady)
+        patch.setattr(modal, "about", checked)
         yield

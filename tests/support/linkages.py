@@ -7,7 +7,7 @@ import numpy as np
 from southwell import multibody as mb
 from southwell.core.multibody.joints import SCREWS, Kind
 from southwell.core.multibody.kinematics import kinematics
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.space import spatial as sp
 
 G = 9.81

@@ -75,10 +75,10 @@ function matrix() {
 
 function controls() {
   MAIN.append(make("h2", {}, "Seeded faults"), make("p", { class: "muted" }, "Every run tries; the matrix must notice."),
-    table(["fault", "outcome", "largest change of a frequency", "where", "cases", "caught by"], DATA.controls.map((o) => row(o.name,
-      make("td", { class: o.status === "caught" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "caught" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
+    table(["fault", "outcome", "largest change of a frequency", "where", "cases", "detected by"], DATA.controls.map((o) => row(o.name,
+      make("td", { class: o.status === "detected" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "detected" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
       o.change === null && o.where ? "no such mode" : relative(o.change), o.where, make("td", { title: o.cases.join(", ") }, o.cases.length),
-      make("td", { class: "reason" }, o.caught.length ? `${o.caught.length}: ${o.caught.join(", ")}` : "nobody"))), { id: "controls" }));
+      make("td", { class: "reason" }, o.detected_by.length ? `${o.detected_by.length}: ${o.detected_by.join(", ")}` : "none"))), { id: "controls" }));
 }
 
 matrix();

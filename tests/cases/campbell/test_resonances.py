@@ -14,7 +14,7 @@ from southwell.core.blade import Blade
 from southwell.core.chain import as_mechanism
 from southwell.core.element.discretize import discretize
 from southwell.core.modes import STATIONS, Modes
-from southwell.core.multibody.linearize import linearize
+from southwell.core.multibody.modal import linearize
 from southwell.core.solve import mesh_modes
 from southwell.reports.campbell.tables import notes, sheets
 from southwell.reports.shared.units import RAD_S

@@ -45,19 +45,19 @@ def test_the_table_is_large_and_names_are_unique() -> None:
 @pytest.mark.parametrize("name", FAST)
 def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
     (control,) = table.run([name])
-    assert control.caught, name
+    assert control.detected_by, name
     assert not control.needs
     case = BY_NAME[name].trial
     assert case
-    assert all(line.startswith(case.case) for line in control.caught)
-    assert all(line.endswith(("fail", "inconclusive")) for line in control.caught)
+    assert all(line.startswith(case.case) for line in control.detected_by)
+    assert all(line.endswith(("fail", "inconclusive")) for line in control.detected_by)
 
 
 @pytest.mark.parametrize("name", [f.name for f in ALL if f.area in ("counting", "history", "gate")])
 def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
     assert canaries() == []
     (control,) = table.run([name])
-    assert control.caught
+    assert control.detected_by
 
 
 @pytest.mark.slow
@@ -67,7 +67,7 @@ def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
 )
 def test_one_of_each_other_kind_is_detected(name: str) -> None:
     (control,) = table.run([name])
-    assert control.caught
+    assert control.detected_by
 
 
 @pytest.mark.slow
@@ -76,7 +76,7 @@ def test_a_fault_in_mechanisms_is_detected(name: str) -> None:
     (control,) = table.run([name])
     if control.needs:
         pytest.skip(f"not installed: {control.needs}")
-    assert control.caught
+    assert control.detected_by
 
 
 @pytest.mark.nightly
@@ -85,7 +85,7 @@ def test_a_fault_in_sections_is_detected(name: str) -> None:
     (control,) = table.run([name])
     if control.needs:
         pytest.skip(f"not installed: {control.needs}")
-    assert control.caught
+    assert control.detected_by
 
 
 @pytest.mark.slow
@@ -136,18 +136,18 @@ def test_faults_are_chosen_by_name() -> None:
 def control(**changes: object) -> Control:
     fields: dict = {
         "control": "no hub radius", "area": "core", "what": "it lies on the axis", "size": "−3 %", "case": "beam",
-        "omega": 10.0, "caught": ("beam, exact-beam: fail",), "change": 0.03,
+        "omega": 10.0, "detected_by": ("beam, exact-beam: fail",), "change": 0.03,
     }  # fmt: skip
     return Control(**{**fields, **changes})
 
 
 def test_a_missed_fault_is_status_1_and_is_named() -> None:
-    good = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), needs="exudyn-tree")))
+    good = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), needs="exudyn-tree")))
     assert summary.status(good) == 0
     headline = reported.headline(good)
     assert headline.startswith("Negative controls: 1 of 1 seeded faults")
     assert headline.endswith("detected; 1 were not run, because a code is missing.")
-    blind = replace(good, controls=(control(caught=()),))
+    blind = replace(good, controls=(control(detected_by=()),))
     assert summary.status(blind) == 1
     assert "not detected: no hub radius" in reported.headline(blind)
     assert [row["outcome"] for row in reported.overview(replace(good, controls=(*good.controls, *blind.controls)))] == [
@@ -157,6 +157,6 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
 
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
-    one = Run((samples.cell(),), controls=(control(), control(control="x", caught=(), change=None)))
+    one = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), change=None)))
     results.write(tmp_path / "results.jsonl", one)
     assert results.read(tmp_path / "results.jsonl") == one

@@ -34,7 +34,7 @@ def compared(after: Run, before: Run = BEFORE, **options) -> gate.Comparison:
 def test_the_same_run_passes() -> None:
     found = compared(BEFORE)
     assert found.passed(strict=True)
-    assert (found.moved, found.worse, found.gone, found.uncaught, found.better, found.new) == ((),) * 6
+    assert (found.moved, found.worse, found.gone, found.undetected, found.better, found.new) == ((),) * 6
 
 
 @pytest.mark.parametrize(("change", "listed"), [(0.9e-9, False), (1.1e-9, True), (-1.1e-9, True), (1e-3, True)])
@@ -84,10 +84,10 @@ def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> N
 
 def test_a_control_that_nobody_catches_any_more_counts() -> None:
     (control,) = BEFORE.controls
-    other = replace(BEFORE, controls=(replace(control, caught=("another",)),))
+    other = replace(BEFORE, controls=(replace(control, detected_by=("another",)),))
     assert compared(other).passed()  # somebody does
-    blind = replace(BEFORE, controls=(replace(control, caught=()),))
-    assert [c.control for c in compared(blind).uncaught] == ["frozen frame"]
+    blind = replace(BEFORE, controls=(replace(control, detected_by=()),))
+    assert [c.control for c in compared(blind).undetected] == ["frozen frame"]
     assert not compared(blind).passed()
     assert not compared(replace(BEFORE, controls=())).passed()  # nor is it tried any more
     assert compared(BEFORE, blind).passed()
@@ -113,7 +113,7 @@ def test_faults_that_only_a_longer_run_tries_are_not_missed_in_a_shorter_one() -
     (control,) = BEFORE.controls
     longer = replace(BEFORE, controls=(control, replace(control, control="one more")))
     assert compared(BEFORE, longer).passed()
-    absent = replace(control, control="one more", caught=(), needs="some-code")
+    absent = replace(control, control="one more", detected_by=(), needs="some-code")
     assert compared(replace(BEFORE, controls=(control, absent)), longer).passed()
 
 

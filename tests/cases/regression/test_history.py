@@ -13,7 +13,7 @@ import pytest
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Control, Run
 from southwell.cases.regression import history
-from southwell.cases.regression.history import Caught, Entry, Point
+from southwell.cases.regression.history import Detection, Entry, Point
 
 from ...reports.cli.test_cli import southwell
 
@@ -48,9 +48,9 @@ def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     (found,) = history.read(file).entries
     beam = Point("beam", "some-code", 10.0, 1, "edgewise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25, 1e-3)
     none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 0.25, 1e-3)
-    caught = Caught("frozen frame", "beam", 10.0, ("some-code",))
+    detection = Detection("frozen frame", "beam", 10.0, ("some-code",))
     assert found == Entry(
-        "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (caught,)
+        "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (detection,)
     )
     assert beam.key == ("beam", "some-code", 10.0, 1)
 

@@ -75,14 +75,14 @@ def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: St
     assert CALLS == [2.0, 2.0]
 
 
-def trial(caught: tuple[str, ...]) -> list[Control]:
-    CALLS.append(caught)
-    return [Control("wrong sign", "core", "reverses a sign", "1 %", "beam", 1.0, caught)]
+def trial(detected_by: tuple[str, ...]) -> list[Control]:
+    CALLS.append(detected_by)
+    return [Control("wrong sign", "core", "reverses a sign", "1 %", "beam", 1.0, detected_by)]
 
 
 def test_a_fault_that_was_not_detected_is_tried_again(kept: Store) -> None:
-    for caught in ((), (), ("beam: fail",), ("beam: fail",)):
-        assert Cached(Serial(), kept).submit(trial, caught).result()[0].caught == caught
+    for detected_by in ((), (), ("beam: fail",), ("beam: fail",)):
+        assert Cached(Serial(), kept).submit(trial, detected_by).result()[0].detected_by == detected_by
     assert CALLS == [(), (), ("beam: fail",)]
 
 

@@ -233,7 +233,9 @@ def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Referen
     found = Modes(1.0, values, np.zeros((len(names), 21, 4), complex), 10)
     wanted = Wanted(found, tuple(range(len(names))), np.zeros((21, 4, 4)))
     modes = tuple(RefinedMode(Estimate(f, 1e-9), Pair(k, 1.0), ()) for k, f in enumerate(frequencies))
-    return Reference(Converged(wanted, modes, numbered(names), names), frequencies, (1.0,) * len(names), ((),) * len(names))
+    return Reference(
+        Converged(wanted, modes, numbered(names), names), frequencies, (1.0,) * len(names), ((),) * len(names)
+    )
 
 
 @pytest.mark.parametrize(

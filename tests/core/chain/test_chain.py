@@ -11,7 +11,7 @@ from southwell.core.chain.as_mechanism import mechanism
 from southwell.core.chain.solution import balance
 from southwell.core.effects import Effects
 from southwell.core.element.discretize import discretize
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import modal
 from southwell.core.solve import chain_modes, modes, sweep
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import EXACT_EDGEWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
@@ -80,12 +80,12 @@ def test_errors_against_exact_values_are_of_fourth_order() -> None:
 def test_banded_chain_and_dense_mechanism_agree(blade, omega, elements, mass, measure) -> None:
     """One discretisation, two formulations: twists of the bodies with Lanczos, relative coordinates with B and LAPACK."""
     body = discretize(blade, elements, mass, measure)
-    dense = lz.linearize(mechanism(body, omega))
+    dense = modal.linearize(mechanism(body, omega))
     scale = np.abs(dense.K).max()
     assert np.abs(dense.K - dense.K.T).max() < 1e-12 * scale
     assert np.abs(dense.C + dense.C.T).max() <= 1e-12 * max(np.abs(dense.C).max(), 1.0)
     banded = modes(blade, omega, elements, 10, mass=mass, stiffness=measure)
-    np.testing.assert_allclose(lz.modes(dense, 10).frequencies, banded.frequencies, rtol=1e-10)
+    np.testing.assert_allclose(modal.modes(dense, 10).frequencies, banded.frequencies, rtol=1e-10)
 
 
 @pytest.mark.parametrize("elements", [2000, pytest.param(20_000, marks=pytest.mark.slow)])
@@ -114,7 +114,7 @@ def test_many_elements_lose_no_digits_at_speed() -> None:
 def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
     """A basis of hundreds of vectors in a semi-definite product must not drift: Lanczos against LAPACK."""
     body = discretize(yoo_shin(0.0), 40, "half_end", "body_fixed")
-    dense = lz.modes(lz.linearize(mechanism(body, 2.0)), count).frequencies
+    dense = modal.modes(modal.linearize(mechanism(body, 2.0)), count).frequencies
     found = modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="body_fixed").frequencies
     np.testing.assert_allclose(found, dense, rtol=1e-9)
 
@@ -124,7 +124,7 @@ def test_stages_agree_between_the_paths() -> None:
     body, n = discretize(curved(), 5), 5
     state = steady.steady(body, 1.5, np.zeros(3))
     shape, cartesian = state.shape, state.pencil
-    dense = lz.linearize(mechanism(body, 1.5))
+    dense = modal.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
     np.testing.assert_allclose(k.poses[1:], shape.nodes, atol=1e-9)
     twists = sp.adjoint(sp.inverse(k.poses[2:])) @ k.B[2 : n + 2, :, 1:]
@@ -137,7 +137,7 @@ def test_stages_agree_between_the_paths() -> None:
 
 def test_undamped_modes_have_no_real_part() -> None:
     """The same pencil through the general complex solver: λ on the imaginary axis to rounding."""
-    dense = lz.linearize(mechanism(discretize(PARK, 10), 10.0))
+    dense = modal.linearize(mechanism(discretize(PARK, 10), 10.0))
     found = eigen.damped(dense.M, dense.C, dense.K, 6)
     lowest = eigen.gyroscopic(dense.M, dense.C, dense.K, 6).frequencies
     np.testing.assert_allclose(found.values.imag, lowest, rtol=1e-9)

@@ -94,8 +94,8 @@ def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
         return energy <= 10.0 * rounding and energy > 1e-2 * before
 
     monkeypatch.setattr(steady, "linearize", counted)
-    for settled in (steady._settled, stalled):
-        monkeypatch.setattr(steady, "_settled", settled)
+    for settled in (steady._converged, stalled):
+        monkeypatch.setattr(steady, "_converged", settled)
         counts.append(0)
         one = MeshSolver(body, 6, ALL_EFFECTS, fall)
         solved = [one.at(omega) for omega in speeds]

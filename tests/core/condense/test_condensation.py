@@ -14,7 +14,7 @@ from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.condensation import segments_in_place as in_place
 from southwell.core.condense.segments import segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import modal
 from southwell.core.multibody.mechanism import inertia
 from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
@@ -174,7 +174,7 @@ def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float
 
 def test_the_compressed_model_agrees_with_the_general_solver() -> None:
     chain = chain_from_segments(segments_in_place(), at(ROOT))
-    dense = lz.modes(lz.linearize(mechanism(chain, SPEED)), 6).frequencies
+    dense = modal.modes(modal.linearize(mechanism(chain, SPEED)), 6).frequencies
     np.testing.assert_allclose(dense, chain_modes(chain, SPEED, 6).frequencies, rtol=1e-9)
 
 

@@ -6,10 +6,11 @@ import pytest
 from southwell.core import eigen, rank
 from southwell.core.chain import as_mechanism
 from southwell.core.element.discretize import discretize
-from southwell.core.multibody import congruence, dynamics, equilibrium, linear, lowest
+from southwell.core.multibody import congruence, dynamics, equilibrium, linearization, lowest
 from southwell.core.multibody.kinematics import Kinematics, kinematics, projected
 from southwell.core.multibody.mechanism import at_time
-from southwell.core.multibody.tree import Tree, compile_tree
+from southwell.core.multibody.spanning import compile_tree
+from southwell.core.multibody.tree import Tree
 from southwell.tests.support.beams import PARK, curved
 from southwell.tests.support.mechanisms import CASES
 
@@ -55,7 +56,7 @@ def test_sums_over_the_tree_are_products_with_b(name: str) -> None:
 
 def pencil(omega: float, elements: int) -> tuple[Array, Array, Array]:
     tree = compile_tree(as_mechanism.mechanism(discretize(PARK, elements), omega))
-    of = linear.about(tree, equilibrium.steady(tree))
+    of = linearization.about(tree, equilibrium.steady(tree))
     return 0.5 * (of.M + of.M.T), 0.5 * (of.C - of.C.T), 0.5 * (of.K + of.K.T)
 
 

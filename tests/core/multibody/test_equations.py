@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import southwell
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import modal
 from southwell.core.multibody.joints import Joint, at
 from southwell.core.multibody.mechanism import Body, CoordinateSpring, Mechanism, Motion, inertia
 from southwell.core.multibody.reduced import accelerations, reduced
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 
 ROOT = Path(southwell.__file__).parent
 NUMBERS = range(1, 26)
@@ -160,7 +160,7 @@ def test_Q_hat_vanishes_in_the_steady_state() -> None:
         (Motion("shaft.rz", 0.0, 1.0),),
         (CoordinateSpring("slot.z", stiffness=4.0, neutral=1.0),),
     )
-    linear = lz.linearize(swung)
+    linear = modal.linearize(swung)
     here = reduced(linear.tree, linear.state.q, np.zeros(1))
     assert linear.state.q[1] == pytest.approx(4.0 / 3.0, rel=1e-12)
     assert abs(here.Q_hat[0]) < 1e-12

@@ -9,17 +9,16 @@ import pytest
 
 from southwell import multibody as mb
 from southwell.cases.closed_forms.linkages import ring
-from southwell.core.multibody import dynamics, partition
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import dynamics, modal, partition
 from southwell.core.multibody.kinematics import kinematics, poses
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.space import spatial as sp
 from southwell.tests.support.five_bar import GUESS, bar, five_bar, undamped
 
 pytestmark = pytest.mark.numerical
 
 
-def reduced_residual(linear: lz.Linearization, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
+def reduced_residual(linear: modal.Linearization, dq: np.ndarray, dv: np.ndarray, da: np.ndarray) -> np.ndarray:
     """Rᵀτ of the exact equations with the independent coordinates moved: loops closed again, with rates and accelerations."""
     tree, state, part = linear.tree, linear.state, linear.partition
     q, v, a = state.q.copy(), state.v.copy(), state.a.copy()
@@ -47,7 +46,7 @@ def reduced_residual(linear: lz.Linearization, dq: np.ndarray, dv: np.ndarray, d
 
 def test_tangents_of_moving_loops_match_difference_quotients() -> None:
     """M̂, Ĉ, K̂ with Ṙ and R̈ in them, and the multipliers' curvature, against the exact equations moved a little."""
-    linear = lz.linearize(five_bar(), GUESS)
+    linear = modal.linearize(five_bar(), GUESS)
     n = len(linear.M)
     assert n >= 2
     loop_rates = [linear.state.v[linear.tree.coordinate(c)] for c in ("B.rz", "C.rz", "D.ry")]
@@ -79,7 +78,7 @@ def test_moving_loops_do_not_depend_on_the_cut(cut: str) -> None:
 def test_matrices_without_dissipation_are_symmetric_or_skew() -> None:
     """A spatial loop that turns steadily, without dampers: M̂ and K̂ symmetric, Ĉ skew and not zero."""
     m = undamped()
-    linear = lz.linearize(m, GUESS)
+    linear = modal.linearize(m, GUESS)
     assert len(linear.M) >= 3
     for a, sign in ((linear.M, 1), (linear.K, 1), (linear.C, -1)):
         assert np.abs(a - sign * a.T).max() < 1e-11 * np.abs(a).max()
@@ -101,7 +100,7 @@ def test_torque_that_drives_a_slider_crank(theta: float) -> None:
         (mb.Motion("O.rz", theta, omega),),
     )
     phi = float(np.arcsin(r / rod * np.sin(theta)))
-    linear = lz.linearize(
+    linear = modal.linearize(
         m, {"O.rz": theta, "P.rz": -theta - phi, "Q.rz": phi, "guide.z": r * np.cos(theta) + rod * np.cos(phi)}
     )
     rate = r * np.cos(theta) / (rod * np.cos(phi)) * omega
@@ -156,7 +155,7 @@ def test_a_loop_that_moves_at_no_given_rate_is_refused() -> None:
     with pytest.raises(
         mb.MechanismError, match=r"coordinate '\w\.r\w': its loop moves.*do not determine its rate.*prescribed = false"
     ):
-        lz.linearize(replace(m, motions=m.motions[:2]), GUESS)
+        modal.linearize(replace(m, motions=m.motions[:2]), GUESS)
 
 
 def test_motions_that_contradict_a_loop_are_refused() -> None:
@@ -172,13 +171,13 @@ def test_motions_that_contradict_a_loop_are_refused() -> None:
     )
     guess = mb.solve(replace(m, motions=(mb.Motion("A.rz", 0.9),)), {"B.rz": -0.3, "C.rz": 1.3, "D.rz": 1.9}).steady
     with pytest.raises(mb.MechanismError, match=r"motions: the prescribed rates contradict a loop"):
-        lz.linearize(m, guess)
+        modal.linearize(m, guess)
 
 
 @pytest.mark.parametrize("elements", [12, 20])
 def test_a_slender_ring_that_does_not_quite_close_finds_its_shape(elements: int) -> None:
     """Stiff in tension, soft in bending: full Newton steps fail here. The result is round, apart from the initial gap."""
-    linear = lz.linearize(ring(1.5, elements))
+    linear = modal.linearize(ring(1.5, elements))
     tree, state = linear.tree, linear.state
     hub = np.mean([x[:3, 3] for x in state.kinematics.poses[1:]], axis=0)
     radii = [np.linalg.norm(x[:3, 3] - hub) for x in state.kinematics.poses[1:]]

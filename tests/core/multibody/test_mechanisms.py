@@ -11,8 +11,7 @@ from southwell.core.blade import uniform_blade
 from southwell.core.chain.as_mechanism import mechanism, one
 from southwell.core.element import beams as bm
 from southwell.core.element.discretize import discretize
-from southwell.core.multibody import dynamics
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import dynamics, modal
 from southwell.core.multibody.joints import Joint, at
 from southwell.core.multibody.kinematics import kinematics
 from southwell.core.multibody.mechanism import (
@@ -25,7 +24,7 @@ from southwell.core.multibody.mechanism import (
     Spring,
     inertia,
 )
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import PARK
 from southwell.tests.support.four_bar import A_, B_, C_, D_, four_bar, guess, pose_of
@@ -34,12 +33,12 @@ G = 9.81
 
 
 def frequencies(mechanism: Mechanism, guess=None, **options) -> np.ndarray:
-    return lz.modes(lz.linearize(mechanism, guess, **options)).frequencies
+    return modal.modes(modal.linearize(mechanism, guess, **options)).frequencies
 
 
 def damped(mechanism: Mechanism, guess=None) -> eigen.Damped:
     """The modes of a mechanism that needs the damped eigenvalue solver."""
-    found = lz.modes(lz.linearize(mechanism, guess))
+    found = modal.modes(modal.linearize(mechanism, guess))
     assert isinstance(found, eigen.Damped)
     return found
 
@@ -84,10 +83,10 @@ def test_conical_pendulum_about_its_steady_cone(prescribed: bool) -> None:
         (Motion("turn.rz", 0.0, omega, prescribed=prescribed),),
         gravity=(0, 0, -G),
     )
-    linear = lz.linearize(m, {"swing.rz": -1.0})
+    linear = modal.linearize(m, {"swing.rz": -1.0})
     assert np.cos(linear.state.q[1]) == pytest.approx(cosine, rel=1e-12)
     expected = omega * (np.sqrt(1 - cosine**2) if prescribed else np.sqrt(1 + 3 * cosine**2))
-    found = lz.modes(linear).frequencies
+    found = modal.modes(linear).frequencies
     assert found[-1] == pytest.approx(expected, rel=1e-9)
     if not prescribed:  # the azimuth itself: a zero (double) root
         assert np.abs(found[:-1]).max() < 1e-5 * expected
@@ -124,7 +123,7 @@ def test_a_rotating_table_loses_stability_between_its_critical_speeds() -> None:
     """For √(kx/m) < Ω < √(ky/m) one branch grows without oscillating; on either side nothing grows."""
     kx, ky, m = 50.0, 98.0, 2.0
     for omega, stable in ((4.99, True), (5.01, False), (6.99, False), (7.01, True)):
-        found = lz.modes(lz.linearize(turntable(omega, kx, ky)))
+        found = modal.modes(modal.linearize(turntable(omega, kx, ky)))
         worst = getattr(found, "values", np.zeros(1)).real.max()
         assert (worst < 1e-6) == stable, omega
     grows = damped(turntable(6.0, kx, ky)).values.real.max()
@@ -161,10 +160,10 @@ def test_nutation_of_a_symmetric_top(weight: float) -> None:
     i1, i3, omega, theta = 0.5, 0.2, 5.0, 0.6
     omega3 = (i1 * omega**2 * np.cos(theta) + weight) / (i3 * omega)
     m = top(omega, omega3 - omega * np.cos(theta), i1, i3, weight)
-    linear = lz.linearize(m, {"nutation.rz": theta})
+    linear = modal.linearize(m, {"nutation.rz": theta})
     assert linear.state.q[1] == pytest.approx(theta, rel=1e-9)
     expected = np.sqrt(omega**2 - 2 * weight / i1 * np.cos(theta) + (weight / (i1 * omega)) ** 2)
-    assert lz.modes(linear).frequencies[-1] == pytest.approx(expected, rel=1e-8)
+    assert modal.modes(linear).frequencies[-1] == pytest.approx(expected, rel=1e-8)
 
 
 # --- linkages --------------------------------------------------------------------------------------------------------
@@ -220,9 +219,9 @@ def test_four_bar_with_a_spring_at_rest() -> None:
         m.coordinate_springs,
         gravity=(0, 0, -gravity),
     )
-    linear = lz.linearize(m, guess())
+    linear = modal.linearize(m, guess())
     assert linear.state.q[linear.tree.coordinate("A.rz")] == pytest.approx(theta, abs=1e-8)
-    assert lz.modes(linear).frequencies[0] == pytest.approx(np.sqrt(curvature / mass(theta)), rel=1e-6)
+    assert modal.modes(linear).frequencies[0] == pytest.approx(np.sqrt(curvature / mass(theta)), rel=1e-6)
     assert len(linear.partition.redundant) == 3  # a plane loop of four revolutes is three times overdetermined in space
     assert all(name.startswith("C: ") for name in linear.partition.redundant)
 
@@ -256,10 +255,10 @@ def test_frequencies_do_not_depend_on_a_rigid_rotation(turning) -> None:
 def test_slider_crank_with_a_spring() -> None:
     """Crank along the line of centres: the slider stands still to first order, so ω² M = k, M of crank and rod alone."""
     r, rod, m_crank, m_rod, k = 0.5, 2.0, 3.0, 2.0, 40.0
-    linear = lz.linearize(slider_crank(0.0), {"guide.z": r + rod})
+    linear = modal.linearize(slider_crank(0.0), {"guide.z": r + rod})
     # the rod turns by −r/rod θ, its inner end moves by r θ across, its outer end stays on the line
     effective = m_crank * r**2 / 3 + m_rod * r**2 / 3
-    assert lz.modes(linear).frequencies[0] == pytest.approx(np.sqrt(k / effective), rel=1e-9)
+    assert modal.modes(linear).frequencies[0] == pytest.approx(np.sqrt(k / effective), rel=1e-9)
 
 
 def test_a_flat_four_bar_is_reported_singular() -> None:
@@ -272,7 +271,7 @@ def test_a_flat_four_bar_is_reported_singular() -> None:
     )
     m = Mechanism((bar("crank", 1, 1.0), bar("coupler", 2, 1.0), bar("rocker", 1, 1.0)), joints)
     with pytest.raises(MechanismError, match=r"singular"):
-        lz.linearize(m)
+        modal.linearize(m)
 
 
 # --- elastic loops ---------------------------------------------------------------------------------------------------
@@ -283,8 +282,8 @@ R, EI, MU = 1.0, 2.0, 0.5  # the ring's
 @pytest.mark.parametrize("omega", [0.0, 1.5], ids=["at rest", "spinning"])
 def test_closed_ring_of_beams(omega: float) -> None:
     """p = n [±(n²−1) √(Ω² + (n²+1) EI/(μR⁴)) − 2Ω]/(n²+1), in-plane, inextensional, in the rotating frame (Carrier 1945)."""
-    linear = lz.linearize(ring(omega, 24))
-    found = lz.modes(linear)
+    linear = modal.linearize(ring(omega, 24))
+    found = modal.modes(linear)
     values = found.values.imag if isinstance(found, eigen.Damped) else found.frequencies
     for n in (2, 3):
         root = (n**2 - 1) * np.sqrt(omega**2 + (n**2 + 1) * EI / (MU * R**4))
@@ -376,7 +375,7 @@ def test_the_hubs_zero_mode_when_its_speed_is_free() -> None:
     free = Mechanism(
         clamped.bodies, clamped.joints, (Motion("hub.rz", 0.0, 10.0, prescribed=False),), beams=clamped.beams
     )
-    found = np.sort(lz.modes(lz.linearize(free)).frequencies)
+    found = np.sort(modal.modes(modal.linearize(free)).frequencies)
     assert found[0] < 1e-4
     # flapwise modes are unaffected; the first edgewise mode of a blade free to turn is that of a pinned beam, far above
     flapwise = frequencies(clamped)
@@ -390,7 +389,7 @@ def test_a_coordinate_without_equilibrium_is_named() -> None:
         gravity=(0, 0, -G),
     )
     with pytest.raises(MechanismError, match=r"slide\.z.*no stiffness resists"):
-        lz.linearize(m)
+        modal.linearize(m)
 
 
 @pytest.mark.parametrize(
@@ -404,7 +403,7 @@ def test_a_coordinate_without_equilibrium_is_named() -> None:
 )
 def test_impossible_mechanisms_are_named(bodies, joints, match) -> None:
     with pytest.raises(MechanismError, match=match):
-        lz.linearize(Mechanism(tuple(Body(b, inertia(1.0, 1.0)) for b in bodies), joints))
+        modal.linearize(Mechanism(tuple(Body(b, inertia(1.0, 1.0)) for b in bodies), joints))
 
 
 def test_a_loop_that_cannot_close_is_named() -> None:
@@ -414,4 +413,4 @@ def test_a_loop_that_cannot_close_is_named() -> None:
         Joint("C", "revolute", "coupler", "ground", at(1.0), at(5.0)),
     )
     with pytest.raises(MechanismError, match=r"joint 'C'.*does not close"):
-        lz.linearize(Mechanism((bar("crank", 1, 1.0), bar("coupler", 1, 1.0)), joints))
+        modal.linearize(Mechanism((bar("crank", 1, 1.0), bar("coupler", 1, 1.0)), joints))

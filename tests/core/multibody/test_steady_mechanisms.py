@@ -9,7 +9,7 @@ from southwell.core.multibody import equilibrium
 from southwell.core.multibody.loops import assemble
 from southwell.core.multibody.mechanism import at_time
 from southwell.core.multibody.newton import relaxed
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.tests.support import guesses
 from southwell.tests.support.mechanisms import CASES
 

@@ -9,7 +9,7 @@ from southwell import multibody as mb
 from southwell.cases.closed_forms.linkages import ring
 from southwell.core.element import measures
 from southwell.core.multibody import equilibrium
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.space import spatial as sp
 
 ARC = ring(0.0, 12).beams[0].beams

@@ -13,7 +13,7 @@ from southwell.core.multibody import dynamics
 from southwell.core.multibody.joints import SCREWS, Joint, Kind
 from southwell.core.multibody.kinematics import kinematics
 from southwell.core.multibody.mechanism import Body, Mechanism, inertia
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.space import spatial as sp
 
 pin = pytest.importorskip("pinocchio", reason="not run: pip install '.[codes]'")

@@ -9,7 +9,7 @@ import pytest
 import scipy.linalg
 
 from southwell import multibody as mb
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import modal
 from southwell.core.multibody.joints import SCREWS
 from southwell.core.space import spatial as sp
 from southwell.references.exudyn import system as ex
@@ -89,7 +89,7 @@ def linkage(slant: float) -> tuple[mb.Mechanism, dict[str, float]]:
 @pytest.mark.parametrize("slant", [0.0, 0.3, 0.6])
 def test_a_spatial_linkage_at_zero_speed(slant: float) -> None:
     mechanism, guess = linkage(slant)
-    linear = lz.linearize(mechanism, guess)
+    linear = modal.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state
     placed = {b.name: state.kinematics.poses[tree.body(b.name)] for b in mechanism.bodies}
     system = absolute(mechanism, placed)

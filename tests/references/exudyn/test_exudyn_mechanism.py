@@ -15,10 +15,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from southwell import multibody as mb
-from southwell.core.multibody import dynamics
-from southwell.core.multibody import linearize as lz
+from southwell.core.multibody import dynamics, modal
 from southwell.core.multibody.joints import SCREWS, Kind
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.references.exudyn import mechanism as em
 from southwell.references.exudyn.loops import system
 from southwell.references.protocol.interface import CodeError
@@ -38,9 +37,9 @@ from southwell.tests.support.linkages import (
 pytestmark = pytest.mark.skipif(em.CODE.version() is None, reason=f"not installed: {em.CODE.hint}")
 
 
-def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[lz.Linearization, em.Stages]:
+def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[modal.Linearization, em.Stages]:
     """Compare every stage, K̂ to 1e-9 because Exudyn computes it by differences; return both results."""
-    linear = lz.linearize(mechanism, guess)
+    linear = modal.linearize(mechanism, guess)
     tree, state = linear.tree, linear.state
     n = em.own_coordinates(tree)
     np.testing.assert_allclose(em.linearize(tree, guess).q, state.q[:n], atol=1e-9)
@@ -70,7 +69,7 @@ def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> tuple[
     order = cast(tuple[np.ndarray, np.ndarray], scipy.linalg.qr(null.T, pivoting=True, mode="r"))[1]
     chosen = np.sort(order[: null.shape[1]])
     names = tuple(tree.coordinates[free[j]] for j in chosen)
-    again = lz.about(tree, state, names)
+    again = modal.about(tree, state, names)
     reduced = theirs.reduced(null @ np.linalg.inv(null[chosen]))
     for name, a, b, tolerance in zip(
         ("M̂", "Ĉ", "K̂"), (again.M, again.C, again.K), reduced, (1e-12, 1e-11, 1e-9), strict=True
@@ -112,7 +111,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
     assume(1 <= freedoms <= 6)
     m, guess = random_loop(kinds, loop, turned, seed)
     try:
-        lz.linearize(m, guess)
+        modal.linearize(m, guess)
     except mb.MechanismError:
         assume(False)
     assert_agreement(m, guess)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from southwell import multibody as mb
 from southwell.core.multibody.joints import SCREWS, Kind
 from southwell.core.multibody.mechanism import Load
-from southwell.core.multibody.tree import compile_tree
+from southwell.core.multibody.spanning import compile_tree
 from southwell.core.rank import ranked
 from southwell.references.linkages import mechanism as lm
 from southwell.references.linkages.plant import Plant

@@ -18,7 +18,7 @@ from southwell.core.modes import STATIONS
 from southwell.core.space import spatial as sp
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, calculix_blade, hexahedra, identified
-from southwell.references.solid.curved import STUB, CurvedSolid, held, inside, layer
+from southwell.references.solid.curved import STUB, CurvedSolid, inside, layer, with_root_forces
 from southwell.references.solid.known import ACROSS, CURVED, GLASS, recognised
 from southwell.references.solid.materials import Material, Orthotropic
 from southwell.references.solid.scikit_fem_blade import CODE, modes
@@ -212,7 +212,7 @@ def test_the_beam_is_the_solid(omega: float) -> None:
 @pytest.mark.parametrize("omega", [0.0, 10.0])
 def test_calculix_finds_the_same_modes_of_the_whole_solid(omega: float) -> None:
     """One solid, two programs; CalculiX's material turns from layer to layer, and it has no Coriolis forces."""
-    bricks, root = held(CURVED, 20, ACROSS)
+    bricks, root = with_root_forces(CURVED, 20, ACROSS)
     sections = [(layer(bricks, 2 * k), place) for k, place in enumerate(CURVED.place(STATIONS * CURVED.length))]
     ours = hexahedra.modes(bricks, CURVED.material, omega, 6, root, coriolis=False, sections=sections)
     theirs = calculix_blade.CODE.solve(case(), omega, 20, 6)

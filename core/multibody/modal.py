@@ -8,12 +8,13 @@ from .. import eigen
 from . import periodic
 from .equilibrium import steady, unresisted
 from .kinematics import kinematics
-from .linear import Linearization, about
+from .linearization import Linearization, about
 from .loops import assemble
 from .mechanism import Mechanism, MechanismError, at_time
 from .partition import freedom, partition
+from .spanning import compile_tree
 from .state import State, moving
-from .tree import Tree, compile_tree
+from .tree import Tree
 
 
 def linearize(
