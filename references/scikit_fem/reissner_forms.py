@@ -148,8 +148,3 @@ def mixed(u: Any, v: Any, w: Any) -> Any:
 def linear(v: Any, w: Any) -> Any:
     """Linear form with coefficients on q, or on section forces."""
     return np.einsum("i...,i...", w.on, v)
-
-
-def linear_local(v: Any, w: Any) -> Any:
-    """Linear form with coefficients on z."""
-    return np.einsum("i...,i...", w.on, local(v))

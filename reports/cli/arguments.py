@@ -14,6 +14,7 @@ from ...cases.judge import results
 from ...cases.judge.results import Run
 from ...cases.verify import journal
 from ...cases.verify.executors import SLURM
+from ..shared.writing import writable
 from .errors import IncompleteError, UsageError
 
 RESULTS = "results.jsonl"
@@ -53,15 +54,12 @@ def writing(out: Path) -> Iterator[None]:
     """Create and lock the output folder ``out`` while a command writes in it.
 
     Raises:
-        UsageError: if it cannot be created or written.
-        CaseError: if another process is writing in it.
+        CaseError: if it cannot be created or written, or another process is writing in it.
     """
     with ExitStack() as stack:
-        try:
+        with writable(f"--out {out}"):
             out.mkdir(parents=True, exist_ok=True)
             stack.enter_context(journal.locked(out))
-        except OSError as error:
-            raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
         yield
 
 

@@ -1,5 +1,6 @@
 """``southwell campbell``: a blade's Campbell diagram, its tables, mode shapes and figures, in one command."""
 
+import errno
 import os
 import shlex
 import sys
@@ -37,6 +38,7 @@ from ..shared import pdf as as_pdf
 from ..shared.console import Watch, output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
+from ..shared.writing import writable
 from . import campbell_options as options
 from . import measured
 from .arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
@@ -172,16 +174,15 @@ def command(
             extra.append(changes_table.sheet(found, other.blade.name, units))
         _show(diagram, units, subject, extra)
         kept &= tables.margins_kept(diagram)
+        line = shlex.join(["southwell", *sys.argv[1:]])
+        origin = Origin(subject.about, subject.files, not_used.lines(subject.unused))
         try:
-            line = shlex.join(["southwell", *sys.argv[1:]])
-            origin = Origin(subject.about, subject.files, not_used.lines(subject.unused))
-            written = page.write(diagram, folder, units, line, origin, extra, files)
-            if html:
-                written = (*written, as_html.write(written[0]))
-            if pdf:
-                written = (*written, as_pdf.write(written[0]))
-        except OSError as error:
-            raise _unwritable(out, error.strerror) from error
+            with writable(f"--out {out}"):
+                written = page.write(diagram, folder, units, line, origin, extra, files)
+                if html:
+                    written = (*written, as_html.write(written[0]))
+                if pdf:
+                    written = (*written, as_pdf.write(written[0]))
         except as_pdf.PdfError as error:
             raise UsageError(str(error)) from error
         names = ", ".join(path.name for path in written)
@@ -214,14 +215,11 @@ def _check(out: Path) -> None:
         CaseError: if it cannot be written.
     """
     there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
-    if not os.path.isdir(there):
-        raise _unwritable(out, f"{there} is a file")
-    if not os.access(there, os.W_OK):
-        raise _unwritable(out, f"no permission in {there}")
-
-
-def _unwritable(out: Path, why: str | None) -> CaseError:
-    return CaseError(f"--out {out}: cannot be written ({why}): give another folder")
+    with writable(f"--out {out}"):
+        if not os.path.isdir(there):
+            raise OSError(errno.ENOTDIR, f"{there} is a file")
+        if not os.access(there, os.W_OK):
+            raise OSError(errno.EACCES, f"no permission in {there}")
 
 
 def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:

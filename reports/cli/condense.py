@@ -18,6 +18,7 @@ from ...cases.input.errors import CaseError
 from ..condense import page
 from ..shared.console import output
 from ..shared.units import RAD_S
+from ..shared.writing import writable
 from . import campbell_options
 from .arguments import NumberOfModes
 
@@ -108,23 +109,15 @@ def _watched() -> Iterator[Callable[[str], None]]:
 
 
 def _folder(out: Path) -> Path:
-    try:
+    with writable(f"--out {out}"):
         out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _unwritable(out, error) from error
     return out
 
 
 def _write(folder: Path, text: str, blade: Condensed) -> None:
-    try:
+    with writable(f"--out {folder}"):
         condensed.write(folder / SEGMENTS, blade)
         atomic.write(folder / FILE, text)
-    except OSError as error:
-        raise _unwritable(folder, error) from error
-
-
-def _unwritable(out: Path, error: OSError) -> CaseError:
-    return CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder")
 
 
 def _line() -> str:

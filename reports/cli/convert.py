@@ -14,6 +14,7 @@ from ...cases.writers import beamdyn, elastodyn
 from ..shared import not_used
 from ..shared.console import output
 from ..shared.units import RPM
+from ..shared.writing import writable
 from .mounting import Mounting
 from .subjects import Subject
 from .subjects import subjects as find_subjects
@@ -75,10 +76,8 @@ def command(
         names = ", ".join(s.blade.name for s in subjects)
         raise CaseError(f"{blade}: {len(subjects)} blades ({names}): name one of them")
     console = output()
-    try:
+    with writable(str(out), "name"):
         written, left = _write(subjects[0], out, chosen, rpm / RPM.speeds)
-    except OSError as error:
-        raise CaseError(f"{out}: cannot be written ({error.strerror}): give another name") from error
     console.print(", ".join(str(path) for path in written), markup=False, soft_wrap=True)
     if left is not None:
         console.print(escape(_main_file(left)), soft_wrap=True)

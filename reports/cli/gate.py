@@ -1,7 +1,7 @@
 """``southwell gate``: compares a run with an earlier one; status 1 if something got worse."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -22,6 +22,7 @@ from ..shared.console import output
 from ..shared.log_safe import commands
 from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
+from ..shared.writing import writable
 from ..verification import report as matrix_report
 from .arguments import RESULTS, finished, found
 from .history import load
@@ -86,9 +87,11 @@ def command(
         for line in gate_text.annotations(gate, Path()):
             print(line, file=commands())
     if junit_file:
-        _write("--junit", junit_file, lambda: atomic.write(junit_file, junit.render(run, gate, strict)))
+        with writable(f"--junit {junit_file}", "file"):
+            atomic.write(junit_file, junit.render(run, gate, strict))
     if summary:
-        _write("--summary", summary, lambda: _append(summary, _page(run, gate, strict)))
+        with writable(f"--summary {summary}", "file"), summary.open("a", encoding="utf-8") as file:
+            file.write(_page(run, gate, strict))
     if run.unfinished:
         return INCOMPLETE
     return PASSED if gate.passed(strict) else FAILED
@@ -129,15 +132,3 @@ def _page(run: Run, gate: Comparison, strict: bool) -> str:
         matrix_report.heat(run),
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def _append(path: Path, text: str) -> None:
-    with path.open("a", encoding="utf-8") as file:
-        file.write(text)
-
-
-def _write(option: str, path: Path, write: Callable[[], object]) -> None:
-    try:
-        write()
-    except OSError as error:
-        raise CaseError(f"{option} {path}: cannot be written ({error.strerror}): give another file") from error

@@ -14,6 +14,7 @@ from ...cases.input.errors import CaseError
 from ...cases.regression import history
 from ...cases.regression.history import History
 from ..shared import console
+from ..shared.writing import writable
 from .arguments import finished
 
 app = App(name="history", help="Record the results of runs by commit.", result_action="return_value")
@@ -45,10 +46,8 @@ def add(
         Name of the machine; run times are compared only within one machine. Default: system and processors.
     """
     entry = history.entry(finished(folder), commit or _checked_out(), machine)
-    try:
+    with writable(f"--history {file}", "file"):
         history.append(file, entry)
-    except OSError as error:
-        raise CaseError(f"--history {file}: cannot be written ({error.strerror}): give another file") from error
     print(f"{file}: {entry.commit}: {len(entry.cells)} cells, {len(entry.controls)} negative controls")
     return 0
 

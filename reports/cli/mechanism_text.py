@@ -19,7 +19,7 @@ def modes(found: Solution, title: str) -> Table:
     out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     for head in ("mode", "rad/s", "Hz", "damping ratio", "± rounding"):
         out.add_column(head, justify="right")
-    out.add_column("led by")
+    out.add_column("largest motion")
     for row in _rows(found):
         sure = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
         numbers = (certain(row["frequency_rad_s"], sure), certain(row["frequency_hz"], sure))

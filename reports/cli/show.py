@@ -13,13 +13,13 @@ from rich.markup import escape
 from rich.table import Table
 
 from ...cases.input import atomic
-from ...cases.input.errors import CaseError
 from ...cases.input.properties import sections
 from ...core.blade import Blade
 from ..campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
 from ..shared import not_used
 from ..shared.console import output
 from ..shared.paths import file_name
+from ..shared.writing import writable
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
 
@@ -56,10 +56,8 @@ def command(
             console.print(table)
         if out is not None:
             folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
-            try:
+            with writable(f"--out {out}"):
                 written = write(subject.blade, folder)
-            except OSError as error:
-                raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
             console.print(f"{folder}: {', '.join(path.name for path in written)}", markup=False, soft_wrap=True)
     return 0
 

@@ -1,9 +1,7 @@
 """``southwell study``: sampled properties of blades, solved at many speeds on one machine or a cluster."""
 
 import sys
-from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -25,6 +23,7 @@ from ..shared import not_used
 from ..shared.console import Counter, output
 from ..shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
 from ..shared.units import RAD_S, RPM
+from ..shared.writing import writable
 from .arguments import Workers, cluster_workers
 from .errors import UsageError
 
@@ -68,7 +67,9 @@ def command(
     asked, unused = read_study(study)
     not_used.show(unused, output())
     head, path = header(asked), out.with_suffix(SUFFIX)
-    with _journal(path, head) as journal:
+    with writable(f"--out {path}", "file"):
+        opened = StudyJournal(path, head)
+    with opened as journal:
         stopped = _run(asked, journal, count, scheduler)
         if stopped:
             done = f"{sum(journal.done)} of {head.tasks} samples are in {path}"
@@ -81,16 +82,6 @@ def command(
             output().print(tables.terminal(_sheet(path, asked)))
     output().print(f"{out}: {_said(found, head)}", markup=False, soft_wrap=True)
     return FAILED if found.missing else PASSED
-
-
-@contextmanager
-def _journal(path: Path, head: Header) -> Iterator[StudyJournal]:
-    try:
-        journal = StudyJournal(path, head)
-    except OSError as error:
-        raise UsageError(f"--out {path}: cannot be written ({error.strerror}): give another file") from error
-    with journal:
-        yield journal
 
 
 def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: str | None) -> tuple[str, int] | None:

@@ -28,6 +28,7 @@ from ...references.protocol.store import Store
 from ..ci import junit as xml
 from ..shared import summary
 from ..shared.statuses import INCOMPLETE
+from ..shared.writing import writable
 from . import campbell_options, measured, versions
 from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
@@ -161,7 +162,9 @@ def command(
     )
     with writing(out), ExitStack() as started:
         pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
-        with _journal(out) as kept:
+        with writable(f"--out {out}"):
+            opened = Journal(out)
+        with opened as kept:
             run, stopped = solve(
                 chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
             )
@@ -169,7 +172,8 @@ def command(
                 if run.cells:
                     show(run, out)
                     if junit:
-                        _junit(run, junit)
+                        with writable(f"--junit {junit}", "file"):
+                            atomic.write(junit, xml.render(run))
             except OSError as error:
                 stopped = stopped or Stopped(said(error), INCOMPLETE)
             if not stopped:
@@ -208,17 +212,3 @@ def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
 
 def _report(line: str) -> None:
     print(f"southwell: {line}", file=sys.stderr)
-
-
-def _journal(out: Path) -> Journal:
-    try:
-        return Journal(out)
-    except OSError as error:
-        raise UsageError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
-
-
-def _junit(run: Run, path: Path) -> None:
-    try:
-        atomic.write(path, xml.render(run))
-    except OSError as error:
-        raise UsageError(f"--junit {path}: cannot be written ({error.strerror}): give another file") from error

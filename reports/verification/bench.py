@@ -11,8 +11,8 @@ from tabulate import tabulate
 from ...cases.bench import cost as measure
 from ...cases.bench.cost import COUNT, ELEMENTS, OMEGA, SWEEP, Bench, Growth, Timing
 from ...cases.input import atomic
-from ...cases.input.errors import CaseError
 from ..shared.console import output
+from ..shared.writing import writable
 
 FILE = "bench.json"
 
@@ -45,10 +45,8 @@ def command(*, out: Path = Path("southwell-report")) -> int:
     out
         Output folder.
     """
-    try:
+    with writable(f"--out {out}"):
         out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = Console(stderr=True, highlight=False)
     bar = Progress(
         SpinnerColumn(),

@@ -9,12 +9,12 @@ from cyclopts import Parameter
 
 from ...cases.closed_forms.closed_forms import FORMS, ClosedForm
 from ...cases.input import atomic
-from ...cases.input.errors import CaseError
 from ...cases.verify.cached import remembered
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.statuses import FAILED, PASSED
 from ..shared.style import svg
+from ..shared.writing import writable
 from .closed_forms_figure import PAGE, Array, Complex, figure, solved
 
 Found = tuple[ClosedForm, Complex, Array]
@@ -35,12 +35,10 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
         Output folder.
     """
     written, rows, passed = remembered(_computed)
-    try:
+    with writable(f"--out {out}"):
         for path, text in written.items():
             (out / path).parent.mkdir(parents=True, exist_ok=True)
             atomic.write(out / path, text)
-    except OSError as error:
-        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()
     console.print(table(rows), markup=False, soft_wrap=True)
     console.print(f"{out / PAGE}", markup=False, soft_wrap=True)

@@ -9,7 +9,6 @@ from cyclopts import Parameter
 from matplotlib.figure import Figure
 
 from ...cases.input import atomic
-from ...cases.input.errors import CaseError
 from ...cases.judge.measured import COVERAGE
 from ...cases.validation import comparison, rotating_beams, sandia34
 from ...cases.validation.comparison import Simulated
@@ -17,6 +16,7 @@ from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
+from ..shared.writing import writable
 from . import validation_beams
 from .validation_tables import by_line, every
 
@@ -38,12 +38,10 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
     beams = {name: tuple(rotating_beams.points(name)) for name in rotating_beams.BEAMS}
     model = comparison.simulated()
     points = comparison.points(model)
-    try:
+    with writable(f"--out {out}"):
         out.mkdir(parents=True, exist_ok=True)
         for name, text in pages(model, points, beams).items():
             atomic.write(out / name, text)
-    except OSError as error:
-        raise CaseError(f"--out {out}: cannot be written ({error.strerror}): give another folder") from error
     console = output()
     for rows in (summary(points), *(by_line(of_beam, {}) for of_beam in beams.values())):
         console.print(table(rows), markup=False, soft_wrap=True)

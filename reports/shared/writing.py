@@ -1,0 +1,19 @@
+"""One error for every file or folder that a command cannot write."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ...cases.input.errors import CaseError
+
+
+@contextmanager
+def writable(what: str, other: str = "folder") -> Iterator[None]:
+    """Turn an ``OSError`` into the error that names the option and its value, such as ``--out DIR``.
+
+    Raises:
+        CaseError: if ``what`` cannot be written; ``other``: what to give instead.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise CaseError(f"{what}: cannot be written ({error.strerror}): give another {other}") from error
