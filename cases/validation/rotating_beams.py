@@ -16,7 +16,6 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
-from ...core.participation import numbered
 from ...references.protocol.process import Failure
 from ..input.schema import Compare
 from ..judge.measured import Validation
@@ -85,7 +84,7 @@ def solved(blade: Blade, rpm: float) -> dict[str, tuple[float, float]]:
         raise ValueError(f"{blade.name}: {rpm:g} rpm: {found.reason}")
     estimates = [s.estimate for s in found.modes]
     values = [(e.value / (2.0 * np.pi), e.uncertainty or 0.0) if e else (np.inf, 0.0) for e in estimates]
-    return dict(zip(numbered(found.names), values, strict=True))
+    return dict(zip(found.names, values, strict=True))
 
 
 def points(name: str) -> Iterator[Point]:
