@@ -7,6 +7,7 @@ from southwell.cases.input.schema import Compare
 from southwell.cases.verify.core_solver import Converged, converged
 from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.core.effects import ALL_EFFECTS
+from southwell.core.solve import modes
 
 
 @pytest.mark.parametrize("motion", ["flapwise", "edgewise"])
@@ -22,3 +23,22 @@ def test_modes_keep_their_names_whatever_is_compared(motion: str) -> None:
     assert found.names == (f"{motion} 1", f"{motion} 2", mixed)
     assert [found.every[k] for k in found.wanted.indices] == list(found.names)
     assert {"mixed 1", "mixed 2"} < set(found.every)
+
+
+@pytest.mark.parametrize("fraction", [1e-3, 3e-3, 1e-2])
+def test_a_soft_root_between_two_stations_is_within_the_stated_uncertainty(fraction: float) -> None:
+    """A stiffness that grows 29-fold in a short interval: equal elements never divide it, 400 stations on its line do."""
+
+    def blade(parts: int) -> Blade:
+        s = np.append(np.linspace(0.0, 10.0 * fraction, parts + 1), 10.0)
+        k = np.interp(s, [0.0, 10.0 * fraction, 10.0], [1.0 / 29.0, 1.0, 1.0])
+        mass = np.repeat(section_mass(10.0, 0.1, 0.2), len(s), axis=0)
+        return Blade("soft root", s, section_stiffness(1e9 * k, 1e6 * k, 1e6 * k, 2e6 * k), mass, np.zeros(len(s)))
+
+    found, dense = converged(blade(1), 0.0, Compare(modes=6), ALL_EFFECTS), modes(blade(400), 0.0, count=6)
+    assert isinstance(found, Converged)
+    assert found.wanted.indices == tuple(range(6))
+    for mode, expected, sure in zip(found.modes, dense.frequencies, dense.uncertainty, strict=True):
+        assert mode.estimate is not None
+        assert mode.estimate.uncertainty is not None
+        assert abs(mode.estimate.value / expected - 1.0) <= mode.estimate.uncertainty + sure
