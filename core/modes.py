@@ -19,7 +19,8 @@ class Modes:
         omega: rotor speed, rad/s.
         frequencies: (m,) natural frequencies, rad/s, ascending.
         shapes: (m, 21, 4) complex: displacement along the blade axes x, y, z (m) and rotation about x (rad) of the
-            reference curve at ``STATIONS``, at any scale; the phase contains the gyroscopic lag.
+            reference curve at ``STATIONS``, at any scale; the real part of shape × exp(iωt) is the motion, so that the
+            phase contains the gyroscopic lag.
         elements: refinement: number of elements, or of terms in a series.
         damping: (m,) damping ratios, zero for undamped models.
         uncertainty: (m,) relative uncertainty, if the code estimates it; empty: determined by refinement.

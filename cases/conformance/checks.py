@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...core.blade import AXIAL
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.interface import Code, CodeError, digits
 from . import blades as known
@@ -173,6 +174,28 @@ def twist_sense(code: Code) -> None:
 def _lean(modes: Modes) -> float:
     tip = modes.shapes[0, -1]
     return float((tip[1] / tip[2]).real)
+
+
+def coriolis_sense(code: Code) -> None:
+    """The Coriolis force stretches a blade that moves along +y: ``EA u″ + m (ω² + Ω²) u = −2 i m Ω ω v`` for exp(iωt)."""
+    blade, omega = known.STUBBY, known.FAST
+    if not code.effects.coriolis:
+        raise NotForItError("the code has no Coriolis terms")
+    try:
+        modes = ask(code, blade, omega, 1)
+    except CodeError as error:  # not every code can reach this speed
+        raise NotForItError(str(error)) from error
+    lag = along(modes, 1)
+    u, v = modes.shapes[lag, -1, 0], modes.shapes[lag, :, 1]
+    s, EA, w = STATIONS * LENGTH, blade.stiffness[0, AXIAL, AXIAL], modes.frequencies[lag]
+    k = np.sqrt(known.MASS * (w**2 + omega**2) / EA)
+    green = np.sin(k * s) / (k * np.cos(k * LENGTH))  # of a rod with a fixed root and a free end, at its end
+    exact = 2j * known.MASS * omega * w / EA * np.trapezoid(green * v, s)
+    keep(
+        abs(u - exact) < 0.05 * abs(exact),
+        f"lowest mode along y at {omega:g} rad/s: stretch over edgewise motion at the tip {u / v[-1]:.4f}, expected "
+        f"{exact / v[-1]:.4f}: wrong sign of the Coriolis terms, or exp(−iωt)?",
+    )
 
 
 def torsion(code: Code) -> None:

@@ -93,6 +93,11 @@ CHECKS = (
     Check("quarter pitch", "a pitch of 90° exchanges the planes", checks.quarter_pitch),
     Check("pitch's sense", "from y towards z", checks.pitch_sense),
     Check("twist's sense", "a constant twist equals a pitch", checks.twist_sense),
+    Check(
+        "Coriolis's sense",
+        "in an edgewise mode, stretch a quarter period ahead of the motion along y, of the size of a closed form",
+        checks.coriolis_sense,
+    ),
     Check("torsion", "a soft shaft's first frequency, in the fourth column", checks.torsion),
     Check("tip mass at rest", "closed form", checks.tip_mass_weighs),
     Check("tip mass rotating", "its tension: Bir's printed frequency", checks.tip_mass_pulls),
