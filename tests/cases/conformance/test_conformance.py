@@ -147,7 +147,7 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
     "tip first": (Core(returned=shapes(lambda s: s[:, ::-1])), {"shapes"}),
     "other stations": (Core(returned=shapes(lambda s: s[:, np.arange(21) ** 2 // 20])), {"shapes"}),
     "Coriolis the other way": (Core(returned=shapes(np.conj)), {"Coriolis's sense"}),
-    "real parts of the shapes": (Core(returned=shapes(lambda s: s.real + 0j)), {"Coriolis's sense"}),
+    "real parts of the shapes": (Core(returned=shapes(lambda s: np.real(s) + 0j)), {"Coriolis's sense"}),
     "pitch the other way": (Core(given=lambda b: replace(b, pitch=-b.pitch)), {"pitch's sense"}),
     "twist the other way": (Core(given=lambda b: replace(b, twist=-b.twist)), {"twist's sense"}),
     "pitch dropped": (Core(given=drop(pitch=0.0)), {"quarter pitch", "pitch's sense", "keeps pitch"}),
