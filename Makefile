@@ -1,5 +1,5 @@
 # make verify | make test | make test-slow | make lint | make bench | make condense | make readme | make docs | make clean
-# All that is needed is Python 3.11 or later; everything else goes into .venv.
+# Python 3.11 or later with its headers and a C++ compiler are needed; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
@@ -7,6 +7,7 @@ BIN := .venv/bin
 INSTALLED := .venv/installed
 # the root is the package; pyright finds it by this name (extraPaths in pyproject.toml)
 HERE := .venv/here
+LOOPS := $(shell find core -name '*.hpp' -o -name '*.cpp')
 
 # one thread a process: the runs are parallel already
 export OMP_NUM_THREADS := 1
@@ -31,6 +32,7 @@ test-slow: $(INSTALLED)
 lint: $(INSTALLED)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+	$(BIN)/clang-format --dry-run -Werror $(LOOPS)
 	$(BIN)/pyright --threads --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
@@ -50,14 +52,14 @@ docs: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
-$(INSTALLED): pyproject.toml
+$(INSTALLED): pyproject.toml setup.py $(LOOPS)
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'
 	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
-	$(BIN)/southwell modes park-cantilever > /dev/null # compiles the solver's loops, once
 	touch $@
 
 clean:
 	rm -rf .venv build dist reports/out *.egg-info .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -f core/compiled/*.so core/compiled/*.pyd

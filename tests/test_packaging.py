@@ -55,7 +55,7 @@ def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
     beside = {
         str(p.relative_to(ROOT))
         for p in tracked()
-        if p.relative_to(ROOT).parts[0] in floors and p.suffix not in {".py", ".md"}
+        if p.relative_to(ROOT).parts[0] in floors and p.suffix not in {".py", ".md", ".hpp", ".cpp"}  # C++ is compiled
     }
     assert beside - data_files() == {
         "reports/site/readme.jsonl",
@@ -81,6 +81,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
     return set(zipfile.ZipFile(file).namelist())
 
 
+@pytest.mark.slow
 def test_the_wheel_has_every_module_and_every_data_file(wheel: set[str]) -> None:
     modules = {
         f"southwell/{path.relative_to(ROOT)}"
@@ -89,10 +90,12 @@ def test_the_wheel_has_every_module_and_every_data_file(wheel: set[str]) -> None
     }
     assert modules <= wheel
     assert {f"southwell/{name}" for name in data_files()} <= wheel
+    assert any(name.startswith("southwell/core/compiled/baseline.") for name in wheel)
     assert any(name.endswith(".jinja") for name in data_files())
     assert any(name.endswith(".csv") for name in data_files())
 
 
+@pytest.mark.slow
 def test_the_wheel_has_neither_tests_nor_anything_else(wheel: set[str]) -> None:
     assert not [name for name in wheel if "/tests/" in name or not name.startswith("southwell")]
     assert any(name.endswith("licenses/LICENSE") for name in wheel)

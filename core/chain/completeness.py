@@ -10,8 +10,7 @@ Williams, Quart. J. Mech. Appl. Math. 24, 1971, 263, for the count.)
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, congruence
-from .elimination import add_beyond
+from ..compiled import loops
 from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
@@ -61,40 +60,4 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
 
 def below(p: ChainPencil, omega: float) -> int:
     """Number of natural frequencies between 0 and ``omega`` (rad/s), which must not be one of them."""
-    return _negative(p.K, p.C, p.M, p.back, p.clamped, omega)
-
-
-@compiled
-def _negative(K: Array, C: Array, M: Array, back: Array, clamped: Array, omega: float) -> int:
-    """Negative pivots of K + iωC − ω²M in the elimination of ``elimination``, by real and imaginary parts."""
-    n, size = K.shape[:2]
-    P, Q, re, im = np.zeros((6, 6)), np.zeros((6, 6)), np.empty((size, size)), np.empty((size, size))
-    work, of_P, of_Q = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    count = 0
-    for k in range(n - 1, -1, -1):
-        congruence(back[k], P, work, of_P)
-        congruence(back[k], Q, work, of_Q)
-        for i in range(size):  # the lower half
-            for j in range(i + 1):
-                re[i, j] = 0.5 * (K[k, i, j] + K[k, j, i]) - omega * omega * M[k, i, j]
-                im[i, j] = omega * C[k, i, j]
-        add_beyond(of_P, re)
-        add_beyond(of_Q, im)
-        if k == 0 and len(clamped):
-            for i in range(6):
-                for j in range(6):
-                    re[6 + i, 6 + j] += clamped[i, j]  # as in ``elimination``
-        for p in range(size - 1, 5, -1):
-            pivot = re[p, p]
-            if pivot < 0.0:
-                count += 1
-            for i in range(p):
-                a, b = re[p, i] / pivot, -im[p, i] / pivot
-                for j in range(i + 1):
-                    re[i, j] -= a * re[p, j] - b * im[p, j]
-                    im[i, j] -= a * im[p, j] + b * re[p, j]
-        for i in range(6):
-            for j in range(i + 1):
-                P[i, j] = P[j, i] = re[i, j]
-                Q[i, j], Q[j, i] = im[i, j], -im[i, j]
-    return count
+    return loops.negative_pivots(p.K, p.C, p.M, p.back, p.clamped, omega)

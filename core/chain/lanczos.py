@@ -14,10 +14,10 @@ from numpy.linalg import eigh
 from numpy.typing import NDArray
 
 from .. import eigen
+from ..compiled import loops
 from ..eigen import Eigen
 from . import completeness
 from .elimination import solve
-from .krylov import Operator, extend, forward, keep_massive, work
 from .matrices import product
 from .pencil import ChainPencil
 
@@ -73,14 +73,14 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
     n = len(p.residual)
-    a = Operator(p.M, p.C, p.K, p.back, factor, *_massive(p))
+    a = loops.Operator(p.M, p.C, p.K, p.back, factor.flexibility, factor.ride, factor.reaction, *_massive(p))
     w = _start(2 * n).copy() if near is None else near.vectors.copy()
     y = w[:, n:].copy()
     if p.clamped.size:
         y[:, :6] -= y[:, :6] @ p.clamped
-    keep_massive(a, y)
+    a.keep_massive(y)
     w[:, n:] = y
-    lost = solve_error(a, w)
+    lost = solve_error(p, w)
     if not lost < _MAX_SOLVE_ERROR:
         raise EigensolverError(
             f"the stiffness of {len(p.K)} elements is lost to rounding (relative error of a solution {lost:.1e}): use "
@@ -89,15 +89,14 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     if not factor.positive:
         raise eigen.unstable()
     if near is None:
-        smooth = work(len(w), n)
-        forward(a, w, smooth)
-        w = smooth.w
+        w = a.forward(w)
     limit = min(2 * n, max(200, 8 * count))
     basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
     size, before = 0, 0
     look, every = (3 * count + _FIRST_LOOK, _LOOK_EVERY) if near is None else (near.size, _LOOK_EVERY_NEAR)
     while True:
-        w, gram, size, before, exhausted = extend(a, w, basis, projected, size, before, look)
+        gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
+        w = w[: len(gram)]
         if not size:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         look = size + every
@@ -131,7 +130,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
 
 
 def _massive(p: ChainPencil) -> tuple[Array, Array]:
-    """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.Operator``."""
+    """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.hpp``."""
     if p.M.shape[1] > 12:
         return np.zeros((0, 6, 6)), np.zeros((0, 6, 6))
     lever, joint = p.back.copy(), bool(p.clamped.size)
@@ -156,24 +155,20 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
 def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
-    rows = x.reshape(-1, x.shape[2])
-    signed = ((p.K, 1.0), (p.C, -1.0), (p.M, 1.0))
-    Kx, Cx, Mx = (product(matrix, sign, p.back, rows).reshape(x.shape) for matrix, sign in signed)
-    kappa, inertia = np.einsum("mpi,mpi->m", x, Kx), np.einsum("mpi,mpi->m", x, Mx)
-    half = 0.5 * (np.einsum("mi,mi->m", x[:, 1], Cx[:, 0]) - np.einsum("mi,mi->m", x[:, 0], Cx[:, 1]))  # ½ i x*Cx
+    kappa, half, inertia = loops.quadratic_forms(p.K, p.C, p.M, p.back, np.ascontiguousarray(x)).T
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
 
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # as in ``_quotients``
-def solve_error(a: Operator, v: Array) -> float:
+def solve_error(p: ChainPencil, v: Array) -> float:
     """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2
-    force = product(a.M, 1.0, a.back, v[:1, :n])
+    force = product(p.M, 1.0, p.back, v[:1, :n])
     x = force.copy()
-    solve(a.factor, x)
-    left = force - product(a.K, 1.0, a.back, x)
+    solve(p.factor, x)
+    left = force - product(p.K, 1.0, p.back, x)
     more = left.copy()
-    solve(a.factor, more)
+    solve(p.factor, more)
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
 
 

@@ -11,15 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
+from ..compiled import loops
 from ..effects import ALL_EFFECTS, Effects
-from ..element import beams as bm
-from ..element import inertia
 from ..element.discretize import Chain
-from ..space import rigid
 from . import elimination, matrices, root_joint
 from .elimination import Factor
-from .matrices import inwards
 
 Array = NDArray[np.float64]
 
@@ -81,85 +77,28 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
         gravity: (3,) free-fall acceleration in the hub's axes, turning with it, m/s².
         effects: effects included.
     """
-    n, d = len(shape.nodes), 6 + chain.beams.inner
-    frame, fall, axes, push = np.empty((n, 6)), np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3))
-    x, back = np.empty((n - 1, 4, 4)), np.empty((n - 1, 6, 6))
-    nodes, relative, corner = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, chain.corner))
-    _place(nodes, relative, omega, gravity, chain.force, corner, frame, fall, axes, push, x, back)
-    p = bm.on_strain(chain.beams, x, shape.beta, frame[:-1], fall[:-1], effects, axes[:-1])
-    g, C, K = np.empty((n, 6)), np.empty((n, 6, 6)), np.empty((n, 6, 6))
-    inertia.carried(chain.lumps, frame, fall, push, effects.geometric, g, C, K)
-    f, clamped = p.residual, chain.clamped
+    nodes, relative, corner, beta, lumps, force, fall = (
+        np.ascontiguousarray(a)
+        for a in (shape.nodes, shape.relative, chain.corner, shape.beta, chain.lumps, chain.force, gravity)
+    )
+    f, M, C, K, spring, back, g, of_C, of_K = loops.chain_parts(
+        chain.beams.arrays, nodes, relative, corner, beta, lumps, force, omega, fall, effects.geometric
+    )
+    clamped = chain.clamped
     if clamped.size:  # the joint replaces the first element
         joint = root_joint.response(chain, relative[0], g[1] + f[1, :6] - f[1, 6:12])
-        clamped, p.spring[0] = joint.clamped, joint.stiffness
+        clamped, spring[0] = joint.clamped, joint.stiffness
         back[0] = np.eye(6) - clamped
-        f[0], p.remainder[0, :, :12], p.remainder[0, :12] = 0.0, 0.0, 0.0
+        f[0], K[0, :, :12], K[0, :12] = 0.0, 0.0, 0.0
         f[0, 6:12] = joint.wrench
         if effects.geometric:
-            K[1] += joint.turning
-    p.remainder[:, 6:12, 6:12] += p.spring
-    for matrix, on_nodes in ((p.M, chain.lumps), (p.C, C), (p.remainder, K)):
-        matrix[1:, :6, :6] += on_nodes[1:-1]
-        matrix[-1, :12, :12] += np.tile(back[-1].T @ on_nodes[-1] @ back[-1], (2, 2))  # on ξ_a + ρ
+            of_K[1] += joint.turning
+    residual = loops.chain_sum(f, M, C, K, spring, back, lumps, g, of_C, of_K)
     if not effects.coriolis:
-        p.C[:] = 0.0
-    residual = np.empty((n - 1, d))
-    _gather(f, back, g, residual)
+        C[:] = 0.0
     if clamped.size:
         residual[0, :6] -= clamped @ residual[0, :6]
-    return ChainPencil(residual.ravel(), p.M, p.C, p.remainder, back, clamped)
-
-
-@compiled
-def _place(
-    nodes: Array,
-    relative: Array,
-    omega: float,
-    gravity: Array,
-    force: Array,
-    corner: Array,
-    frame: Array,
-    fall: Array,
-    axes: Array,
-    push: Array,
-    x: Array,
-    ahead: Array,
-) -> None:
-    """For every node, in its own axes: the hub's twist, gravity, load and the hub's axes.
-
-    For every element: the pose x of end b in a, and Ad⁻¹ ``ahead``.
-    """
-    back, to_node = np.empty((4, 4)), np.empty((6, 6))
-    for k in range(len(nodes)):
-        rigid.inverse(nodes[k], back)
-        rigid.adjoint(back, to_node)
-        for i in range(6):
-            frame[k, i], fall[k, i] = omega * to_node[i, 5], 0.0
-        for i in range(3):
-            push[k, i] = 0.0
-            for j in range(3):
-                axes[k, i, j] = back[i, j]
-                fall[k, i] += back[i, j] * gravity[j]
-                push[k, i] += back[i, j] * force[k, j]
-        if k + 1 < len(nodes):
-            rigid.inverse(relative[k], back)
-            rigid.adjoint(back, ahead[k])
-            rigid.compose(relative[k], corner[k], x[k])
-
-
-@compiled
-def _gather(of_elements: Array, back: Array, of_nodes: Array, out: Array) -> None:
-    """Loads (n, d) on (ρ, β) from those of the elements (n, d + 6) on (ξ_a, ρ, β) and of the nodes (n+1, 6)."""
-    p = np.zeros((1, 6))
-    for k in range(len(out) - 1, -1, -1):
-        for i in range(6):
-            p[0, i] += of_nodes[k + 1, i]
-        inwards(back, k, p, 0)
-        for i in range(out.shape[1]):
-            out[k, i] = of_elements[k, 6 + i] + (p[0, i] if i < 6 else 0.0)
-        for i in range(6):
-            p[0, i] += of_elements[k, i]
+    return ChainPencil(residual.ravel(), M, C, K, back, clamped)
 
 
 def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:

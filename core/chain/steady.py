@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..compiled import compiled
+from ..compiled import loops
 from ..effects import Effects
 from ..element import beams as bm
 from ..element import measures
 from ..element.discretize import Chain
-from ..space import rigid
 from ..space import spatial as sp
 from . import elimination, matrices, root_joint
 from .pencil import ChainPencil, Shape, linearize, undeformed
@@ -137,58 +136,21 @@ def rounding_energy(p: ChainPencil, shape: Shape) -> float:
 def largest_strain(chain: Chain, shape: Shape) -> float:
     """Largest steady strain of the reference curve (see ``measures.relative_strain``)."""
     law = chain.beams.law
-    real = np.linalg.norm(law.eta[:, :3], axis=1) > 1e-9 * chain.scale  # not a root joint
+    real = law.length > 1e-9 * chain.scale  # not a root joint
     strain = measures.relative_strain(law, shape.relative @ chain.corner, shape.beta)
     return float(strain[real].max(initial=0.0))
 
 
 def displaced(shape: Shape, step: Array) -> Shape:
     """The shape after a step (n, 6 or 12): twists of nodes 1 … n in their axes, and changes of β."""
-    nodes, relative = shape.nodes.copy(), shape.relative.copy()
-    _displace(step, nodes[1:], relative)
+    parts = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, step))
+    nodes, relative = loops.displaced(*parts)
     return Shape(nodes, shape.beta + step[:, 6:], relative)
-
-
-@compiled
-def _displace(step: Array, nodes: Array, relative: Array) -> None:
-    here, between = np.empty((4, 4)), np.empty((4, 4))
-    change, back = np.empty((4, 4)), np.eye(4)
-    for k in range(len(nodes)):
-        rigid.exp(step[k, :6], change)
-        for i in range(4):
-            for j in range(4):
-                here[i, j] = nodes[k, i, j]
-        rigid.compose(here, change, nodes[k])
-        rigid.compose(back, relative[k], between)
-        rigid.compose(between, change, relative[k])
-        rigid.inverse(change, back)
 
 
 def coordinates(chain: Chain, shape: Shape) -> Array:
     """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, and β."""
-    out = np.empty((len(shape.beta), 6 + shape.beta.shape[1]))
-    _twists(chain.between, shape.relative, out)
-    out[:, 6:] = shape.beta
-    return out
-
-
-@compiled
-def _twists(poses: Array, others: Array, out: Array) -> None:
-    back, between = np.empty((4, 4)), np.empty((4, 4))
-    for k in range(len(poses)):
-        rigid.inverse(poses[k], back)
-        rigid.compose(back, others[k], between)
-        rigid.log(between, out[k, :6])
-
-
-@compiled
-def _bend(between: Array, coordinates: Array, nodes: Array, relative: Array) -> None:
-    """Fill the poses of the nodes, from the first on, and the relative ones, from ``coordinates``."""
-    change = np.empty((4, 4))
-    for k in range(len(between)):
-        rigid.exp(coordinates[k, :6], change)
-        rigid.compose(between[k], change, relative[k])
-        rigid.compose(nodes[k], relative[k], nodes[k + 1])
+    return np.concatenate([sp.log(sp.inverse(chain.between) @ shape.relative), shape.beta], axis=1)
 
 
 def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Shape | None:
@@ -205,9 +167,7 @@ def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Sha
     q, r = np.linalg.qr(powers)
     weights = q @ np.linalg.solve(r.T, np.eye(len(r))[0])  # of the value at zero
     found = np.einsum("k,kij->ij", weights, np.array(list(known.values())))
-    nodes, relative = np.empty_like(chain.nodes), np.empty_like(chain.between)
-    nodes[0] = chain.nodes[0]
-    _bend(chain.between, found, nodes, relative)
+    nodes, relative = loops.bent(chain.nodes[0], chain.between, found)
     return Shape(nodes, found[:, 6:], relative)
 
 

@@ -7,16 +7,17 @@ element whose mass is lumped at the nodes has no such points.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled import loops
 from ..effects import ALL_EFFECTS, Effects
 from ..space import spatial as sp
 from . import measures
 from .measures import Measure, StrainLaw
-from .pencil import BeamArrays, assemble
 
 Array = NDArray[Any]
 Index = NDArray[np.intp]
@@ -24,7 +25,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Points:
-    """Points that follow the elements' ends, sorted by element; every element has the same number of points with mass.
+    """Points that follow the elements' ends, sorted by element.
 
     Attributes:
         element: (q,) index of the element that each point follows.
@@ -58,7 +59,7 @@ class Beams:
     Attributes:
         law: their strain law.
         stiffness: (n, 6, 6) for the strain of that law.
-        points: the inertia inside; every element has the same number of points (see ``alike``).
+        points: the inertia inside.
         preload: (n, 6) force conjugate to the strain, at zero strain.
         inner_preload: (n, 6) force conjugate to β, at β = 0.
     """
@@ -78,6 +79,14 @@ class Beams:
     def bushings(self) -> NDArray[np.bool_]:
         """(n,) whether an element is a bushing, which has no shape between its ends."""
         return np.asarray(~self.law.shortening.any(axis=(1, 2)))
+
+    @cached_property
+    def arrays(self) -> loops.Beams:
+        """The elements for compiled loops."""
+        p = self.points
+        first = np.searchsorted(p.element, np.arange(len(self.stiffness) + 1))
+        parts = (self.stiffness, self.preload, self.inner_preload, p.zeta0, p.shape, p.bubble, p.mass, p.force)
+        return loops.Beams(self.law.arrays, first, *(np.ascontiguousarray(a, dtype=float) for a in parts))
 
     @property
     def inner(self) -> int:
@@ -132,26 +141,6 @@ def riding(undeformed: Array, element: Index, pose: Array, shape: Array, bubble:
     return Points(element=element, zeta0=zeta, shape=L, bubble=slope @ bubble, mass=mass)
 
 
-def alike(points: Points, elements: int) -> Points:
-    """The points padded with massless copies, so that every element has the same number, as ``Beams`` requires."""
-    number = np.bincount(points.element, minlength=elements)
-    most = int(number.max())
-    if (number == most).all():
-        return points
-    rank = np.arange(most)
-    first = np.cumsum(number) - number
-    pick = (first[:, None] + np.minimum(rank, number[:, None] - 1)).ravel()  # the last one again
-    real = (rank < number[:, None]).ravel()
-    return Points(
-        element=np.repeat(np.arange(elements), most),
-        zeta0=points.zeta0[pick],
-        shape=points.shape[pick],
-        bubble=points.bubble[pick],
-        mass=points.mass[pick] * real[:, None, None],
-        force=points.force[pick] * real[:, None],
-    )
-
-
 def bushing(
     undeformed: Array, stiffness: Array, preload: Array | None = None, measure: Measure = "corotational"
 ) -> Beams:
@@ -203,22 +192,9 @@ def on_strain(
     """
     if axes is None and beams.points.force.any():
         raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
-    n, d = len(x), 12 + beams.inner
-    M, C, remainder = np.empty((3, n, d, d))
-    out = OnStrain(np.empty((n, d)), M, C, remainder, np.empty((n, 6, 6)))
-    assemble(
-        _arrays(beams),
-        measures.cardan(beams.law),
-        None if effects.geometric and not beams.points.force.any() else True,
-        np.ascontiguousarray(x),
-        np.ascontiguousarray(beta) if beams.inner else np.zeros((n, 6)),
-        np.ascontiguousarray(frame),
-        np.ascontiguousarray(gravity),
-        np.zeros((n, 3, 3)) if axes is None else np.ascontiguousarray(axes),
-        effects.geometric,
-        *out,
-    )
-    return out
+    turn = np.zeros((len(x), 3, 3)) if axes is None else axes
+    x, beta, frame, gravity, turn = (np.ascontiguousarray(a) for a in (x, beta, frame, gravity, turn))
+    return OnStrain(*loops.on_strain(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
 
 
 def pencil(found: OnStrain) -> Pencil:
@@ -236,18 +212,3 @@ def on_ends(on_a: Array, on_b: Array) -> Array:
     out[:, :6, :6], out[:, :6, 6:] = on_a, -on_a
     out[:, 6:, :6], out[:, 6:, 6:] = -on_b, on_b
     return out
-
-
-def _arrays(beams: Beams) -> BeamArrays:
-    p = beams.points
-    return BeamArrays(
-        law=measures.arrays(beams.law),
-        stiffness=np.ascontiguousarray(beams.stiffness),
-        preload=np.ascontiguousarray(beams.preload),
-        inner_preload=np.ascontiguousarray(beams.inner_preload),
-        zeta0=np.ascontiguousarray(p.zeta0),
-        shape=np.ascontiguousarray(p.shape),
-        bubble=np.ascontiguousarray(p.bubble),
-        mass=np.ascontiguousarray(p.mass),
-        force=np.ascontiguousarray(p.force),
-    )

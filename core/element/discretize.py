@@ -111,7 +111,6 @@ def discretize(
         inside = bm.riding(undeformed, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
         if load is not None:
             inside = replace(inside, force=seg.weight[:, None] * _at(blade, load, seg.s))
-        inside = bm.alike(inside, elements)
     else:
         inside = bm.NO_POINTS
         lumps += _half_end(blade, s)
@@ -175,20 +174,12 @@ def _on_joint(chain: Chain, blade: Blade) -> Chain:
         return np.concatenate([new, old])
 
     none = np.zeros((1, 6, 6))
-    inside = b.points
-    if b.inner:  # one point without mass, for ``alike``
-        e = before(np.zeros(1, dtype=np.intp), inside.element + 1)
-        rows = (
-            before(none[:, 0], inside.zeta0),
-            *(before(none, v) for v in (inside.shape, inside.bubble, inside.mass)),
-        )
-        inside = bm.alike(Points(e, *rows, force=before(none[:, 0, :3], inside.force)), len(b.undeformed) + 1)
     spring = turn @ np.diag(np.where(fixed, 0.0, blade.root)) @ turn.T
     beams = replace(
         b,
         law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
         stiffness=before(spring[None], b.stiffness),
-        points=inside,
+        points=replace(b.points, element=b.points.element + 1),
         preload=before(none[:, 0], b.preload),
         inner_preload=before(none[:, 0], b.inner_preload),
     )

@@ -19,16 +19,14 @@ Two measures:
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import clear, compiled, product
-from ..space import rigid
+from ..compiled import loops
 from ..space import spatial as sp
-from . import body_fixed, corotational
-from .corotational import StrainLawArrays
 
 Array = NDArray[np.float64]
 Measure = Literal["corotational", "body_fixed"]
@@ -62,6 +60,17 @@ class StrainLaw:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "eta", sp.log(self.undeformed))
+
+    @cached_property
+    def length(self) -> Array:
+        """(n,) distance between the ends of the undeformed elements, along the helicoid, m."""
+        return np.linalg.norm(self.eta[:, :3], axis=1)
+
+    @cached_property
+    def arrays(self) -> loops.StrainLaws:
+        """The law for compiled loops."""
+        parts = (np.ascontiguousarray(getattr(self, name), dtype=float) for name in (*_ARRAYS, "eta"))
+        return loops.StrainLaws(self.measure == "body_fixed", *parts)
 
 
 def even(measure: Measure, undeformed: Array) -> StrainLaw:
@@ -104,26 +113,9 @@ def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_e
 
     ``s`` and ``on_eta`` (n, 6) are the constant forces of ``Response.curvature``, zero by default.
     """
-    n = len(x)
-    beta, force, conjugate = (
-        np.zeros((n, 6)) if v is None or not v.size else np.ascontiguousarray(v) for v in (beta, s, on_eta)
-    )
-    out = Response(np.empty((n, 6)), np.empty((n, 6, 12)), np.empty((n, 12, 12)))
-    _respond(
-        arrays(law), cardan(law), np.ascontiguousarray(x), beta, force, conjugate, out.strain, out.rate, out.curvature
-    )
-    return out
-
-
-def arrays(law: StrainLaw) -> StrainLawArrays:
-    """The law as contiguous arrays for compiled code."""
-    parts = (np.ascontiguousarray(getattr(law, name)) for name in (*_ARRAYS, "eta"))
-    return StrainLawArrays(*parts)
-
-
-def cardan(law: StrainLaw) -> bool | None:
-    """True for the body-fixed measure, None for the corotational one: for None, Numba does not compile the other branch."""
-    return None if law.measure == "corotational" else True
+    none = np.zeros((len(x), 6))
+    force, conjugate = (none if v is None else np.ascontiguousarray(v) for v in (s, on_eta))
+    return Response(*loops.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta), force, conjugate))
 
 
 def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
@@ -131,12 +123,10 @@ def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
 
     Bending strains are not included: they need the sections' thickness, which a beam does not state.
     """
-    length = np.linalg.norm(law.eta[:, :3], axis=1)
     components = 3 if law.measure == "corotational" else 1
-    found, none = np.empty((len(x), 6)), np.zeros((len(x), 6))
-    _strain(arrays(law), cardan(law), np.ascontiguousarray(x), np.ascontiguousarray(beta) if beta.size else none, found)
+    found = loops.strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
     strain = np.linalg.norm(found[:, :components], axis=1)
-    return np.divide(strain, length, out=np.zeros_like(length), where=length > 0)
+    return np.divide(strain, law.length, out=np.zeros_like(strain), where=law.length > 0)
 
 
 def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
@@ -148,84 +138,3 @@ def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
     if law.measure != "corotational":
         return np.zeros(len(x), dtype=bool)
     return np.abs(2.0 * ((sp.log(x) - law.eta) * law.shortening[:, 0]).sum(1)) > RANGE
-
-
-@compiled
-def _strain(law: StrainLawArrays, cardan: bool | None, x: Array, beta: Array, strain: Array) -> None:
-    eta, back = np.empty(6), np.empty((6, 6))
-    rate, J, undo = np.empty((6, 12)), np.empty((6, 12)), np.empty((6, 6))
-    for k in range(len(x)):
-        rigid.log(x[k], eta)
-        rigid.tangent_inverse(eta, back)
-        strains(law, cardan, k, x[k], eta, back, beta[k], strain[k], rate, J, undo)
-
-
-@compiled
-def _respond(
-    law: StrainLawArrays,
-    cardan: bool | None,
-    x: Array,
-    beta: Array,
-    s: Array,
-    on_eta: Array,
-    strain: Array,
-    rate: Array,
-    curvature: Array,
-) -> None:
-    eta, back, J, undo = np.empty(6), np.empty((6, 6)), np.empty((6, 12)), np.empty((6, 6))
-    for k in range(len(x)):
-        rigid.log(x[k], eta)
-        rigid.tangent_inverse(eta, back)
-        strains(law, cardan, k, x[k], eta, back, beta[k], strain[k], rate[k], J, undo)
-        clear(curvature[k])
-        add_curvature(law, cardan, k, eta, back, J, undo, rate[k], strain[k], s[k], on_eta[k], curvature[k])
-
-
-@compiled
-def strains(
-    law: StrainLawArrays,
-    cardan: bool | None,
-    k: int,
-    x: Array,
-    eta: Array,
-    back: Array,
-    beta: Array,
-    strain: Array,
-    rate: Array,
-    J: Array,
-    undo: Array,
-) -> None:
-    """ε (6,) and E (6, 12) of element ``k``, and J (6, 12) = ∂ε/∂(η, β) and (6, 6) (1 + ad(A δ) B_δ/12)⁻¹ for the curvature.
-
-    ``eta`` (6,) is the logarithm of its pose ``x`` (4, 4), and ``back`` (6, 6) = ``tangent_inverse(eta)``.
-    """
-    if cardan is None:
-        corotational.strains(law, k, eta, beta, strain, J, undo)
-        product(J, back, rate)
-        for i in range(6):
-            for j in range(6, 12):
-                rate[i, j] = J[i, j]
-    else:
-        body_fixed.strains(law.undeformed[k], x, strain, rate)
-
-
-@compiled
-def add_curvature(
-    law: StrainLawArrays,
-    cardan: bool | None,
-    k: int,
-    eta: Array,
-    back: Array,
-    J: Array,
-    undo: Array,
-    rate: Array,
-    strain: Array,
-    s: Array,
-    on_eta: Array,
-    out: Array,
-) -> None:
-    """Add the geometric stiffness (12, 12) of ``Response`` to ``out``; the other arguments are results of ``strains``."""
-    if cardan is None:
-        corotational.add_curvature(law, k, eta, back, J, undo, s, on_eta, out)
-    else:
-        body_fixed.add_curvature(law.undeformed[k], eta, back, rate, strain, s, on_eta, out)

@@ -175,7 +175,7 @@ def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> 
     rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
     by_kind: dict[tuple[str, int], list[int]] = {}
     for k, beam in enumerate(mechanism.beams):
-        by_kind.setdefault((beam.beams.law.measure, len(beam.beams.points.element)), []).append(k)
+        by_kind.setdefault((beam.beams.law.measure, beam.beams.inner), []).append(k)
     out = []
     for index in by_kind.values():
         some = [mechanism.beams[k] for k in index]

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Batch:
-    """Beams that are processed together: of one strain measure, with the same number of points with mass.
+    """Beams that are processed together: of one strain measure, all with points or all without.
 
     Attributes:
         index: (e,) which of the mechanism's beams.

@@ -20,7 +20,7 @@ PACKAGE = __name__.partition(".")[0]
 
 ROOT = Path(__file__).parents[2]
 
-LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
+LIBRARIES = ("numpy", "scipy", "matplotlib")
 
 PROTOCOL = f"{PACKAGE}.references.protocol"
 """The package of the processes in which codes run; all of it counts, since they start some of its files by path."""

@@ -14,8 +14,8 @@ from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 
-from ...core import compiled_files
 from .cache import cache
+from .private_folder import folder
 
 NAME = "answers.sqlite"
 
@@ -51,7 +51,7 @@ class Store:
         Raises:
             OSError: if the folder is not writable, or other users can write to it, or the file is not a store.
         """
-        if not compiled_files.folder(file.parent.parent, file.parent.name):
+        if not folder(file.parent.parent, file.parent.name):
             raise OSError(f"{file.parent}: not a folder that only this user can write to")
         try:
             self.base = sqlite3.connect(file, timeout=WAITING, isolation_level=None, check_same_thread=False)

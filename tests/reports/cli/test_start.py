@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from southwell.core import first_use
 from southwell.reports.cli import app as cli
 
-HEAVY = ("numpy", "scipy", "numba", "matplotlib", "pandas")
+HEAVY = ("numpy", "scipy", "matplotlib", "pandas")
 
 
 def python(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -61,29 +60,6 @@ def test_commands_and_options_are_completed(shell: str) -> None:
     script = cli.app.generate_completion(shell=shell)  # type: ignore[arg-type]
     for word in ("campbell", "operating", "witnesses"):
         assert word in script
-
-
-COMPILE = """
-import types
-from southwell.core import compiled
-
-def fresh(name):
-    f = types.FunctionType((lambda x: x + 1).__code__, {}, name)
-    f.__module__ = name
-    return compiled.numba.njit(f)
-
-fresh("elsewhere")(1)
-print("elsewhere", flush=True)
-fresh("southwell.core.fresh")(1)
-fresh("southwell.core.fresh")(2.0)
-"""
-
-
-def test_compilation_is_announced_once_wherever_standard_error_goes(tmp_path: Path) -> None:
-    """It is a pipe here; functions of others are none of our business."""
-    done = python(COMPILE, tmp_path)
-    assert (done.returncode, done.stdout) == (0, "elsewhere\n"), done.stderr
-    assert done.stderr == first_use.ANNOUNCEMENT + "\n"
 
 
 def test_install_hints_keep_their_brackets(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,265 @@
+// Chains: what Python calls of core/chain.
+#pragma once
+
+#include "../chain/chain.hpp"
+#include "../chain/energies.hpp"
+#include "../chain/krylov.hpp"
+#include "elements.hpp"
+
+namespace southwell {
+
+// A matrix of n elements, (n, D, D).
+template <int D>
+ElementMatrices<D> elements_of(const py::array& a, py::ssize_t n) {
+    return {items<Matrix<D, D>>(a, n), static_cast<int>(n)};
+}
+
+// Call f with the size of an element's matrix, 12 or 18, as a constant.
+template <class F>
+auto sized(const py::array& matrix, F f) {
+    const auto size = matrix.ndim() == 3 ? matrix.shape(1) : 0;
+    if (size == 18) return f(std::integral_constant<int, 18>());
+    if (size == 12) return f(std::integral_constant<int, 12>());
+    throw std::invalid_argument("the matrices of elements must be (n, 12, 12) or (n, 18, 18)");
+}
+
+// Vectors as the rows of an array (k, length).
+inline Rows rows_of(const py::array& a, py::ssize_t length) {
+    if (a.ndim() != 2 || a.shape(1) != length)
+        throw std::invalid_argument("vectors are not of the length of the matrix");
+    check(a, a.size());
+    return {const_cast<double*>(reinterpret_cast<const double*>(a.data())), static_cast<long>(length),
+            static_cast<int>(a.shape(0))};
+}
+
+inline Rows writable_rows(py::array& a, py::ssize_t length) {
+    a.mutable_data();  // an error unless it can be written to
+    return rows_of(a, length);
+}
+
+// Elements and nodes at a shape, before assembly: OnStrain, Ad⁻¹ (n, 6, 6), and g, C, K of the nodes.
+inline py::tuple chain_parts(const BeamArrays& of, const py::array& nodes, const py::array& relative,
+                             const py::array& corner, const py::array& beta, const py::array& lumps,
+                             const py::array& force, double omega, const py::array& gravity, bool geometric) {
+    const Beams& beams = of.beams;
+    const int n = beams.elements;
+    const Pose *pose = items<Pose>(nodes, n + 1), *between = items<Pose>(relative, n), *end = items<Pose>(corner, n);
+    const Matrix6* lump = items<Matrix6>(lumps, n + 1);
+    const Vector3 *push = items<Vector3>(force, n + 1), *g0 = items<Vector3>(gravity, 1);
+    check(beta, beams.heavy ? 6 * n : 0);
+    OnStrain out(n, of.size());
+    Doubles back({n, 6, 6}), g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
+    for (int k = 0; k <= n; ++k) {
+        const Surroundings around = surroundings(pose[k], omega, *g0);
+        const Inertial node = node_pencil(lump[k], push[k], around, geometric);
+        fill<Vector6>(g)[k] = node.g, fill<Matrix6>(C)[k] = node.C, fill<Matrix6>(K)[k] = node.K;
+        if (k == n) break;
+        fill<Matrix6>(back)[k] = adjoint(inverse(between[k]));
+        out.set(k, element_pencil(beams, k, between[k] * end[k], coordinates(beta, k), around, geometric, of.loaded));
+    }
+    return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring, back, g, C, K);
+}
+
+// Add springs and nodes to the elements' M, C and K, in place; returns the residual on (ρ, β).
+inline Doubles chain_sum(const py::array& f, py::array& M, py::array& C, py::array& K, const py::array& spring,
+                         const py::array& back, const py::array& lumps, const py::array& g, const py::array& of_C,
+                         const py::array& of_K) {
+    return sized(M, [&](auto D) {
+        const int n = static_cast<int>(M.shape(0));
+        const Matrix6 *springs = items<Matrix6>(spring, n), *ahead = items<Matrix6>(back, n);
+        auto *mass = writable<Matrix<D, D>>(M, n), *gyroscopic = writable<Matrix<D, D>>(C, n);
+        auto* stiffness = writable<Matrix<D, D>>(K, n);
+        const Matrix6* on_nodes[3] = {items<Matrix6>(lumps, n + 1), items<Matrix6>(of_C, n + 1),
+                                      items<Matrix6>(of_K, n + 1)};
+        for (int k = 0; k < n; ++k) add(springs[k], 6, 6, stiffness[k]);
+        for (auto [matrix, node] :
+             {std::pair{mass, on_nodes[0]}, {gyroscopic, on_nodes[1]}, {stiffness, on_nodes[2]}}) {
+            for (int k = 1; k < n; ++k) add(node[k], 0, 0, matrix[k]);
+            add_at_tip(ahead[n - 1], node[n], matrix[n - 1]);
+        }
+        Doubles out({n, D - 6});
+        gather(items<double>(f, n * D), ahead, items<Vector6>(g, n + 1), n, D - 6, out.mutable_data());
+        return out;
+    });
+}
+
+// The poses (n + 1, 4, 4) and (n, 4, 4) after a step (n, 6 or 12).
+inline py::tuple displaced(const py::array& nodes, const py::array& relative, const py::array& step) {
+    const int n = static_cast<int>(step.shape(0)), width = static_cast<int>(step.shape(1));
+    Doubles moved({n + 1, 4, 4}), between({n, 4, 4});
+    std::copy_n(items<Pose>(nodes, n + 1), n + 1, fill<Pose>(moved));
+    std::copy_n(items<Pose>(relative, n), n, fill<Pose>(between));
+    displace(items<double>(step, n * width), width, n, fill<Pose>(moved), fill<Pose>(between));
+    return py::make_tuple(moved, between);
+}
+
+// The poses of the nodes and the relative ones, from the first node's pose and twists (n, 6 or 12) from ``between`` on.
+inline py::tuple bent(const py::array& first, const py::array& between, const py::array& coordinates) {
+    const int n = static_cast<int>(coordinates.shape(0)), width = static_cast<int>(coordinates.shape(1));
+    const Pose* from = items<Pose>(between, n);
+    const double* twist = items<double>(coordinates, n * width);
+    Doubles nodes({n + 1, 4, 4}), relative({n, 4, 4});
+    Pose *to = fill<Pose>(nodes), *step = fill<Pose>(relative);
+    to[0] = *items<Pose>(first, 1);
+    for (int k = 0; k < n; ++k) {
+        Vector6 change;
+        for (int i = 0; i < 6; ++i) change[i] = twist[width * k + i];
+        step[k] = from[k] * exp(change);
+        to[k + 1] = to[k] * step[k];
+    }
+    return py::make_tuple(nodes, relative);
+}
+
+// Products (k, dn) of a symmetric (sign 1) or skew (−1) matrix with the rows of x (k, dn).
+inline Doubles product(const py::array& matrix, double sign, const py::array& back, const py::array& x) {
+    return sized(matrix, [&](auto D) {
+        const auto m = elements_of<D>(matrix, matrix.shape(0));
+        const Rows from = rows_of(x, m.n * (D - 6));
+        Doubles out({from.count, m.n * (D - 6)});
+        times(m, sign, items<Matrix6>(back, m.n), from, {out.mutable_data(), from.stride, from.count});
+        return out;
+    });
+}
+
+// x*Kx, ½i x*Cx and x*Mx (m, 3) of complex vectors x (m, 2, dn), by real and imaginary parts.
+inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py::array& M, const py::array& back,
+                               const py::array& x) {
+    return sized(K, [&](auto D) {
+        const auto n = K.shape(0);
+        const auto stiffness = elements_of<D>(K, n), gyroscopic = elements_of<D>(C, n), mass = elements_of<D>(M, n);
+        const int size = stiffness.n * (D - 6), modes = static_cast<int>(x.shape(0));
+        const double* from = items<double>(x, py::ssize_t{2} * modes * size);
+        const Matrix6* ahead = items<Matrix6>(back, stiffness.n);
+        Doubles out({modes, 3});
+        for (int m = 0; m < modes; ++m) {
+            const double *re = from + 2 * m * size, *im = re + size;
+            fill<Energies>(out)[m] = energies(mass, gyroscopic, stiffness, ahead, re, im);
+        }
+        return out;
+    });
+}
+
+// Replace ρ by ξ_b in vectors x (k, n, d), in place.
+inline void twists(const py::array& back, py::array& x) {
+    if (x.ndim() != 3) throw std::invalid_argument("vectors must be (k, n, d)");
+    const auto n = x.shape(1), d = x.shape(2);
+    double* data = writable<double>(x, x.size());
+    to_twists(items<Matrix6>(back, n), static_cast<int>(n), static_cast<int>(d),
+              {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
+}
+
+inline const Matrix6* clamp(const py::array& clamped) { return clamped.size() ? items<Matrix6>(clamped, 1) : nullptr; }
+
+// Factors of K: the worst pivot (see ``invert``), flexibility, ride, reaction.
+inline py::tuple factor(const py::array& K, const py::array& back, const py::array& clamped) {
+    return sized(K, [&](auto D) {
+        constexpr int d = D - 6;
+        const auto m = elements_of<D>(K, K.shape(0));
+        Doubles flexibility({m.n, d, d}), ride({m.n, 6, d}), reaction({m.n, d, 6});
+        const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(ride), fill<Matrix<d, 6>>(reaction)};
+        const int kind = eliminate(m, items<Matrix6>(back, m.n), clamp(clamped), out);
+        return py::make_tuple(kind, flexibility, ride, reaction);
+    });
+}
+
+// Factors that lie in NumPy's arrays; they are only read.
+template <int D>
+Factors<D> factors_of(const py::array& flexibility, const py::array& ride, const py::array& reaction, int n) {
+    constexpr int d = D - 6;
+    return {const_cast<Matrix<d, d>*>(items<Matrix<d, d>>(flexibility, n)),
+            const_cast<Matrix<6, d>*>(items<Matrix<6, d>>(ride, n)),
+            const_cast<Matrix<d, 6>*>(items<Matrix<d, 6>>(reaction, n))};
+}
+
+// Replace the loads x (k, dn) by the displacements.
+inline void solve_in_place(const py::array& flexibility, const py::array& ride, const py::array& reaction,
+                           const py::array& back, py::array& x) {
+    const int n = static_cast<int>(flexibility.shape(0)), d = static_cast<int>(flexibility.shape(1));
+    const Matrix6* ahead = items<Matrix6>(back, n);
+    const Rows rows = writable_rows(x, n * d);
+    if (d == 12)
+        solve(factors_of<18>(flexibility, ride, reaction, n), ahead, n, rows);
+    else
+        solve(factors_of<12>(flexibility, ride, reaction, n), ahead, n, rows);
+}
+
+inline int negative(const py::array& K, const py::array& C, const py::array& M, const py::array& back,
+                    const py::array& clamped, double omega) {
+    return sized(K, [&](auto D) {
+        const auto m = elements_of<D>(K, K.shape(0));
+        return negative_pivots(m, elements_of<D>(C, m.n), elements_of<D>(M, m.n), items<Matrix6>(back, m.n),
+                               clamp(clamped), omega);
+    });
+}
+
+// Lanczos's operator, with the arrays it refers to.
+struct LanczosOperator {
+    Doubles M, C, K, back, flexibility, ride, reaction, massive, lever;
+
+    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, Doubles back_, Doubles flexibility_, Doubles ride_,
+                    Doubles reaction_, Doubles massive_, Doubles lever_)
+        : M(M_),
+          C(C_),
+          K(K_),
+          back(back_),
+          flexibility(flexibility_),
+          ride(ride_),
+          reaction(reaction_),
+          massive(massive_),
+          lever(lever_) {}
+
+    template <int D>
+    Operator<D> sized_as() const {
+        const auto m = elements_of<D>(K, K.shape(0));
+        return {elements_of<D>(M, m.n),
+                elements_of<D>(C, m.n),
+                m,
+                items<Matrix6>(back, m.n),
+                factors_of<D>(flexibility, ride, reaction, m.n),
+                massive.size() ? items<Matrix6>(massive, m.n) : nullptr,
+                massive.size() ? items<Matrix6>(lever, m.n) : nullptr};
+    }
+
+    // Remove the motion without inertia from y (k, n).
+    void keep_massive(py::array& y) const {
+        sized(K, [&](auto D) {
+            const auto a = sized_as<D>();
+            southwell::keep_massive(a, writable_rows(y, a.size()));
+            return 0;
+        });
+    }
+
+    // A⁻¹S v for the rows of v (k, 2n).
+    Doubles forward(const py::array& v) const {
+        return sized(K, [&](auto D) {
+            const auto a = sized_as<D>();
+            const int n = a.size();
+            const Rows from = rows_of(v, 2 * n);
+            Doubles w({from.count, 2 * n});
+            Block force(from.count, 2 * n), My(from.count, n);
+            southwell::forward(a, from, Rows{w.mutable_data(), 2 * n, from.count}, force, My);
+            return w;
+        });
+    }
+
+    // See krylov.extend: w, basis and projected are changed; the Gram matrix, the new size and before, and exhausted.
+    py::tuple extend(py::array& w, py::array& basis, py::array& projected, int size, int before, int look) const {
+        return sized(K, [&](auto D) {
+            const auto a = sized_as<D>();
+            Rows rows = writable_rows(w, 2 * a.size());
+            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, basis.shape(0)), size, before};
+            if (rows.count < 1 || rows.count > 2 || grown.projected.count != grown.vectors.count || before < 0 ||
+                size < before || size > grown.vectors.count)
+                throw std::invalid_argument(
+                    "a block has one or two vectors, and the basis as many rows as its projection");
+            bool exhausted = false;
+            const Pairs gram = southwell::extend(a, rows, grown, look, exhausted);
+            Doubles out({gram.count, gram.count});
+            for (int i = 0; i < gram.count; ++i)
+                for (int j = 0; j < gram.count; ++j) out.mutable_at(i, j) = gram.item[i][j];
+            return py::make_tuple(out, grown.size, grown.before, exhausted);
+        });
+    }
+};
+
+}  // namespace southwell

@@ -1,0 +1,61 @@
+// The module that Python imports; MODULE is its name, which setup.py sets. loops.pyi has the signatures.
+#include "chains.hpp"
+#include "elements.hpp"
+
+namespace southwell {
+
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+inline bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+#else
+inline bool processor_has_avx2() { return false; }
+#endif
+
+inline Matrix<3, 3> skew_of(const Vector3& a) { return skew(a); }
+inline Matrix6 cross_of(const Vector6& a) { return cross(a); }
+
+inline void define(py::module_& m) {
+    m.def("processor_has_avx2", &processor_has_avx2);
+
+    m.def("skew", each<Matrix<3, 3>, Vector3>(skew_of));
+    m.def("inverse", each<Pose, Pose>(inverse));
+    m.def("adjoint", each<Matrix6, Pose>(adjoint));
+    m.def("ad", each<Matrix6, Vector6>(ad));
+    m.def("cross", each<Matrix6, Vector6>(cross_of));
+    m.def("exp", each<Pose, Vector6>(exp));
+    m.def("log", each<Vector6, Pose>(log));
+    m.def("tangent", each<Matrix6, Vector6>(tangent));
+    m.def("tangent_inverse", each<Matrix6, Vector6>(tangent_inverse));
+    m.def("tangent_transpose_derivative", each<Matrix6, Vector6>(tangent_transpose_derivative));
+    m.def("tangent_inverse_transpose_derivative", each<Matrix6, Vector6>(tangent_inverse_transpose_derivative));
+
+    py::class_<LawArrays>(m, "StrainLaws", py::module_local())
+        .def(py::init<bool, Doubles, Doubles, Doubles, Doubles, Doubles>());
+    py::class_<BeamArrays>(m, "Beams", py::module_local())
+        .def(py::init<const LawArrays&, Indices, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles,
+                      Doubles>());
+    m.def("on_strain", &on_strain);
+    m.def("strains", &strains);
+    m.def("respond", &respond);
+
+    m.def("chain_parts", &chain_parts);
+    m.def("chain_sum", &chain_sum);
+    m.def("displaced", &displaced);
+    m.def("bent", &bent);
+    m.def("product", &product);
+    m.def("quadratic_forms", &quadratic_forms);
+    m.def("twists", &twists);
+    m.def("factor", &factor);
+    m.def("solve", &solve_in_place);
+    m.def("negative_pivots", &negative);
+    py::class_<LanczosOperator>(m, "Operator", py::module_local())
+        .def(py::init<Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles>())
+        .def("keep_massive", &LanczosOperator::keep_massive)
+        .def("forward", &LanczosOperator::forward)
+        .def("extend", &LanczosOperator::extend);
+}
+
+}  // namespace southwell
+
+#define DEFINE(name) \
+    PYBIND11_MODULE(name, m) { southwell::define(m); }
+DEFINE(MODULE)
