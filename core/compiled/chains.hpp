@@ -46,7 +46,7 @@ inline py::tuple chain_parts(const BeamArrays& of, const py::array& nodes, const
     const Pose *pose = items<Pose>(nodes, n + 1), *between = items<Pose>(relative, n), *end = items<Pose>(corner, n);
     const Matrix6* lump = items<Matrix6>(lumps, n + 1);
     const Vector3 *push = items<Vector3>(force, n + 1), *g0 = items<Vector3>(gravity, 1);
-    check(beta, beams.heavy ? 6 * n : 0);
+    check(beta, beams.inner ? 6 * n : 0);
     OnStrain out(n, of.size());
     Doubles back({n, 6, 6}), g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
     for (int k = 0; k <= n; ++k) {

@@ -66,7 +66,7 @@ struct BeamArrays {
         for (py::ssize_t i = 0; i < force.size(); ++i) loaded = loaded || force.data()[i] != 0.0;
     }
 
-    int size() const { return beams.heavy ? 18 : 12; }
+    int size() const { return beams.inner ? 18 : 12; }
 };
 
 // Residual (n, d), M, C and remainder (n, d, d), spring (n, 6, 6); see beams.OnStrain.
@@ -101,7 +101,7 @@ inline py::tuple on_strain(const BeamArrays& of, const py::array& x, const py::a
     const Pose* pose = items<Pose>(x, n);
     const Vector6 *frames = items<Vector6>(frame, n), *falls = items<Vector6>(fall, n);
     const auto* turns = items<Matrix<3, 3>>(axes, n);
-    check(beta, beams.heavy ? 6 * n : 0);
+    check(beta, beams.inner ? 6 * n : 0);
     OnStrain out(n, of.size());
     for (int k = 0; k < n; ++k)
         out.set(k, element_pencil(beams, k, pose[k], coordinates(beta, k), {frames[k], falls[k], turns[k]}, geometric,

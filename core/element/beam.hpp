@@ -9,11 +9,11 @@
 
 namespace southwell {
 
-// Elements, one after the other; see beams.Beams. The points of element k are first[k] … first[k + 1] − 1; ``heavy``: there are
+// Elements, one after the other; see beams.Beams. The points of element k are first[k] … first[k + 1] − 1; ``inner``: there are
 // points, so that every element has internal coordinates.
 struct Beams {
     int elements;
-    bool heavy;
+    bool inner;
     const std::int64_t* first;
     StrainLaws law;
     const Matrix6* stiffness;
@@ -178,7 +178,7 @@ inline ElementPencil element_pencil(const Beams& beams, int k, const Pose& x, co
     ElementPencil out;
     Vector6 on_eta{};
     const Place at(x);
-    if (beams.heavy) add_inertia(beams, k, at, beta, around, geometric, loaded, on_eta, out);
+    if (beams.inner) add_inertia(beams, k, at, beta, around, geometric, loaded, on_eta, out);
     add_elastic(beams, k, at, beta, geometric, on_eta, out);
     return out;
 }

@@ -82,8 +82,10 @@ class Beams:
 
     @cached_property
     def arrays(self) -> loops.Beams:
-        """The elements for compiled loops."""
+        """The elements for compiled loops; ``ValueError`` if the points are not sorted by element."""
         p = self.points
+        if (np.diff(p.element) < 0).any():
+            raise ValueError("points: not sorted by element")
         first = np.searchsorted(p.element, np.arange(len(self.stiffness) + 1))
         parts = (self.stiffness, self.preload, self.inner_preload, p.zeta0, p.shape, p.bubble, p.mass, p.force)
         return loops.Beams(self.law.arrays, first, *(np.ascontiguousarray(a, dtype=float) for a in parts))

@@ -3,6 +3,7 @@
 import importlib.resources
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ BLADE = uniform_blade("blade", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, ma
 
 FREQUENCIES = """
 import sys
+from dataclasses import replace
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
 from southwell.core.compiled import loops
@@ -90,3 +92,9 @@ def test_a_block_has_one_or_two_vectors() -> None:
 def test_empty_batches() -> None:
     assert loops.exp(np.zeros((0, 6))).shape == (0, 4, 4)
     assert steady.coordinates(BODY, pencil.undeformed(BODY)).shape == (4, 12)
+
+
+def test_points_that_are_not_sorted_by_element_are_refused() -> None:
+    points = BODY.beams.points
+    with pytest.raises(ValueError, match="not sorted by element"):
+        _ = replace(BODY.beams, points=replace(points, element=points.element[::-1])).arrays
