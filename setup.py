@@ -2,6 +2,7 @@
 
 import os
 import platform
+import runpy
 import shutil
 import sys
 import sysconfig
@@ -14,6 +15,7 @@ WINDOWS = sys.platform == "win32"
 FLAGS = ["/O2"] if WINDOWS else ["-O3", "-ffp-contract=fast", "-fno-math-errno", "-fopenmp-simd"]
 AVX2 = ["/arch:AVX2"] if WINDOWS else ["-mavx2", "-mfma", "-mtune=haswell"]
 FOLDER = Path("core", "compiled")
+DIGEST = runpy.run_path(str(FOLDER / "sources.py"))["digest"]()
 
 
 def loops(name: str, flags: list[str]) -> Pybind11Extension:
@@ -21,7 +23,7 @@ def loops(name: str, flags: list[str]) -> Pybind11Extension:
     return Pybind11Extension(
         f"southwell.core.compiled.{name}",
         [str(FOLDER / "module.cpp")],
-        define_macros=[("MODULE", name)],
+        define_macros=[("MODULE", name), ("SOURCES", f'"{DIGEST}"')],
         extra_compile_args=FLAGS + flags,
         depends=sorted(map(str, Path("core").rglob("*.hpp"))),
         cxx_std=17,

@@ -8,6 +8,8 @@ signatures in ``loops.pyi``; with ``SOUTHWELL_BASELINE`` set, it is the one for 
 import os
 from typing import TYPE_CHECKING
 
+from . import sources
+
 if TYPE_CHECKING:
     from . import loops
 else:
@@ -19,5 +21,9 @@ else:
         ) from error
     if loops.processor_has_avx2() and not os.environ.get("SOUTHWELL_BASELINE"):
         from . import avx2 as loops
+    if loops.sources() != sources.digest():
+        raise ImportError(
+            "southwell's compiled loops are not those of their sources: run make, or pip install --editable ."
+        )
 
 __all__ = ["loops"]

@@ -5,6 +5,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+def sources() -> str:
+    """The digest of the sources that were compiled."""
+
 def processor_has_avx2() -> bool: ...
 
 # space: arrays of any layout and number of leading dimensions, see space/spatial.py

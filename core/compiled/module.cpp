@@ -1,4 +1,4 @@
-// The module that Python imports; MODULE is its name, which setup.py sets. loops.pyi has the signatures.
+// The module that Python imports; setup.py sets MODULE, its name, and SOURCES, the digest of the sources. loops.pyi has the signatures.
 #include "chains.hpp"
 #include "elements.hpp"
 
@@ -14,6 +14,7 @@ inline Matrix<3, 3> skew_of(const Vector3& a) { return skew(a); }
 inline Matrix6 cross_of(const Vector6& a) { return cross(a); }
 
 inline void define(py::module_& m) {
+    m.def("sources", [] { return SOURCES; });
     m.def("processor_has_avx2", &processor_has_avx2);
 
     m.def("skew", each<Matrix<3, 3>, Vector3>(skew_of));

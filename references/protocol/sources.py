@@ -22,6 +22,9 @@ ROOT = Path(__file__).parents[2]
 
 LIBRARIES = ("numpy", "scipy", "matplotlib")
 
+COMPILED = {".so", ".pyd"}
+"""Endings of compiled modules. Their sources count, which lie in the folders that use them."""
+
 PROTOCOL = f"{PACKAGE}.references.protocol"
 """The package of the processes in which codes run; all of it counts, since they start some of its files by path."""
 
@@ -62,7 +65,7 @@ def files(modules: Iterable[str]) -> list[Path]:
 @cache
 def _data(folder: Path) -> frozenset[Path]:
     """Files in a folder that are not modules."""
-    return frozenset(path for path in folder.iterdir() if path.is_file() and path.suffix != ".py")
+    return frozenset(path for path in folder.iterdir() if path.is_file() and path.suffix not in {".py", *COMPILED})
 
 
 @cache
@@ -123,7 +126,7 @@ FLOORS = ("core", "references", "cases")
 def package() -> str:
     """Digest of all sources that compute answers, and of the versions of Python and the libraries they use."""
     paths = (path for floor in FLOORS for path in (ROOT / floor).rglob("*") if "__pycache__" not in path.parts)
-    return _digest(sorted(path for path in paths if path.is_file()))
+    return _digest(sorted(path for path in paths if path.is_file() and path.suffix not in COMPILED))
 
 
 def bundled(code: str) -> bool:

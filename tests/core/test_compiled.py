@@ -98,3 +98,15 @@ def test_points_that_are_not_sorted_by_element_are_refused() -> None:
     points = BODY.beams.points
     with pytest.raises(ValueError, match="not sorted by element"):
         _ = replace(BODY.beams, points=replace(points, element=points.element[::-1])).arrays
+
+
+def test_a_module_that_is_older_than_its_sources_is_not_loaded() -> None:
+    program = """
+import pathlib
+read = pathlib.Path.read_bytes
+pathlib.Path.read_bytes = lambda path: read(path) + (b"// changed" if path.name == "rigid.hpp" else b"")
+import southwell.core.compiled
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.returncode == 1
+    assert "ImportError: southwell's compiled loops are not those of their sources: run make" in run.stderr
