@@ -110,12 +110,13 @@ CHUNK = 64
 """Elements whose matrices are integrated together."""
 
 
-def tangent(s: Solid, u: Array | None = None) -> ss.csr_array:
+def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss.csr_array:
     """Tangent stiffness (3n, 3n) at displacements ``u`` (3n,) m, or undeformed.
 
-    The tangent moduli are ``A_iIjJ = δ_ij S_IJ + F_iK C_KIMJ F_jM``.
+    The tangent moduli are ``A_iIjJ = δ_ij S_IJ + F_iK C_KIMJ F_jM``, with S of ``u``, or another ``stress`` (e, q, 3, 3), Pa.
     """
     F, S = _deformed(s, u)
+    S = S if stress is None else stress
     count, points, size, _ = s.slopes.shape
     out = np.empty((count, 3 * size, 3 * size))
     for start in range(0, count, CHUNK):
@@ -156,9 +157,21 @@ def _deformed(s: Solid, u: Array | None) -> tuple[Array, Array]:
     """F and S (elements, points, 3, 3)."""
     F = np.broadcast_to(np.eye(3), (*s.slopes.shape[:2], 3, 3))
     if u is not None:
-        F = F + np.einsum("iea,eqaI->eqiI", u.reshape(3, -1)[:, s.own], s.slopes, optimize=True)
+        F = F + _gradient(s, u)
     E = 0.5 * (F.swapaxes(2, 3) @ F - np.eye(3))
     return F, np.einsum("eqIJKL,eqKL->eqIJ", s.moduli, E)
+
+
+def predicted(s: Solid, u: Array, step: Array) -> Array:
+    """Stress S (e, q, 3, 3), Pa, after a further displacement ``step`` (3n,), m, if it grew in proportion to it."""
+    F, S = _deformed(s, u)
+    rate = np.swapaxes(F, 2, 3) @ _gradient(s, step)
+    return S + np.einsum("eqIJKL,eqKL->eqIJ", s.moduli, 0.5 * (rate + np.swapaxes(rate, 2, 3)))
+
+
+def _gradient(s: Solid, u: Array) -> Array:
+    """(e, q, 3, 3) derivative of displacements by position."""
+    return np.einsum("iea,eqaI->eqiI", u.reshape(3, -1)[:, s.own], s.slopes, optimize=True)
 
 
 def freedoms(s: Solid) -> tuple[Array, NDArray[np.intp]]:
@@ -205,18 +218,20 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
     return ss.csr_array(ss.csc_array(one + others)[:, kept])
 
 
-def steady(s: Solid, omega: float, free: Any, start: Array | None = None) -> tuple[Array, Any]:
+def steady(s: Solid, omega: float, free: Any) -> tuple[Array, Any]:
     """Displacements (3n,) of the steady state, and the stiffness there including spin softening, by Newton's method.
 
-    ``free`` are the free ``motions``, ``start`` displacements near the steady state, if known.
+    ``free`` are the free ``motions``.
 
     Raises:
         CodeError: if no steady state is found.
     """
-    across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
     place = s.nodes.T.ravel()
+    if not omega:
+        return np.zeros_like(place), ss.csc_array(tangent(s))
+    across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
     for shares in STEPS:
-        u, K = np.zeros_like(place) if start is None else start, None
+        u, K = np.zeros_like(place), None
         for share in shares:
             u, K = _balanced(s, share * across, free, u)
             if K is None:
@@ -234,16 +249,21 @@ def factored(matrix: Any) -> Any:
 
 
 def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
-    """As ``steady``, from displacements ``u``; no stiffness if Newton's method does not converge."""
-    place = s.nodes.T.ravel()
+    """As ``steady``, from displacements ``u``; no stiffness if Newton's method does not converge.
+
+    The geometric stiffness is that of the stress which the step before predicted. With the stress of ``u``, the squares of
+    the rotations of that step, as spurious tension, make a slender solid straighten slowly (D. Magisano, L. Leonetti and
+    G. Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017) 986). Both lead to the same state, whose stiffness is returned.
+    """
+    place, stress = s.nodes.T.ravel(), None
     for _ in range(NEWTON):
-        K = ss.csc_array(tangent(s, u) - across)
+        K = ss.csc_array(tangent(s, u, stress) - across)
         out_of_balance = free.T @ (across @ (place + u) - internal_force(s, u))
         factor = factored(free.T @ K @ free)
         step = free @ factor.solve(out_of_balance)
+        stress, u = predicted(s, u, step), u + step
         if np.abs(step).max() <= 1e-10 * np.abs(place).max():
-            return u, K
-        u = u + step
+            return u, ss.csc_array(tangent(s, u) - across)
         if not np.abs(u).max() < np.abs(place).max():
             break
     return u, None
@@ -258,7 +278,6 @@ def modes(
     *,
     coriolis: bool = True,
     sections: Sequence[tuple[NDArray[np.intp], Array]] = (),
-    start: Array | None = None,
 ) -> Modes:
     """The lowest modes of a solid blade in steady rotation at ``omega`` (rad/s); shapes are the sections' mean motions.
 
@@ -270,7 +289,6 @@ def modes(
         clamp: which displacements are fixed, see ``motions``.
         coriolis: whether to include Coriolis forces.
         sections: of a curved blade, at ``STATIONS``; see ``mesh.means``.
-        start: displacements (3n,) near the steady state, if known.
 
     Raises:
         CodeError: no stable steady state at this speed.
@@ -278,7 +296,7 @@ def modes(
     begun = time.perf_counter()
     s = solid(bricks, material)
     free = motions(s, clamp)
-    _, K = steady(s, omega, free, start)
+    _, K = steady(s, omega, free)
     m = mass(s)
     B = ss.csr_array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     M = ss.kron(ss.eye_array(3), m, format="csc")

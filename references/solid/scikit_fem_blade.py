@@ -11,7 +11,6 @@ section is that from which the sections were identified.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
@@ -24,9 +23,6 @@ from .materials import Orthotropic
 from .mesh import Bricks, clamped
 
 Array = NDArray[np.float64]
-
-COARSE = 20
-"""Layers of the mesh on which the steady state is first computed: a slender solid takes many iterations to straighten."""
 
 
 class ScikitFemSolid:
@@ -87,17 +83,10 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
         CodeError: no stable steady state.
     """
     bricks, root = with_root_forces(solid, layers, ACROSS)
-    start = None
-    if omega and layers > COARSE:
-        first, hold = with_root_forces(solid, COARSE, ACROSS)
-        coarse = hexahedra.solid(first, solid.material)
-        u, _ = hexahedra.steady(coarse, omega, hexahedra.motions(coarse, hold))
-        along = CubicSpline(np.linspace(0.0, 1.0, 2 * COARSE + 1), u.reshape(3, 2 * COARSE + 1, -1), axis=1)
-        start = along(np.linspace(0.0, 1.0, 2 * layers + 1)).ravel()
     places = solid.place(STATIONS * solid.length)
     step = 2 * layers // (len(STATIONS) - 1)
     sections = [(layer(bricks, k * step), place) for k, place in enumerate(places)]
-    return hexahedra.modes(bricks, solid.material, omega, count, root, sections=sections, start=start)
+    return hexahedra.modes(bricks, solid.material, omega, count, root, sections=sections)
 
 
 CODE = ScikitFemSolid()
