@@ -14,6 +14,7 @@ frame from M.
 
 import time
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -79,11 +80,13 @@ class ExudynAncf:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        matrices = _matrices(blade, omega, elements)
-        place = np.delete(np.eye(len(matrices[0])), CLAMPED, axis=1)
-        M, C, K = (sparse.csc_array(place.T @ matrix @ place) for matrix in matrices)
+        matrices: list[Any] = [sparse.csc_array(matrix) for matrix in _matrices(blade, omega, elements)]
+        size = matrices[0].shape[0]
+        free = np.delete(np.arange(size), CLAMPED)
+        M, C, K = (matrix[free][:, free] for matrix in matrices)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
-        q = place @ vectors
+        q = np.zeros((size, vectors.shape[1]), complex)
+        q[free] = vectors
         return Modes(omega, frequencies, _shapes(q, blade.length), elements, seconds=time.perf_counter() - begun)
 
 
@@ -106,15 +109,14 @@ def _matrices(blade: Blade, omega: float, elements: int):
     ex.hold(exu, mbs, nodes[0], CLAMPED)
     mbs.Assemble()
     M, _, K = ex.linearized(exu, mbs)
-    B = np.kron(np.eye(2 * len(nodes)), SPIN)
+    M, B = sparse.csr_array(M), sparse.kron(sparse.eye_array(2 * len(nodes)), SPIN, format="csr")
     if omega:
         centrifugal = omega**2 * M @ B @ B
         reference = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Reference)
         mbs.AddObject(  # the coordinates are displacements: positions are these plus the reference
             items.ObjectGenericODE2(
                 nodeNumbers=nodes,
-                massMatrix=np.zeros_like(M),
-                stiffnessMatrix=centrifugal,
+                stiffnessMatrix=ex.sparse_matrix(exu, centrifugal),
                 forceVector=-centrifugal @ reference,
             )
         )

@@ -4,11 +4,13 @@ Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multib
 60 (2024) 533–561.
 """
 
+import sys
 from importlib import metadata
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from ..protocol import install
 from ..protocol.interface import CodeError
@@ -29,7 +31,12 @@ def version() -> str | None:
 
 
 def system() -> tuple[Any, Any, Any]:
-    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive)."""
+    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive).
+
+    Of its two builds, the one without checks of indices is taken, which is a quarter faster; Exudyn takes the other one if the
+    processor has no AVX2.
+    """
+    sys.exudynFast = True  # pyright: ignore[reportAttributeAccessIssue]  # read by Exudyn when it is imported
     import exudyn
 
     exudyn.config.printToConsole = False
@@ -61,6 +68,13 @@ def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:
         mbs.SolveStatic(settings, updateInitialValues=True, showCausingItems=False)
     except exu.ExudynError as error:
         raise CodeError(f"omega: {omega:g} rad/s: Exudyn finds no steady state ({error}); lower the speed") from error
+
+
+def sparse_matrix(exu: Any, matrix: Any) -> Any:
+    """A matrix for Exudyn's objects; with a full one every column of a numerical derivative would cost n²."""
+    container = exu.MatrixContainer()
+    container.SetWithSparseMatrix(sparse.csr_matrix(matrix))
+    return container
 
 
 def linearized(exu: Any, mbs: Any) -> tuple[Array, Array, Array]:

@@ -113,8 +113,7 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
         )
     )
     if tree.coupling.nnz:
-        coupling = exu.MatrixContainer()  # sparse: a full one makes every difference of the forces cost n²
-        coupling.SetWithSparseMatrix(sparse.block_diag([[[0.0]], tree.coupling], format="csr"))
+        coupling = ex.sparse_matrix(exu, sparse.block_diag([[[0.0]], tree.coupling]))
         mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))
     ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
