@@ -17,6 +17,7 @@ correct at zero speed, but in rotation their steady moment is missing, up to 2.7
 """
 
 import time
+from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,6 +38,9 @@ Array = NDArray[np.float64]
 
 SECTIONS = 20
 """Largest number of intervals between stations for which the coarsest level needs no more elements."""
+
+SPARE = 2
+"""Additional modes to compute, since the axial ones among them are left out."""
 
 ZERO_SHAPE = 1e-9
 """Largest lateral motion, of a vector of norm one, that counts as zero: an axial mode, whose motion pyBModes does not
@@ -204,32 +208,33 @@ def _moving(rotor: Any, blade: Blade, count: int, most: int) -> tuple[Array, NDA
     Raises:
         CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
     """
-    asked, moving = min(count, most), []
+    asked = min(count + SPARE, most)
     while True:
         found = rotor.run(asked, check_model=False)
         if not (found.frequencies > 0).all():
             raise CodeError("stiffness: not positive definite: no stable steady state at this rotor speed; lower it")
         pairs = zip(found.frequencies, found.shapes, strict=True)
-        moving = [(2 * np.pi * f, _shape(shape, blade)) for f, shape in pairs if _moves(shape)][:count]
+        moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
         if len(moving) == count or asked == most:
             break
         asked = min(2 * asked, most)
     frequencies, shapes = zip(*moving, strict=True)
-    return np.array(frequencies), np.array(shapes, complex)
+    return 2 * np.pi * np.array(frequencies), _at_stations(shapes, blade)
 
 
 def _moves(shape: Any) -> bool:
     return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > ZERO_SHAPE
 
 
-def _shape(shape: Any, blade: Blade) -> Array:
-    """(21, 4) at the common stations, by the element's cubics in bending; pyBModes's displacements are in tip radii."""
+def _at_stations(shapes: Sequence[Any], blade: Blade) -> NDArray[np.complex128]:
+    """(m, 21, 4) at the common stations, by the element's cubics in bending; pyBModes's displacements are in tip radii."""
     radius = blade.hub_radius + blade.length
-    s, at = shape.span_loc * blade.length, STATIONS * blade.length
-    out = np.zeros((len(at), 4))
-    for axis, moved, slope in ((1, shape.lag_disp, shape.lag_slope), (2, shape.flap_disp, shape.flap_slope)):
-        out[:, axis] = CubicHermiteSpline(s, moved * radius, slope)(at)
-    out[:, 3] = CubicSpline(s, shape.twist)(at)
+    s, at = shapes[0].span_loc * blade.length, STATIONS * blade.length
+    out = np.zeros((len(shapes), len(at), 4), complex)
+    for axis, name in ((1, "lag"), (2, "flap")):
+        moved, slope = (np.array([getattr(shape, f"{name}_{what}") for shape in shapes]) for what in ("disp", "slope"))
+        out[:, :, axis] = CubicHermiteSpline(s, moved * radius, slope, axis=1)(at)
+    out[:, :, 3] = CubicSpline(s, np.array([shape.twist for shape in shapes]), axis=1)(at)
     return out
 
 
