@@ -72,8 +72,13 @@ class Cached(Executor):
 
 def remembered(fn: Callable[..., Any], *args: Any) -> Any:
     """``fn(*args)``, taken from the store if it is there, computed and stored otherwise."""
+    return remembering(Serial()).submit(fn, *args).result()
+
+
+def remembering(executor: Executor) -> Executor:
+    """The executor, with the store of answers if there is one."""
     kept = opened()
-    return Cached(Serial(), kept).submit(fn, *args).result() if kept else fn(*args)
+    return Cached(executor, kept) if kept else executor
 
 
 def question(fn: Callable[..., Any], *arguments: Any) -> str:

@@ -1,5 +1,6 @@
 """``southwell report``, and the summary that every run prints at its end."""
 
+from concurrent.futures import Executor
 from pathlib import Path
 
 from ...cases.judge.results import Run
@@ -44,8 +45,8 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     return INCOMPLETE if run.unfinished else PASSED
 
 
-def show(run: Run, folder: Path) -> Path | None:
-    """Write the report and print its summary; return the path of the report.
+def show(run: Run, folder: Path, executor: Executor | None = None) -> Path | None:
+    """Write the report, its figures by the ``executor``, and print its summary; return the path of the report.
 
     Nothing is written, and None returned, if the run is unfinished and the existing report is of a complete run.
     """
@@ -54,7 +55,7 @@ def show(run: Run, folder: Path) -> Path | None:
     )
 
     keep = bool(run.unfinished) and (folder / RESULTS).exists()
-    report = None if keep else matrix_report.write(run, folder)
+    report = None if keep else matrix_report.write(run, folder, executor)
     show_tables(run)
     kept = f"{folder / RESULTS}: of an earlier run, unchanged"
     message = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"

@@ -2,6 +2,7 @@
 
 import os
 import shlex
+import shutil
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -161,6 +162,7 @@ def command(
         tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
     )
     with writing(out), ExitStack() as started:
+        started.callback(shutil.rmtree, out / SCRATCH, ignore_errors=True)  # after the processes have ended
         pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
         with writable(f"--out {out}"):
             opened = Journal(out)
@@ -170,7 +172,7 @@ def command(
             )
             try:
                 if run.cells:
-                    show(run, out)
+                    show(run, out, None if stopped or scheduler else pool)
                     if junit:
                         with writable(f"--junit {junit}", "file"):
                             atomic.write(junit, xml.render(run))

@@ -53,12 +53,14 @@ def solve(
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
-    Answers go to the journal at once. ``stop`` ends the workers of ``pool``; ``seeded`` are the faults of each task. That a
-    fault is detected is taken from the store only if no source of this package and no version of a code has changed.
+    Answers go to the journal at once. ``stop`` ends the workers of ``pool`` if the run stops; otherwise they are kept, for the
+    figures. ``seeded`` are the faults of each task. That a fault is detected is taken from the store only if no source of this
+    package and no version of a code has changed.
     """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
     watch = console.Watch()
+    complete = False
     fresh = Remembering(pool, kept)
     state = (sources.package(), *(f"{name} {version}" for name, version in sorted(about.versions.items())))
     cached = [Cached(pool, kept_before, also) for also in ((), state)] if kept_before else []
@@ -87,6 +89,7 @@ def solve(
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
         results.write(out / RESULTS, run)
+        complete = True
         if any(one.taken for one in cached):
             print(f"southwell: {_taken(cached)}", file=sys.stderr)
         return run, None
@@ -100,10 +103,10 @@ def solve(
     except OSError as error:
         stopped = Stopped(said(error), INCOMPLETE)
     finally:
-        stop()
+        if not complete:
+            stop()
         if kept_before:
             kept_before.close()
-        shutil.rmtree(scratch, ignore_errors=True)
     return replace(journal.read(kept.path), unfinished=stopped.what), stopped
 
 

@@ -1,6 +1,7 @@
 """The report of a run in GitHub-flavoured Markdown: the verdict, a heat table, then one section per case."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +10,9 @@ from matplotlib.figure import Figure
 
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
-from ...cases.verify.cached import remembered
+from ...cases.verify.cached import remembering
 from ...cases.verify.lumping import CASE as LUMPED
+from ...cases.verify.pool import Serial
 from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
@@ -31,6 +33,9 @@ FIGURES: dict[str, Draw] = {
 }
 """Figures of each blade, by the last part of the file name."""
 
+FEW = 3
+"""Number of cases whose figures take no longer to draw than other processes take to start."""
+
 LARGEST: dict[Verdict, str] = {
     "known difference": "Largest known difference",
     "pass": "Largest difference among passes",
@@ -43,8 +48,10 @@ SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a
 LEGEND = ", ".join(f"{sign} {v}{f' ({SHORT[v]})' if v in SHORT else ''}" for v, sign in SYMBOL.items())
 
 
-def write(run: Run, folder: Path) -> Path:
+def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
     """Write ``report.md`` and ``figures/*.svg`` into ``folder``; the same run gives the same bytes.
+
+    The ``executor`` draws the figures of more than ``FEW`` cases; otherwise, this thread.
 
     Raises:
         OSError: if a folder or file cannot be written.
@@ -53,8 +60,11 @@ def write(run: Run, folder: Path) -> Path:
     figures.mkdir(parents=True, exist_ok=True)
     drawn: dict[str, list[str]] = {}
     among = columns(run.cells)
-    for case in summary.cases(run):
-        for kind, image in remembered(_figures, part(run, case), case, units(run, case), among).items():
+    cases = summary.cases(run)
+    drawing = remembering(executor if executor and len(cases) > FEW else Serial())
+    asked = {case: drawing.submit(_figures, part(run, case), case, units(run, case), among) for case in cases}
+    for case, images in asked.items():
+        for kind, image in images.result().items():
             name = f"{file_name(case)}-{kind}.svg"
             atomic.write(figures / name, image)
             drawn.setdefault(case, []).append(f"figures/{name}")
