@@ -4,7 +4,6 @@ Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multib
 60 (2024) 533–561.
 """
 
-import sys
 from importlib import metadata
 from typing import Any
 
@@ -31,12 +30,7 @@ def version() -> str | None:
 
 
 def system() -> tuple[Any, Any, Any]:
-    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive).
-
-    Of its two builds, the one without checks of indices is taken, which is a quarter faster; Exudyn takes the other one if the
-    processor has no AVX2.
-    """
-    sys.exudynFast = True  # pyright: ignore[reportAttributeAccessIssue]  # read by Exudyn when it is imported
+    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive)."""
     import exudyn
 
     exudyn.config.printToConsole = False

@@ -42,6 +42,15 @@ SECTIONS = 20
 SPARE = 2
 """Additional modes to compute, since the axial ones among them are left out."""
 
+FREEDOMS = 9
+"""Freedoms of an element, those it shares counted once."""
+
+ITERATED = 500
+"""Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector."""
+
+AGREEMENT = 1e-6
+"""Relative difference between two iterated answers that is rounding."""
+
 ZERO_SHAPE = 1e-9
 """Largest lateral motion, of a vector of norm one, that counts as zero: an axial mode, whose motion pyBModes does not
 return."""
@@ -149,7 +158,8 @@ class PyBModes:
         s = element_ends(blade, elements, SECTIONS)
         with TemporaryDirectory() as folder:
             rotor = _pybmodes().RotatingBlade(_write(Path(folder), blade, omega, s, count))
-            frequencies, shapes = _moving(rotor, blade, count, most=_most(blade, len(s) - 1))
+            elements = len(s) - 1
+            frequencies, shapes = _moving(rotor, blade, count, FREEDOMS * elements, _most(blade, elements))
         return Modes(omega, frequencies, shapes, len(s) - 1, seconds=time.perf_counter() - begun)
 
 
@@ -194,32 +204,39 @@ def _write(folder: Path, blade: Blade, omega: float, s: Array, count: int) -> Pa
 
 
 def _most(blade: Blade, elements: int) -> int:
-    """The largest number of modes pyBModes can compute: nine per element; above half of them it factorises the mass matrix.
+    """The largest number of modes pyBModes can compute; above half of its freedoms it factorises the mass matrix.
 
     Without polar inertia the mass matrix is singular, so only the lower half is available.
     """
     polar = (blade.mass[:, 3, 3] > 0).any()
-    return 9 * elements if polar else 9 * elements // 2
+    return FREEDOMS * elements if polar else FREEDOMS * elements // 2
 
 
-def _moving(rotor: Any, blade: Blade, count: int, most: int) -> tuple[Array, NDArray[np.complex128]]:
+def _moving(rotor: Any, blade: Blade, count: int, freedoms: int, most: int) -> tuple[Array, NDArray[np.complex128]]:
     """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
+
+    With more than ``ITERATED`` freedoms, pyBModes iterates from a random vector, which at times misses one of two modes with
+    the same frequency. Then more modes are requested until two answers agree.
 
     Raises:
         CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
     """
     asked = min(count + SPARE, most)
+    before = np.zeros(0)
     while True:
         found = rotor.run(asked, check_model=False)
         if not (found.frequencies > 0).all():
             raise CodeError("stiffness: not positive definite: no stable steady state at this rotor speed; lower it")
         pairs = zip(found.frequencies, found.shapes, strict=True)
         moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
-        if len(moving) == count or asked == most:
+        frequencies = 2 * np.pi * np.array([f for f, _ in moving])
+        confirmed = freedoms <= ITERATED or (
+            len(before) == len(frequencies) and np.allclose(before, frequencies, rtol=AGREEMENT, atol=0.0)
+        )
+        if (len(moving) == count and confirmed) or asked == most:
             break
-        asked = min(2 * asked, most)
-    frequencies, shapes = zip(*moving, strict=True)
-    return 2 * np.pi * np.array(frequencies), _at_stations(shapes, blade)
+        before, asked = frequencies, min(2 * asked, most)
+    return frequencies, _at_stations([shape for _, shape in moving], blade)
 
 
 def _moves(shape: Any) -> bool:

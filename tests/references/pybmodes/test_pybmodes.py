@@ -3,6 +3,7 @@
 import os
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -231,3 +232,23 @@ def test_it_leaves_no_files_and_is_repeatable(monkeypatch: pytest.MonkeyPatch, t
     np.testing.assert_array_equal(first.frequencies, again.frequencies)
     np.testing.assert_array_equal(first.shapes, again.shapes)
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("freedoms", [500, 501])
+def test_a_mode_that_the_iteration_misses_is_found(freedoms: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first answer lacks one of a double pair; only with so many freedoms is it doubted."""
+    monkeypatch.setattr(pybmodes_beam, "_moves", lambda _: True)
+    monkeypatch.setattr(pybmodes_beam, "_at_stations", lambda shapes, _: np.array(shapes))
+    all_, asked = np.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]), []
+
+    def run(count: int, **_: bool) -> SimpleNamespace:
+        asked.append(count)
+        found = np.delete(all_, 1)[:count] if len(asked) == 1 else all_[:count]
+        return SimpleNamespace(frequencies=found * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(found))))
+
+    rotor = SimpleNamespace(run=run)
+    frequencies, shapes = pybmodes_beam._moving(rotor, WINDPACT, count=3, freedoms=freedoms, most=10)
+    assert asked == ([5] if freedoms == 500 else [5, 10])
+    expected = [1.0, 2.0, 3.0] if freedoms == 500 else [1.0, 2.0, 2.0]
+    np.testing.assert_allclose(frequencies, 2 * np.pi * np.array(expected), rtol=1e-6)
+    assert len(shapes) == 3
