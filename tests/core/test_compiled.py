@@ -17,8 +17,6 @@ from southwell.core.element.discretize import discretize
 BLADE = uniform_blade("blade", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
 
 FREQUENCIES = """
-import sys
-from dataclasses import replace
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
 from southwell.core.compiled import loops
