@@ -154,7 +154,7 @@ def _between(blade: Blade) -> Array:
     soft = np.flatnonzero(np.isfinite(blade.stiffness).all(axis=(0, 2)))
     k, s = blade.stiffness[:, soft[:, None], soft], blade.stations
     root = np.linalg.cholesky(k[:-1])
-    growth = np.linalg.eigvalsh(np.linalg.solve(root, np.linalg.solve(root, k[1:]).mT)) - 1.0
+    growth = np.linalg.eigvalsh(np.linalg.solve(root, np.swapaxes(np.linalg.solve(root, k[1:]), 1, 2))) - 1.0
     change = np.exp(np.abs(np.log1p(growth)).max(1, initial=0.0))
     fixed = (np.diff(s) <= _STEP * blade.length) | (len(s) > _MANY)
     found = []

@@ -81,7 +81,7 @@ def plant(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
     hinge = np.array([*slide, *turn, *turn[-2::-1], *slide[::-1]])
     stiffness = list(_stiffness(blade, ends, axes, hinge))
     joints = [hinge] * (len(ends) - 1)
-    reach = (axes.mT @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
+    reach = (np.swapaxes(axes, 1, 2) @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
     if not clamped(blade):
         free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
         joints, stiffness = [free, *joints], [np.diag(blade.root[free]), *stiffness]
@@ -91,7 +91,7 @@ def plant(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
     count = np.array([len(joint) for joint in joints])
     first = np.cumsum(count) - count
     n = int(count.sum())
-    before = np.concatenate([np.eye(3)[None], axes[:-1]]).mT
+    before = np.swapaxes(np.concatenate([np.eye(3)[None], axes[:-1]]), 1, 2)
     offset, joint_turn = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
     offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
     joint_turn[first] = before @ axes
@@ -170,9 +170,9 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     own = np.zeros((len(s), 6, 6))
     own[:, strains[:, None], strains] = section
     R = np.zeros((len(s), 6, 6))
-    R[:, :3, :3] = R[:, 3:, 3:] = axes[element].mT @ _frames(blade, s)[1]
+    R[:, :3, :3] = R[:, 3:, 3:] = np.swapaxes(axes[element], 1, 2) @ _frames(blade, s)[1]
     compliance = np.zeros((len(ends) - 1, 6, 6))
-    np.add.at(compliance, element, weight[:, None, None] * (R @ own @ R.mT))
+    np.add.at(compliance, element, weight[:, None, None] * (R @ own @ np.swapaxes(R, 1, 2)))
     stiffness = np.zeros_like(compliance)
     stiffness[:, strains[:, None], strains] = np.linalg.inv(compliance[:, strains[:, None], strains])
     first = np.array([k == list(hinge).index(strain) for k, strain in enumerate(hinge)])
@@ -191,11 +191,13 @@ def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[A
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1
     there, section = _frames(blade, s)
-    turn, lever = axes[hinge].mT @ section, skew((axes[hinge].mT @ (there - place[hinge])[..., None])[..., 0])
+    to_hinge = np.swapaxes(axes[hinge], 1, 2)
+    turn, lever = to_hinge @ section, skew((to_hinge @ (there - place[hinge])[..., None])[..., 0])
+    back = np.swapaxes(turn, 1, 2)
     m = body[:, 0, 0]
-    offset = turn @ -body[:, :3, 3:] @ turn.mT  # momentum m (v + ω × c) makes the block -m [c]×
+    offset = turn @ -body[:, :3, 3:] @ back  # momentum m (v + ω × c) makes the block -m [c]×
     first = offset + m[:, None, None] * lever
-    second = turn @ body[:, 3:, 3:] @ turn.mT - first @ lever - lever @ offset
+    second = turn @ body[:, 3:, 3:] @ back - first @ lever - lever @ offset
     sums = [np.zeros((len(hinges), *part.shape[1:])) for part in (m, first, second)]
     for total, part in zip(sums, (m, first, second), strict=True):
         np.add.at(total, hinge, part)

@@ -121,14 +121,16 @@ def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
     length = np.diff(spans).ravel()
     at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
     share = (weight / np.repeat(length, 3))[:, None, None]
-    twist = np.kron(np.eye(2), (sections.frames(untwisted, at).mT @ sections.frames(blade, at))[:, :3, :3])
+    level = np.swapaxes(sections.frames(untwisted, at), 1, 2)
+    twist = np.kron(np.eye(2), (level @ sections.frames(blade, at))[:, :3, :3])
     stiffness = stiffness_at(blade, at)
     bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
     stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
     chord = np.linalg.norm(np.diff(place[::2], axis=0), axis=1)
     longer = (length / chord)[:, None, None]  # SHARPy measures an element by its chord
-    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
-    mass = longer * (share * (twist @ mass_at(blade, at) @ twist.mT)).reshape(-1, 3, 6, 6).sum(1)
+    back = np.swapaxes(twist, 1, 2)
+    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ back)).reshape(-1, 3, 6, 6).sum(1)
+    mass = longer * (share * (twist @ mass_at(blade, at) @ back)).reshape(-1, 3, 6, 6).sum(1)
     arrays = {
         "nodes": place,
         "turn": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
