@@ -205,5 +205,6 @@ def _shapes(
     dbeta = np.zeros((*beta.shape, vectors.shape[1]), complex)
     if len(inner):  # a joint at the root has none
         beta[-len(inner) :], dbeta[-len(inner) :] = k.q[inner], dq[inner]
-    chain_vectors = np.concatenate([dbeta, twists[1:]], axis=1).reshape(-1, vectors.shape[1])
-    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), chain_vectors)
+    moved = np.concatenate([twists[1:], dbeta], axis=1).astype(np.complex128).transpose(2, 0, 1)
+    parts = np.stack([moved.real, moved.imag], axis=1).reshape(-1, *moved.shape[1:])
+    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), parts)

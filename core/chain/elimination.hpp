@@ -56,12 +56,12 @@ void solve(const Factors<D>& f, const Matrix6* back, int n, double* const (&x)[V
         }
     }
     for (int k = 0; k < n; ++k) {
-        Vector<d> here[V];
-        for (int v = 0; v < V; ++v) here[v] = transposed_times(f.ride[k], xi[v]);
+        Vector<d> here[V]{};
         for (int j = 0; j < d; ++j)
             for (int v = 0; v < V; ++v)
                 for (int i = 0; i < d; ++i) here[v][i] += f.flexibility[k][j][i] * x[v][d * k + j];
-        for (int v = 0; v < V; ++v) {
+        for (int v = 0; v < V; ++v) {  // last, since this alone waits for the element before
+            here[v] = here[v] + transposed_times(f.ride[k], xi[v]);
             for (int i = 0; i < d; ++i) x[v][d * k + i] = here[v][i];
             xi[v] = outwards(back[k], x[v] + d * k, xi[v]);
         }
@@ -101,10 +101,10 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
         add_beyond(congruence(back[k], Q), im);
         if (k == 0 && clamped) add(*clamped, 6, 6, re);
         for (int p = D - 1; p > 5; --p) {
-            const double pivot = re[p][p];
-            if (pivot < 0.0) ++count;
+            const double inverse = 1.0 / re[p][p];
+            if (inverse < 0.0) ++count;
             for (int i = 0; i < p; ++i) {
-                const double a = re[p][i] / pivot, b = -im[p][i] / pivot;
+                const double a = re[p][i] * inverse, b = -im[p][i] * inverse;
                 for (int j = 0; j <= i; ++j) {
                     re[i][j] -= a * re[p][j] - b * im[p][j];
                     im[i][j] -= a * im[p][j] + b * re[p][j];

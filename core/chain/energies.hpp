@@ -1,6 +1,8 @@
 // Quadratic forms of a chain's matrices with the modes' vectors.
 #pragma once
 
+#include <vector>
+
 #include "matrices.hpp"
 
 namespace southwell {
@@ -12,31 +14,31 @@ struct Energies {
 
 // uᵀ e u, of the real and the imaginary part of u together.
 template <int D>
-double form(const Matrix<D, D>& e, const Vector<D>& re, const Vector<D>& im) {
-    Vector<D> f{}, g{};
-    for (int j = 0; j < D; ++j)
-        for (int i = 0; i < D; ++i) f[i] += re[j] * e[j][i], g[i] += im[j] * e[j][i];
-    return dot(re, f) + dot(im, g);
+double form(const Matrix<D, D>& e, const Vector<D> (&u)[2]) {
+    Vector<D> rows[2];
+    rows_times(e, u, rows);
+    return dot(rows[0], u[0]) + dot(rows[1], u[1]);
 }
 
-// The energies of the vector with real part ``re`` and imaginary part ``im``.
+// The energies of complex vectors (m, 2, dn), by real and imaginary parts; ``out`` is zero at the start.
 template <int D>
-Energies energies(const ElementMatrices<D>& M, const ElementMatrices<D>& C, const ElementMatrices<D>& K,
-                  const Matrix6* back, const double* re, const double* im) {
+void add_energies(const ElementMatrices<D>& M, const ElementMatrices<D>& C, const ElementMatrices<D>& K,
+                  const Matrix6* back, Rows x, Energies* out) {
     constexpr int d = D - 6;
-    Energies out{0.0, 0.0, 0.0};
-    Vector6 xi{}, eta{};  // twist of end a: real and imaginary part
+    std::vector<Vector6> xi(x.count, Vector6{});  // twist of end a
     for (int k = 0; k < K.n; ++k) {
-        Vector<D> u, w;
-        for (int i = 0; i < 6; ++i) u[i] = xi[i], w[i] = eta[i];
-        for (int i = 0; i < d; ++i) u[6 + i] = re[d * k + i], w[6 + i] = im[d * k + i];
-        out.stiffness += form(K.element[k], u, w);
-        out.inertia += form(M.element[k], u, w);
-        out.gyroscopic -= dot(w, transposed_times(C.element[k], u));  // C is skew
-        xi = outwards(back[k], re + d * k, xi);
-        eta = outwards(back[k], im + d * k, eta);
+        for (int m = 0; m < x.count / 2; ++m) {
+            const double *re = x[2 * m] + d * k, *im = x[2 * m + 1] + d * k;
+            Vector<D> u[2];
+            for (int i = 0; i < 6; ++i) u[0][i] = xi[2 * m][i], u[1][i] = xi[2 * m + 1][i];
+            for (int i = 0; i < d; ++i) u[0][6 + i] = re[i], u[1][6 + i] = im[i];
+            out[m].stiffness += form(K.element[k], u);
+            out[m].inertia += form(M.element[k], u);
+            out[m].gyroscopic -= dot(u[1], transposed_times(C.element[k], u[0]));  // C is skew
+            xi[2 * m] = outwards(back[k], re, xi[2 * m]);
+            xi[2 * m + 1] = outwards(back[k], im, xi[2 * m + 1]);
+        }
     }
-    return out;
 }
 
 }  // namespace southwell

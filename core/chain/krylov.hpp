@@ -1,6 +1,10 @@
 // The block Lanczos steps of lanczos.py. Vectors (x, y) are rows of 2n numbers; a block has one or two of them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "elimination.hpp"
 
 namespace southwell {
@@ -82,26 +86,24 @@ void forward(const Operator<D>& a, Rows v, Rows w, Rows force, Rows My) {
     solve(a.factor, a.back, a.elements(), solved);
 }
 
-// Products a bᵀ of rows of n numbers with the one or two rows of b, into ``out`` (rows of two).
+// Products a bᵀ of rows of n numbers with the one or two rows of b, into ``out`` (rows of two); four rows of a at a time.
 inline void products(Rows a, Rows b, int n, double (*out)[2]) {
     const double *first = b[0], *other = b[b.count - 1];
-    int i = 0;
-    for (; i + 1 < a.count; i += 2) {  // two rows of a at a time
-        const double *p = a[i], *q = a[i + 1];
-        double p0 = 0.0, p1 = 0.0, q0 = 0.0, q1 = 0.0;
-#pragma omp simd reduction(+ : p0, p1, q0, q1)
+    for (int i = 0; i < a.count; i += 4) {
+        const int last = a.count - 1;
+        const double *p = a[i], *q = a[std::min(i + 1, last)], *r = a[std::min(i + 2, last)],
+                     *s = a[std::min(i + 3, last)];
+        double p0 = 0.0, p1 = 0.0, q0 = 0.0, q1 = 0.0, r0 = 0.0, r1 = 0.0, s0 = 0.0, s1 = 0.0;
+#pragma omp simd reduction(+ : p0, p1, q0, q1, r0, r1, s0, s1)
         for (int c = 0; c < n; ++c) {
             p0 += p[c] * first[c], p1 += p[c] * other[c];
             q0 += q[c] * first[c], q1 += q[c] * other[c];
+            r0 += r[c] * first[c], r1 += r[c] * other[c];
+            s0 += s[c] * first[c], s1 += s[c] * other[c];
         }
-        out[i][0] = p0, out[i][b.count - 1] = p1, out[i + 1][0] = q0, out[i + 1][b.count - 1] = q1;
-    }
-    for (; i < a.count; ++i) {
-        const double* p = a[i];
-        double p0 = 0.0, p1 = 0.0;
-#pragma omp simd reduction(+ : p0, p1)
-        for (int c = 0; c < n; ++c) p0 += p[c] * first[c], p1 += p[c] * other[c];
-        out[i][0] = p0, out[i][b.count - 1] = p1;
+        const double found[4][2] = {{p0, p1}, {q0, q1}, {r0, r1}, {s0, s1}};
+        for (int m = 0; m < std::min(4, a.count - i); ++m)
+            for (int v = 0; v < b.count; ++v) out[i + m][v] = found[m][v];
     }
 }
 
@@ -140,7 +142,7 @@ inline void axes(const Pairs& gram, double (&value)[2], double (&turn)[2][2]) {
 // A growing basis, and the operator on it.
 struct Basis {
     Rows vectors;      // ``limit`` rows
-    Rows projected;    // (limit, limit)
+    Rows projected;    // (m, m), m the size at most
     int size, before;  // rows that are filled, and where those of the last step begin
 };
 

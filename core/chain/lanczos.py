@@ -23,7 +23,7 @@ from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
+_VECTOR_TOLERANCE = 1e-8  # relative error of the vectors; that of the frequencies is its square, a rounding unit
 _MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 18, 4  # the same, starting from the modes of a similar pencil
@@ -91,23 +91,25 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     if near is None:
         w = a.forward(w)
     limit = min(2 * n, max(200, 8 * count))
-    basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((limit + 2, limit + 2))
-    size, before = 0, 0
     look, every = (3 * count + _FIRST_LOOK, _LOOK_EVERY) if near is None else (near.size, _LOOK_EVERY_NEAR)
+    basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((look + 2, look + 2))
+    size, before = 0, 0
     while True:
         gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
         w = w[: len(gram)]
         if not size:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
-        look = size + every
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
-        mu, z = _eigenvalues(projected[:size, :size])
+        mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
+        z = np.asarray(z, np.complex128)
         every_z, beyond = z[:, size - more :], mu[size - more : size - wanted]
         mu, z = mu[size - wanted :], z[:, size - wanted :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
+        look = size + every
+        projected = np.pad(projected, (0, look + 2 - len(projected)))
     positive = mu > 1e-12 * mu.max(initial=0.0)
     if not positive.any() or not np.isfinite(mu).all():
         raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
@@ -126,7 +128,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
         (_phases(every_z.shape[1]) @ every_z.T).real @ basis[:size],
         3 * count + _FIRST_LOOK_NEAR if near is None else size,
     )
-    return Lowest(frequencies[order], np.ascontiguousarray(x.transpose(2, 0, 1)).view(np.complex128)[..., 0], start)
+    return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
 
 def _massive(p: ChainPencil) -> tuple[Array, Array]:
@@ -170,14 +172,6 @@ def solve_error(p: ChainPencil, v: Array) -> float:
     more = left.copy()
     solve(p.factor, more)
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
-
-
-def _eigenvalues(projected: Array) -> tuple[Array, NDArray[np.complex128]]:
-    """Eigenvalues, ascending, and eigenvectors of i times the skew matrix with the upper triangle of ``projected``."""
-    upper, hermitian = np.triu(projected, 1), np.zeros(projected.shape, np.complex128)
-    hermitian.imag = upper - upper.T
-    mu, z = eigh(hermitian)
-    return mu, np.asarray(z, np.complex128)
 
 
 @lru_cache(maxsize=4)

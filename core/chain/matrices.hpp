@@ -32,8 +32,34 @@ inline Vector6 outwards(const Matrix6& back, const double* rho, const Vector6& x
     return back * sum;
 }
 
-// sign · (the matrix of element k) · (ξ_a, x) for the V vectors from v on: its parts on ξ_a and on x. ξ_a becomes ξ_b.
+// Columns ``first`` … first + W − 1 of the rows uᵀ e of V vectors.
+template <int W, int D, int V>
+void columns(const Matrix<D, D>& e, const Vector<D> (&u)[V], int first, Vector<D> (&out)[V]) {
+    double sum[V][W] = {};
+    for (int j = 0; j < D; ++j)
+        for (int m = 0; m < V; ++m)
+#pragma omp simd
+            for (int i = 0; i < W; ++i) sum[m][i] += u[m][j] * e[j][first + i];
+    for (int m = 0; m < V; ++m)
+        for (int i = 0; i < W; ++i) out[m][first + i] = sum[m][i];
+}
+
+// Rows uᵀ e of V vectors. Registers hold the sums of all columns for two vectors, of eight columns for four.
 template <int D, int V>
+void rows_times(const Matrix<D, D>& e, const Vector<D> (&u)[V], Vector<D> (&out)[V]) {
+    if constexpr (V > 2) {
+        for (int first = 0; first + 8 <= D; first += 8) columns<8>(e, u, first, out);
+        columns<D % 8>(e, u, D - D % 8, out);
+    } else {
+        for (int m = 0; m < V; ++m) out[m] = Vector<D>{};
+        for (int j = 0; j < D; ++j)
+            for (int m = 0; m < V; ++m)
+                for (int i = 0; i < D; ++i) out[m][i] += u[m][j] * e[j][i];
+    }
+}
+
+// sign · (the matrix of element k) · (ξ_a, x) for the V vectors from v on: its parts on ξ_a and on x. ξ_a becomes ξ_b.
+template <int V, int D>
 void times_element(const Matrix<D, D>& e, double sign, const Matrix6& back, int k, int v, Rows x, Rows out, Vector6* xi,
                    Vector6* on_a) {
     constexpr int d = D - 6;
@@ -42,11 +68,8 @@ void times_element(const Matrix<D, D>& e, double sign, const Matrix6& back, int 
         const double* own = x[v + m] + d * k;
         for (int i = 0; i < 6; ++i) u[m][i] = sign * xi[v + m][i];
         for (int i = 0; i < d; ++i) u[m][6 + i] = sign * own[i];
-        f[m] = Vector<D>{};
     }
-    for (int j = 0; j < D; ++j)  // a row of the matrix is a column up to the sign, as it is symmetric or skew
-        for (int m = 0; m < V; ++m)
-            for (int i = 0; i < D; ++i) f[m][i] += u[m][j] * e[j][i];
+    rows_times(e, u, f);  // a row of the matrix is a column up to the sign, as it is symmetric or skew
     for (int m = 0; m < V; ++m) {
         double* own = out[v + m] + d * k;
         for (int i = 0; i < 6; ++i) on_a[v + m][i] = f[m][i];
@@ -55,7 +78,7 @@ void times_element(const Matrix<D, D>& e, double sign, const Matrix6& back, int 
     }
 }
 
-// sign · (the matrix) · x for all rows of x into those of out, which is not x; two at a time, and all for one element at a time.
+// sign · (the matrix) · x for all rows of x into those of out, which is not x; four or two at a time, all for one element at a time.
 template <int D>
 void times(const ElementMatrices<D>& matrix, double sign, const Matrix6* back, Rows x, Rows out) {
     constexpr int d = D - 6;
@@ -64,9 +87,9 @@ void times(const ElementMatrices<D>& matrix, double sign, const Matrix6* back, R
     for (int k = 0; k < matrix.n; ++k) {
         Vector6* here = on_a.data() + static_cast<size_t>(count) * k;
         int v = 0;
-        for (; v + 1 < count; v += 2)
-            times_element<D, 2>(matrix.element[k], sign, back[k], k, v, x, out, xi.data(), here);
-        if (v < count) times_element<D, 1>(matrix.element[k], sign, back[k], k, v, x, out, xi.data(), here);
+        for (; v + 3 < count; v += 4) times_element<4>(matrix.element[k], sign, back[k], k, v, x, out, xi.data(), here);
+        for (; v + 1 < count; v += 2) times_element<2>(matrix.element[k], sign, back[k], k, v, x, out, xi.data(), here);
+        if (v < count) times_element<1>(matrix.element[k], sign, back[k], k, v, x, out, xi.data(), here);
     }
     for (int k = matrix.n - 1; k >= 0; --k) {
         for (int v = 0; v < count; ++v) {

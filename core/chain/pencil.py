@@ -101,12 +101,9 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     return ChainPencil(residual.ravel(), M, C, K, back, clamped)
 
 
-def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(dn, m) β and ξ_b of one element after the other, from vectors (dn, m) of (ρ, β)."""
-    found = matrices.twists(p.back, np.concatenate([vectors.real, vectors.imag], axis=1).T)
-    found = np.concatenate([found[..., 6:], found[..., :6]], axis=-1).reshape(len(found), -1).T
-    m = vectors.shape[1]
-    return found[:, :m] + 1j * found[:, m:]
+def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
+    """(2m, n, d) ξ_b and β of the elements, the real and the imaginary parts of vectors (dn, m) of (ρ, β) in turn."""
+    return matrices.twists(p.back, np.stack([vectors.real.T, vectors.imag.T], axis=1).reshape(-1, len(vectors)))
 
 
 def loose(p: ChainPencil) -> bool:

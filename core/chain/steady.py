@@ -22,7 +22,7 @@ _MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
 _STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a stalled step; of the next one
 _MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
-_DEGREE, LATEST = 3, 8  # of the extrapolation over speeds: degree, and number of speeds
+LATEST = 8  # number of speeds from which the next steady state is extrapolated
 _MIN_RAMP = 2.0**-8
 
 
@@ -128,9 +128,10 @@ def _converged(energy: float, before: float, rounding: float) -> bool:
 
 def rounding_energy(p: ChainPencil, shape: Shape) -> float:
     """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: a step with less energy is rounding."""
-    length = np.linalg.norm(shape.relative[:, :3, 3], axis=1)
-    weight = np.repeat(np.stack([length, np.ones_like(length)], 1), 3, axis=1)
-    return _EPS**2 * float(np.abs(np.einsum("kii,ki->", p.K[:, 6:12, 6:12], weight**2)))
+    stiffness = np.diagonal(p.K[:, 6:12, 6:12], axis1=1, axis2=2)
+    force, moment = stiffness[:, :3].sum(1), stiffness[:, 3:].sum(1)
+    squared_length = (shape.relative[:, :3, 3] ** 2).sum(1)
+    return _EPS**2 * abs(float(squared_length @ force + moment.sum()))
 
 
 def largest_strain(chain: Chain, shape: Shape) -> float:
@@ -154,21 +155,38 @@ def coordinates(chain: Chain, shape: Shape) -> Array:
 
 
 def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Shape | None:
-    """Extrapolate the shape to ``omega`` (rad/s) from the ``coordinates`` at other values of Ω²; None if none are
-    known.
+    """Extrapolate the shape to ``omega`` (rad/s) from the ``coordinates`` at known values of Ω²; None if there are none.
 
     The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
     poses in the hub's axes, of which strains are small differences, these errors would be far larger.
     """
     if not known:
         return None
-    at = np.array(list(known)) - omega**2
-    powers = (at / (np.abs(at).max() or 1.0))[:, None] ** np.arange(min(_DEGREE + 1, len(at)))
-    q, r = np.linalg.qr(powers)
-    weights = q @ np.linalg.solve(r.T, np.eye(len(r))[0])  # of the value at zero
-    found = np.einsum("k,kij->ij", weights, np.array(list(known.values())))
+    found = known[omega**2] if omega**2 in known else _extrapolated(known, omega**2)
     nodes, relative = loops.bent(chain.nodes[0], chain.between, found)
     return Shape(nodes, found[:, 6:], relative)
+
+
+def _extrapolated(known: Mapping[float, Array], square: float) -> Array:
+    """Coordinates (n, 6 or 12) at Ω² = ``square``, which is not among the known ones."""
+    at, values = np.array(list(known)) - square, np.array(list(known.values()))
+    powers = (at / np.abs(at).max()) ** np.arange(1 + degree(at, values))[:, None]
+    # the least weights that give the value at zero of every power exactly
+    weights = np.linalg.lstsq(powers, np.eye(len(powers))[0])[0]
+    return (weights @ values.reshape(len(at), -1)).reshape(values.shape[1:])
+
+
+def degree(at: Array, values: Array) -> int:
+    """Degree of the polynomial to extrapolate from ``values`` (k, …) at the abscissae ``at`` (k,), the latest last, to zero.
+
+    The terms of Newton's interpolation decrease up to the degree at which rounding errors dominate. The polynomial ends before
+    the smallest term.
+    """
+    x = at[::-1]
+    reach = np.cumprod(np.append(1.0, -x[:-1]))
+    weights = np.tril((reach / np.cumprod(x[:, None] - x + np.eye(len(x)), axis=1)).T)  # of divided differences
+    terms = np.abs(weights @ values[::-1].reshape(len(x), -1)).max(1)
+    return max(int(np.argmin(terms[1:])), 1) if len(x) > 1 else 0
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:

@@ -4,6 +4,7 @@
 #include "../chain/chain.hpp"
 #include "../chain/energies.hpp"
 #include "../chain/krylov.hpp"
+#include "../chain/shapes.hpp"
 #include "elements.hpp"
 
 namespace southwell {
@@ -127,14 +128,13 @@ inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py:
     return sized(K, [&](auto D) {
         const auto n = K.shape(0);
         const auto stiffness = elements_of<D>(K, n), gyroscopic = elements_of<D>(C, n), mass = elements_of<D>(M, n);
-        const int size = stiffness.n * (D - 6), modes = static_cast<int>(x.shape(0));
-        const double* from = items<double>(x, py::ssize_t{2} * modes * size);
-        const Matrix6* ahead = items<Matrix6>(back, stiffness.n);
+        if (x.ndim() != 3 || x.shape(1) != 2) throw std::invalid_argument("vectors must be (m, 2, dn)");
+        const int modes = static_cast<int>(x.shape(0)), size = stiffness.n * (D - 6);
+        double* from = const_cast<double*>(items<double>(x, py::ssize_t{2} * modes * size));
         Doubles out({modes, 3});
-        for (int m = 0; m < modes; ++m) {
-            const double *re = from + 2 * m * size, *im = re + size;
-            fill<Energies>(out)[m] = energies(mass, gyroscopic, stiffness, ahead, re, im);
-        }
+        std::fill_n(out.mutable_data(), out.size(), 0.0);
+        add_energies(mass, gyroscopic, stiffness, items<Matrix6>(back, n), {from, size, 2 * modes},
+                     fill<Energies>(out));
         return out;
     });
 }
@@ -146,6 +146,29 @@ inline void twists(const py::array& back, py::array& x) {
     double* data = writable<double>(x, x.size());
     to_twists(items<Matrix6>(back, n), static_cast<int>(n), static_cast<int>(d),
               {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
+}
+
+// Complex displacements and rotations (m, q, 4, 2) of q points, by real and imaginary parts, from the twists (2m, n, d) of m modes.
+inline Doubles sampled(const LawArrays& law, const py::array& nodes, const py::array& corner, const py::array& beta,
+                       const Indices& element, const py::array& zeta0, const py::array& shape, const py::array& bubble,
+                       const py::array& twists) {
+    if (twists.ndim() != 3 || twists.shape(0) % 2) throw std::invalid_argument("twists must be (2m, n, d)");
+    const py::ssize_t n = law.n, q = element.size(), rows = twists.shape(0), d = twists.shape(2);
+    const Pose *pose = items<Pose>(nodes, n + 1), *end = items<Pose>(corner, n);
+    const double* from = items<double>(twists, rows * n * d);
+    check(beta, n * (d - 6));
+    const Samples of{static_cast<int>(q), element.data(), items<Vector6>(zeta0, q), items<Matrix6>(shape, q),
+                     items<Matrix6>(bubble, q)};
+    Doubles out({rows / 2, q, py::ssize_t{4}, py::ssize_t{2}});
+    for (int p = 0; p < of.count; ++p) {
+        const auto k = of.element[p];
+        if (k < 0 || k >= n) throw std::invalid_argument("a point belongs to no element");
+        const Matrix<4, 18> at = reading(of, p, pose[k], pose[k + 1], end[k], law.law.eta[k], coordinates(beta, k));
+        for (py::ssize_t v = 0; v < rows; ++v)
+            read(at, from + v * n * d, static_cast<int>(d), static_cast<int>(k),
+                 out.mutable_data() + 8 * (v / 2 * q + p) + v % 2, 2);
+    }
+    return out;
 }
 
 inline const Matrix6* clamp(const py::array& clamped) { return clamped.size() ? items<Matrix6>(clamped, 1) : nullptr; }
@@ -247,11 +270,10 @@ struct LanczosOperator {
         return sized(K, [&](auto D) {
             const auto a = sized_as<D>();
             Rows rows = writable_rows(w, 2 * a.size());
-            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, basis.shape(0)), size, before};
-            if (rows.count < 1 || rows.count > 2 || grown.projected.count != grown.vectors.count || before < 0 ||
-                size < before || size > grown.vectors.count)
-                throw std::invalid_argument(
-                    "a block has one or two vectors, and the basis as many rows as its projection");
+            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, before};
+            if (rows.count < 1 || rows.count > 2 || before < 0 || size < before || size > grown.vectors.count ||
+                grown.projected.count < std::min(look + 2, grown.vectors.count))
+                throw std::invalid_argument("a block has one or two vectors, and the basis and its projection room");
             bool exhausted = false;
             const Pairs gram = southwell::extend(a, rows, grown, look, exhausted);
             Doubles out({gram.count, gram.count});

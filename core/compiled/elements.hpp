@@ -75,17 +75,21 @@ struct OnStrain {
 
     OnStrain(int n, int d) : residual({n, d}), M({n, d, d}), C({n, d, d}), remainder({n, d, d}), spring({n, 6, 6}) {}
 
-    // Store the pencil of element k.
+    // Store the pencil of element k, without β unless it has that.
     void set(int k, const ElementPencil& one) {
-        const auto d = residual.shape(1);
-        double *f = residual.mutable_data() + d * k, *m = M.mutable_data() + d * d * k,
-               *c = C.mutable_data() + d * d * k, *r = remainder.mutable_data() + d * d * k;
-        for (int i = 0; i < d; ++i) {
-            f[i] = one.f[i];
-            for (int j = 0; j < d; ++j)
-                m[d * i + j] = one.M[i][j], c[d * i + j] = one.C[i][j], r[d * i + j] = one.K[i][j];
-        }
+        if (residual.shape(1) == 18)
+            set_parts<18>(k, one);
+        else
+            set_parts<12>(k, one);
         fill<Matrix6>(spring)[k] = one.spring;
+    }
+
+    template <int D>
+    void set_parts(int k, const ElementPencil& one) {
+        for (int i = 0; i < D; ++i) fill<Vector<D>>(residual)[k][i] = one.f[i];
+        fill<Matrix<D, D>>(M)[k] = block<D, D>(one.M, 0, 0);
+        fill<Matrix<D, D>>(C)[k] = block<D, D>(one.C, 0, 0);
+        fill<Matrix<D, D>>(remainder)[k] = block<D, D>(one.K, 0, 0);
     }
 };
 

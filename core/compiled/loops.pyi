@@ -109,6 +109,19 @@ def quadratic_forms(K: Array, C: Array, M: Array, back: Array, x: Array) -> Arra
 def twists(back: Array, x: Array) -> None:
     """Replace ρ by ξ_b in vectors x (k, n, d), in place."""
 
+def sampled(
+    laws: StrainLaws,
+    nodes: Array,
+    corner: Array,
+    beta: Array,
+    element: NDArray[np.int64],
+    zeta0: Array,
+    shape: Array,
+    bubble: Array,
+    twists: Array,
+) -> Array:
+    """(m, q, 4, 2) real and imaginary parts of ``mode_shapes.mode_shapes`` at q points of the elements ``element`` (q,)."""
+
 def factor(K: Array, back: Array, clamped: Array) -> tuple[int, Array, Array, Array]:
     """The parts of ``elimination.Factor``; before them 2 if all pivots are positive, 1 if not, 0 if K is singular."""
 
@@ -152,7 +165,8 @@ class Operator:
             w: (k, 2n) result of the last step, k = 1 or 2; at the end its first rows are that of the new last step,
                 orthogonal to the basis.
             basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``before`` on; extended in place.
-            projected: (limit, limit) the operator on the basis, zero beyond the filled part; extended in place.
+            projected: (m, m) the operator on the basis, m at least ``look`` + 2 or ``limit``, zero beyond the filled part;
+                extended in place.
             size, before: see ``basis``; both 0 at the start.
             look: requested number of vectors.
 

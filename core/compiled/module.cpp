@@ -45,6 +45,7 @@ inline void define(py::module_& m) {
     m.def("product", &product);
     m.def("quadratic_forms", &quadratic_forms);
     m.def("twists", &twists);
+    m.def("sampled", &sampled);
     m.def("factor", &factor);
     m.def("solve", &solve_in_place);
     m.def("negative_pivots", &negative);

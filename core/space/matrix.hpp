@@ -114,17 +114,19 @@ Vector<N> operator-(Vector<N> a, const Vector<N>& b) {
 }
 
 template <int R, int C>
-Matrix<R, C> operator-(Matrix<R, C> a, const Matrix<R, C>& b) {
+Matrix<R, C> operator-(const Matrix<R, C>& a, const Matrix<R, C>& b) {
+    Matrix<R, C> out;
     for (int i = 0; i < R; ++i)
-        for (int j = 0; j < C; ++j) a[i][j] -= b[i][j];
-    return a;
+        for (int j = 0; j < C; ++j) out[i][j] = a[i][j] - b[i][j];
+    return out;
 }
 
 template <int R, int C>
-Matrix<R, C> operator*(double factor, Matrix<R, C> a) {
+Matrix<R, C> operator*(double factor, const Matrix<R, C>& a) {
+    Matrix<R, C> out;
     for (int i = 0; i < R; ++i)
-        for (int j = 0; j < C; ++j) a[i][j] *= factor;
-    return a;
+        for (int j = 0; j < C; ++j) out[i][j] = factor * a[i][j];
+    return out;
 }
 
 template <int R, int C>
@@ -177,13 +179,15 @@ int invert(Matrix<N, N>& a, int first) {
         const double pivot = a[p][p];
         if (pivot == 0.0 || !std::isfinite(pivot)) return 0;
         if (pivot < 0.0) kind = 1;
+        const double inverse = 1.0 / pivot;
         double row[N];  // of the pivot, scaled
-        for (int j = 0; j < N; ++j) row[j] = (j == p ? 1.0 : a[p][j]) / pivot;
+        for (int j = 0; j < N; ++j) row[j] = inverse * a[p][j];
+        row[p] = inverse;
         for (int i = 0; i < N; ++i) {
             const double factor = a[i][p];
-            a[i][p] = 0.0;
 #pragma omp simd
             for (int j = 0; j < N; ++j) a[i][j] -= factor * row[j];
+            a[i][p] = -factor * inverse;
         }
         for (int j = 0; j < N; ++j) a[p][j] = row[j];
     }

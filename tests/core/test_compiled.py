@@ -85,6 +85,8 @@ def test_a_block_has_one_or_two_vectors() -> None:
     for w, size in ((np.ones((3, 2 * VECTOR.size)), 0), (np.ones((1, 2 * VECTOR.size)), 21)):
         with pytest.raises(ValueError, match="one or two vectors"):
             a.extend(w, basis, projected, size, 0, 10)
+    with pytest.raises(ValueError, match="projection room"):
+        a.extend(np.ones((1, 2 * VECTOR.size)), basis, np.zeros((11, 11)), 0, 0, 10)
 
 
 def test_empty_batches() -> None:

@@ -37,13 +37,13 @@ def test_a_sweep_agrees_with_single_speeds(blade) -> None:
 @pytest.mark.numerical
 def test_the_basis_of_a_sweep_is_smaller(monkeypatch: pytest.MonkeyPatch) -> None:
     sizes = []
-    eigenvalues = lanczos._eigenvalues
+    eigh = lanczos.eigh
 
-    def recorded(projected):
-        sizes.append(len(projected))
-        return eigenvalues(projected)
+    def recorded(matrix, triangle):
+        sizes.append(len(matrix))
+        return eigh(matrix, triangle)
 
-    monkeypatch.setattr(lanczos, "_eigenvalues", recorded)
+    monkeypatch.setattr(lanczos, "eigh", recorded)
     one = solver(count=10)
     one.at(3.0)
     first = max(sizes)
@@ -143,3 +143,37 @@ def test_a_fine_sweep_takes_one_linearisation_a_speed(monkeypatch: pytest.Monkey
     for _ in solve.mesh_sweep(FLAT, speeds, 100, 6):
         pass
     assert count <= len(speeds) + 12
+
+
+@pytest.mark.parametrize("true", [1, 2, 3, 5])
+def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> None:
+    rng = np.random.default_rng(true)
+    at = np.linspace(-8.0, -1.0, 8)
+    exact = np.polynomial.polynomial.polyval(at, rng.normal(size=(true + 1, 20))).T
+    assert steady.degree(at, exact * (1.0 + 1e-14 * rng.normal(size=exact.shape))) == true
+
+
+def test_a_known_speed_is_not_extrapolated() -> None:
+    one = solver()
+    for omega in (1.0, 2.0, 5.0, 9.0):
+        solved = one.at(omega)
+    again = steady.extrapolate(one.body, one.known, -9.0)
+    assert again is not None
+    np.testing.assert_allclose(again.relative, solved.state.shape.relative, rtol=0, atol=1e-14)
+
+
+@pytest.mark.numerical
+def test_a_coned_blade_takes_hardly_more_than_two_linearisations_a_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a cubic polynomial it would take nearly three."""
+    count, linearize = 0, steady.linearize
+
+    def counted(*args):
+        nonlocal count
+        count += 1
+        return linearize(*args)
+
+    monkeypatch.setattr(steady, "linearize", counted)
+    speeds = np.linspace(0.0, 6.0, 31)
+    for _ in solve.mesh_sweep(replace(FLAT, precone=0.2), speeds, 20, 6):
+        pass
+    assert count <= 2.2 * len(speeds)
