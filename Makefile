@@ -15,12 +15,8 @@ export OPENBLAS_NUM_THREADS := 1
 
 .PHONY: verify test test-slow lint bench condense readme docs clean
 
-# the report takes up the page of closed forms, which is made again when a source of core or of the page has changed
-verify: $(INSTALLED) reports/out/closed-forms.md
-	$(BIN)/southwell verify --out reports/out
-
-reports/out/closed-forms.md: $(INSTALLED) $(shell find core cases/closed_forms reports -name '*.py')
-	$(BIN)/southwell closed-forms --out reports/out
+verify: $(INSTALLED)
+	$(BIN)/southwell verify --closed-forms --out reports/out
 
 # a few minutes; what takes longer is in test-slow; a file in one process, since its tests share fixtures
 test: $(INSTALLED)

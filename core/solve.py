@@ -177,8 +177,10 @@ def rigid_strain_bias(
     """Factor (m,) that removes the bias of rigid strains from the frequencies, and its relative uncertainty (m,).
 
     Rigid axial and torsional strains have a small compliance (``element.sections``), also in ``mesh_modes``. The bias is
-    computed on two meshes, the finer one last.
+    computed on two meshes, the finer one last; without rigid strains there is none.
     """
     meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
+    if meshes.softer is None:
+        return np.ones(count), np.zeros(count)
     coarse, fine = (meshes.bias(n, meshes.of(n).at(omega)) for n in elements)
     return without_bias(coarse, fine)

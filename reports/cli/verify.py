@@ -4,7 +4,8 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,7 @@ from ...cases.input.schema import Case
 from ...cases.judge.results import Run, Setting
 from ...cases.verify import matrix, user_results
 from ...cases.verify import names as names_of
+from ...cases.verify.cached import remembering
 from ...cases.verify.executors import executor
 from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
@@ -28,7 +30,7 @@ from ...references.protocol.process import Limits
 from ...references.protocol.store import Store
 from ..ci import junit as xml
 from ..shared import summary
-from ..shared.statuses import INCOMPLETE
+from ..shared.statuses import INCOMPLETE, PASSED
 from ..shared.writing import writable
 from . import campbell_options, measured, versions
 from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
@@ -60,6 +62,7 @@ def command(
     rpm: str | None = None,
     omega: str | None = None,
     changes: Changes = (),
+    closed_forms: bool = False,
     fresh: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
@@ -114,6 +117,9 @@ def command(
     changes
         Change a property of every blade: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone,
         pitch. May be repeated.
+    closed_forms
+        Also compare core with mechanisms that have closed-form solutions, as `southwell closed-forms` does; the page is part of
+        the report. Status 1 if a difference is above its target.
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
@@ -166,11 +172,13 @@ def command(
         pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
         with writable(f"--out {out}"):
             opened = Journal(out)
+        page = _closed_forms(pool) if closed_forms else None
         with opened as kept:
             run, stopped = solve(
                 chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
             )
             try:
+                known_forms = page(out) if page and not stopped else PASSED
                 if run.cells:
                     show(run, out, None if stopped or scheduler else pool)
                     if junit:
@@ -180,10 +188,18 @@ def command(
                 stopped = stopped or Stopped(said(error), INCOMPLETE)
             if not stopped:
                 kept.remove()
-                return summary.status(run)
+                return max(summary.status(run), known_forms)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
+
+
+def _closed_forms(pool: Executor) -> Callable[[Path], int]:
+    """Start the comparison with closed forms; the function writes the page to a folder and returns the exit status."""
+    from ..verification import closed_forms_page  # matplotlib, while the workers start
+
+    page = remembering(pool).submit(closed_forms_page.computed)
+    return lambda out: closed_forms_page.write(page.result(), out)
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:

@@ -18,6 +18,8 @@ from ..shared.writing import writable
 from .closed_forms_figure import PAGE, Array, Complex, figure, solved
 
 Found = tuple[ClosedForm, Complex, Array]
+Page = tuple[dict[str, str], list[dict[str, str]], bool]
+"""The page and its figures, by path; the rows of its table; and whether all differences are within their targets."""
 
 FOLDER = "closed-forms"
 """Sub-folder of the figures."""
@@ -34,7 +36,12 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
     out
         Output folder.
     """
-    written, rows, passed = remembered(_computed)
+    return write(remembered(computed), out)
+
+
+def write(page: Page, out: Path) -> int:
+    """Write a page to a folder, print its table, and return the exit status."""
+    written, rows, passed = page
     with writable(f"--out {out}"):
         for path, text in written.items():
             (out / path).parent.mkdir(parents=True, exist_ok=True)
@@ -47,11 +54,11 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 
 def pages() -> dict[str, str]:
     """The page and its figures as SVG, by path."""
-    return remembered(_computed)[0]
+    return remembered(computed)[0]
 
 
-def _computed() -> tuple[dict[str, str], list[dict[str, str]], bool]:
-    """The page and its figures, the rows of the table, and whether all differences are within their targets."""
+def computed() -> Page:
+    """Compare core with all closed forms."""
     found = [(form, *solved(form)) for form in FORMS]
     return _page(found), _rows(found), all(np.nanmax(off) < form.target for form, _, off in found)
 

@@ -1,5 +1,6 @@
 """Core against the closed forms that the documentation shows: what it shows is held, and a wrong core would be seen."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from matplotlib.lines import Line2D
 from southwell.cases.closed_forms import linkages
 from southwell.cases.closed_forms.closed_forms import FORMS, ClosedForm, differences, oscillating
 from southwell.cases.judge.results import Run
+from southwell.cases.verify.pool import Serial
+from southwell.reports.cli import verify
 from southwell.reports.shared.style import INK
 from southwell.reports.verification import closed_forms_figure, closed_forms_page
 from southwell.reports.verification import report as matrix_report
@@ -122,6 +125,25 @@ def test_a_core_that_misses_a_closed_form_ends_with_status_1(
     status, shown, _ = southwell(f"closed-forms --out {tmp_path}", capsys)
     assert status == 1
     assert "1.0e-06 | 1e-09 | ✘ fail" in shown
+
+
+@pytest.mark.parametrize(("error", "expected"), [(0.0, 0), (1e-6, 1)])
+def test_verify_compares_closed_forms_too(
+    few: tuple[ClosedForm, ...],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    error: float,
+    expected: int,
+) -> None:
+    first = replace(few[0], exact=lambda omega: (1 + error) * few[0].exact(omega))
+    monkeypatch.setattr(closed_forms_page, "FORMS", (first, few[1]))
+    monkeypatch.setattr(verify, "executor", lambda *_: nullcontext(Serial()))
+    run = "verify hodges-rutkowski --codes exact-beam --faults none --workers 1 --closed-forms"
+    status, shown, _ = southwell(f"{run} --out {tmp_path}", capsys)
+    assert status == expected
+    assert shown.count("1e-09 | ✘ fail") == expected
+    assert "\n## Closed forms\n" in (tmp_path / "report.md").read_text(encoding="utf-8")
 
 
 def test_a_folder_that_is_a_file_is_refused(
