@@ -1,6 +1,8 @@
 // Factors of K, solutions and the count of negative pivots, from the tip inwards; see elimination.py and completeness.py.
 #pragma once
 
+#include <algorithm>
+
 #include "matrices.hpp"
 
 namespace southwell {

@@ -35,7 +35,6 @@ struct Block {
     Block(int most, int size) : items(static_cast<size_t>(most) * size), width(size), count(most) {}
     operator Rows() { return {items.data(), width, count}; }
     double* operator[](int v) { return items.data() + static_cast<size_t>(v) * width; }
-    Rows from(int column) { return {items.data() + column, width, count}; }
 };
 
 // Two by two numbers, for blocks of one or two vectors.

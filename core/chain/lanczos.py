@@ -68,12 +68,39 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
         EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
         MissedModesError: if a mode is missing; see ``completeness``.
     """
+    a = _operator(p)
+    w = _start_vectors(p, a, near)
+    found = _converged(a, w, count, near.size if near else None)
+    z = found.vectors.T
+    x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ found.basis[:, : w.shape[1] // 2]
+    x = x.reshape(len(z), 2, -1)  # conjugate: i A⁻¹S has 1/ω at λ = −iω
+    frequencies, kappa = _quotients(p, x)
+    if not (np.abs(frequencies * found.values - 1.0) < 1e-2).all():
+        raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
+    order = np.argsort(frequencies)
+    completeness.check(p, frequencies[order], 1.0 / found.next_values)
+    x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
+    combined = (_phases(found.neighbours.shape[1]) @ found.neighbours.T).real @ found.basis
+    start = Start(combined, len(found.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
+    return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
+
+
+def _operator(p: ChainPencil) -> loops.Operator:
     try:
         factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
+    return loops.Operator(p.M, p.C, p.K, p.back, factor.flexibility, factor.ride, factor.reaction, *_massive(p))
+
+
+def _start_vectors(p: ChainPencil, a: loops.Operator, near: Start | None) -> Array:
+    """The first block (2, 2n) of the basis.
+
+    Raises:
+        UnstableError: if K is not positive definite.
+        EigensolverError: if K is lost to rounding.
+    """
     n = len(p.residual)
-    a = loops.Operator(p.M, p.C, p.K, p.back, factor.flexibility, factor.ride, factor.reaction, *_massive(p))
     w = _start(2 * n).copy() if near is None else near.vectors.copy()
     y = w[:, n:].copy()
     if p.clamped.size:
@@ -86,13 +113,39 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
             f"the stiffness of {len(p.K)} elements is lost to rounding (relative error of a solution {lost:.1e}): use "
             "fewer elements, or check units"
         )
-    if not factor.positive:
+    if not p.factor.positive:
         raise eigen.unstable()
-    if near is None:
-        w = a.forward(w)
-    limit = min(2 * n, max(200, 8 * count))
-    look, every = (3 * count + _FIRST_LOOK, _LOOK_EVERY) if near is None else (near.size, _LOOK_EVERY_NEAR)
-    basis, projected = np.empty((limit + 2, 2 * n)), np.zeros((look + 2, look + 2))
+    return a.forward(w) if near is None else w
+
+
+@dataclass(frozen=True)
+class _Ritz:
+    """The largest eigenvalues of i A⁻¹S, 1/ω, and their vectors in a basis of s vectors.
+
+    Attributes:
+        basis: (s, 2n).
+        values: (m,) ascending, positive.
+        vectors: (s, m).
+        next_values: (k,) positive ones below ``values``.
+        neighbours: (s, m + k) ``vectors``, and those of up to ``_EXTRA_MODES`` more values.
+    """
+
+    basis: Array
+    values: Array
+    vectors: NDArray[np.complex128]
+    next_values: Array
+    neighbours: NDArray[np.complex128]
+
+
+def _converged(a: loops.Operator, w: Array, count: int, first_look: int | None) -> _Ritz:
+    """Extend the basis until ``count`` modes have converged; ``first_look``: see ``Start.size``.
+
+    Raises:
+        EigensolverError: if the basis is full before, or there is no mode.
+    """
+    limit = min(w.shape[1], max(200, 8 * count))
+    look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK, _LOOK_EVERY)
+    basis, projected = np.empty((limit + 2, w.shape[1])), np.zeros((look + 2, look + 2))
     size, before = 0, 0
     while True:
         gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
@@ -101,34 +154,21 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
-        z = np.asarray(z, np.complex128)
-        every_z, beyond = z[:, size - more :], mu[size - more : size - wanted]
-        mu, z = mu[size - wanted :], z[:, size - wanted :]
-        last = z[before:]
+        z = np.asarray(z[:, size - more :], np.complex128)
+        mu, beyond, own = mu[size - wanted :], mu[size - more : size - wanted], z[:, more - wanted :]
+        last = own[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
         look = size + every
         projected = np.pad(projected, (0, look + 2 - len(projected)))
-    positive = mu > 1e-12 * mu.max(initial=0.0)
+    smallest = 1e-12 * mu.max(initial=0.0)
+    positive = mu > smallest
     if not positive.any() or not np.isfinite(mu).all():
         raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
     if error[positive].max() > 1e-6:
         raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: request fewer modes")
-    z = z[:, positive].T
-    x = np.stack([z.real, -z.imag], axis=1).reshape(-1, size) @ basis[:size, :n]  # i A⁻¹S has 1/ω at λ = −iω
-    x = x.reshape(len(z), 2, n)
-    frequencies, kappa = _quotients(p, x)
-    if not (np.abs(frequencies * mu[positive] - 1.0) < 1e-2).all():
-        raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
-    order = np.argsort(frequencies)
-    completeness.check(p, frequencies[order], 1.0 / beyond[beyond > 1e-12 * mu.max()])
-    x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
-    start = Start(
-        (_phases(every_z.shape[1]) @ every_z.T).real @ basis[:size],
-        3 * count + _FIRST_LOOK_NEAR if near is None else size,
-    )
-    return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
+    return _Ritz(basis[:size], mu[positive], own[:, positive], beyond[beyond > smallest], z)
 
 
 def _massive(p: ChainPencil) -> tuple[Array, Array]:

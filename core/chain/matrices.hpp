@@ -3,6 +3,7 @@
 // D is the number of coordinates of an element's matrix: 18, or 12 without internal coordinates.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "../space/matrix.hpp"
@@ -44,18 +45,12 @@ void columns(const Matrix<D, D>& e, const Vector<D> (&u)[V], int first, Vector<D
         for (int i = 0; i < W; ++i) out[m][first + i] = sum[m][i];
 }
 
-// Rows uᵀ e of V vectors. Registers hold the sums of all columns for two vectors, of eight columns for four.
+// Rows uᵀ e of V vectors, as many columns at a time as eight registers of four numbers can sum.
 template <int D, int V>
 void rows_times(const Matrix<D, D>& e, const Vector<D> (&u)[V], Vector<D> (&out)[V]) {
-    if constexpr (V > 2) {
-        for (int first = 0; first + 8 <= D; first += 8) columns<8>(e, u, first, out);
-        columns<D % 8>(e, u, D - D % 8, out);
-    } else {
-        for (int m = 0; m < V; ++m) out[m] = Vector<D>{};
-        for (int j = 0; j < D; ++j)
-            for (int m = 0; m < V; ++m)
-                for (int i = 0; i < D; ++i) out[m][i] += u[m][j] * e[j][i];
-    }
+    constexpr int W = std::min(D, V > 2 ? 8 : 16);
+    for (int first = 0; first + W <= D; first += W) columns<W>(e, u, first, out);
+    if constexpr (D % W != 0) columns<D % W>(e, u, D - D % W, out);
 }
 
 // sign · (the matrix of element k) · (ξ_a, x) for the V vectors from v on: its parts on ξ_a and on x. ξ_a becomes ξ_b.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "../chain/chain.hpp"
+#include "../chain/elimination.hpp"
 #include "../chain/energies.hpp"
-#include "../chain/krylov.hpp"
 #include "../chain/shapes.hpp"
 #include "elements.hpp"
 
@@ -214,74 +214,5 @@ inline int negative(const py::array& K, const py::array& C, const py::array& M, 
                                clamp(clamped), omega);
     });
 }
-
-// Lanczos's operator, with the arrays it refers to.
-struct LanczosOperator {
-    Doubles M, C, K, back, flexibility, ride, reaction, massive, lever;
-
-    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, Doubles back_, Doubles flexibility_, Doubles ride_,
-                    Doubles reaction_, Doubles massive_, Doubles lever_)
-        : M(M_),
-          C(C_),
-          K(K_),
-          back(back_),
-          flexibility(flexibility_),
-          ride(ride_),
-          reaction(reaction_),
-          massive(massive_),
-          lever(lever_) {}
-
-    template <int D>
-    Operator<D> sized_as() const {
-        const auto m = elements_of<D>(K, K.shape(0));
-        return {elements_of<D>(M, m.n),
-                elements_of<D>(C, m.n),
-                m,
-                items<Matrix6>(back, m.n),
-                factors_of<D>(flexibility, ride, reaction, m.n),
-                massive.size() ? items<Matrix6>(massive, m.n) : nullptr,
-                massive.size() ? items<Matrix6>(lever, m.n) : nullptr};
-    }
-
-    // Remove the motion without inertia from y (k, n).
-    void keep_massive(py::array& y) const {
-        sized(K, [&](auto D) {
-            const auto a = sized_as<D>();
-            southwell::keep_massive(a, writable_rows(y, a.size()));
-            return 0;
-        });
-    }
-
-    // A⁻¹S v for the rows of v (k, 2n).
-    Doubles forward(const py::array& v) const {
-        return sized(K, [&](auto D) {
-            const auto a = sized_as<D>();
-            const int n = a.size();
-            const Rows from = rows_of(v, 2 * n);
-            Doubles w({from.count, 2 * n});
-            Block force(from.count, 2 * n), My(from.count, n);
-            southwell::forward(a, from, Rows{w.mutable_data(), 2 * n, from.count}, force, My);
-            return w;
-        });
-    }
-
-    // See krylov.extend: w, basis and projected are changed; the Gram matrix, the new size and before, and exhausted.
-    py::tuple extend(py::array& w, py::array& basis, py::array& projected, int size, int before, int look) const {
-        return sized(K, [&](auto D) {
-            const auto a = sized_as<D>();
-            Rows rows = writable_rows(w, 2 * a.size());
-            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, before};
-            if (rows.count < 1 || rows.count > 2 || before < 0 || size < before || size > grown.vectors.count ||
-                grown.projected.count < std::min(look + 2, grown.vectors.count))
-                throw std::invalid_argument("a block has one or two vectors, and the basis and its projection room");
-            bool exhausted = false;
-            const Pairs gram = southwell::extend(a, rows, grown, look, exhausted);
-            Doubles out({gram.count, gram.count});
-            for (int i = 0; i < gram.count; ++i)
-                for (int j = 0; j < gram.count; ++j) out.mutable_at(i, j) = gram.item[i][j];
-            return py::make_tuple(out, grown.size, grown.before, exhausted);
-        });
-    }
-};
 
 }  // namespace southwell
