@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.text import Text
@@ -19,7 +20,7 @@ from southwell.cases.input.readers import elastodyn
 from southwell.cases.input.readers.source import Mount
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes, modes
 from southwell.core.space import spatial as sp
 from southwell.reports.campbell.shapes import coefficients, draw, scaled, write_csv
 from southwell.reports.shared.units import RPM
@@ -78,6 +79,16 @@ def test_a_uniform_beams_shapes_are_rayleighs() -> None:
         np.testing.assert_allclose(found[name].at(STATIONS), exact, atol=within)
         stiffness = 3e4 if name == "edgewise 1" else 1e4
         assert found[name].frequency == pytest.approx(ROOTS[k] ** 2 * np.sqrt(stiffness / 1.2) / 36.0, rel=1e-6)
+
+
+def test_torsion_of_one_element_is_ritzs_parabola() -> None:
+    """Clamped-free bar with θ = a s + b s² (Ritz 1909): the second term is that of the internal coordinates."""
+    soft = uniform_blade("soft", 6.0, 0.0, EA=1e9, GJ=4.0, EI_y=1e4, EI_z=1.4e4, mass=1.2, I_y=1e-3, I_z=1e-3)
+    found = mesh_modes(soft, 0.0, 1, 4)
+    torsion = found.shapes[np.abs(found.shapes[:, -1, 3]).argmax(), :, 3]
+    K, M = np.array([[1.0, 1.0], [1.0, 4.0 / 3.0]]), np.array([[1.0 / 3.0, 0.25], [0.25, 0.2]])
+    a, b = scipy.linalg.eigh(K, M)[1][:, 0]
+    np.testing.assert_allclose(torsion / torsion[-1], (a * STATIONS + b * STATIONS**2) / (a + b), atol=1e-9)
 
 
 def twisted(blade: Blade, angle: float) -> Blade:
