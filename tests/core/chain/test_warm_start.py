@@ -154,8 +154,8 @@ def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> Non
 
 
 def test_a_known_speed_is_not_extrapolated() -> None:
-    one = solver()
-    for omega in (1.0, 2.0, 5.0, 9.0):
+    one = solver(replace(FLAT, precone=0.2))  # its shape is no polynomial in Ω²
+    for omega in (1.0, 20.0, 30.0, 5.0, 9.0):
         solved = one.at(omega)
     again = steady.extrapolate(one.body, one.known, -9.0)
     assert again is not None
