@@ -136,10 +136,7 @@ def rounding_energy(p: ChainPencil, shape: Shape) -> float:
 
 def largest_strain(chain: Chain, shape: Shape) -> float:
     """Largest steady strain of the reference curve (see ``measures.relative_strain``)."""
-    law = chain.beams.law
-    real = law.length > 1e-9 * chain.scale  # not a root joint
-    strain = measures.relative_strain(law, shape.relative @ chain.corner, shape.beta)
-    return float(strain[real].max(initial=0.0))
+    return float(measures.relative_strain(chain.beams.law, shape.relative @ chain.corner, shape.beta).max(initial=0.0))
 
 
 def displaced(shape: Shape, step: Array) -> Shape:

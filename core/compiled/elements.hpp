@@ -113,13 +113,18 @@ inline py::tuple on_strain(const BeamArrays& of, const py::array& x, const py::a
     return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring);
 }
 
-// Strain (n, 6) at poses x (n, 4, 4) and β (n, 6 or 0).
-inline Doubles strains(const LawArrays& of, const py::array& x, const py::array& beta) {
+// Strain (n,) of the reference curve at poses x (n, 4, 4) and β (n, 6 or 0), see measures.relative_strain.
+inline Doubles relative_strains(const LawArrays& of, const py::array& x, const py::array& beta) {
     const Pose* pose = items<Pose>(x, of.n);
     if (beta.size()) check(beta, 6 * of.n);
-    Doubles out({of.n, py::ssize_t{6}});
-    for (int k = 0; k < of.n; ++k)
-        fill<Vector6>(out)[k] = strain(of.law, k, Place(pose[k]), coordinates(beta, k)).strain;
+    Doubles out(of.n);
+    for (int k = 0; k < of.n; ++k) {
+        Vector3 found = linear(strain(of.law, k, Place(pose[k]), coordinates(beta, k)).strain);
+        if (of.law.body_fixed) found[1] = found[2] = 0.0;
+        const Vector3 along = linear(of.law.eta[k]);
+        const double length = std::sqrt(dot(along, along));
+        out.mutable_data()[k] = length > 0.0 ? std::sqrt(dot(found, found)) / length : 0.0;
+    }
     return out;
 }
 

@@ -58,8 +58,8 @@ def on_strain(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """``beams.on_strain``."""
 
-def strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
-    """(n, 6) strains at poses x (n, 4, 4) and β (n, 6 or 0)."""
+def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
+    """``measures.relative_strain``."""
 
 def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
     """``measures.response``."""

@@ -36,7 +36,7 @@ inline void define(py::module_& m) {
         .def(py::init<const LawArrays&, Indices, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles,
                       Doubles>());
     m.def("on_strain", &on_strain);
-    m.def("strains", &strains);
+    m.def("relative_strains", &relative_strains);
     m.def("respond", &respond);
 
     m.def("chain_parts", &chain_parts);

@@ -62,11 +62,6 @@ class StrainLaw:
         object.__setattr__(self, "eta", sp.log(self.undeformed))
 
     @cached_property
-    def length(self) -> Array:
-        """(n,) distance between the ends of the undeformed elements, along the helicoid, m."""
-        return np.linalg.norm(self.eta[:, :3], axis=1)
-
-    @cached_property
     def arrays(self) -> loops.StrainLaws:
         """The law for compiled loops."""
         parts = (np.ascontiguousarray(getattr(self, name), dtype=float) for name in (*_ARRAYS, "eta"))
@@ -121,12 +116,10 @@ def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_e
 def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
     """(n,) strain of elements at ``x`` and ``beta``, mean over the length: axial and, if corotational, shear.
 
-    Bending strains are not included: they need the sections' thickness, which a beam does not state.
+    An element without length, such as a root joint, has none. Bending strains are not included: they need the sections'
+    thickness, which a beam does not state.
     """
-    components = 3 if law.measure == "corotational" else 1
-    found = loops.strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
-    strain = np.linalg.norm(found[:, :components], axis=1)
-    return np.divide(strain, law.length, out=np.zeros_like(strain), where=law.length > 0)
+    return loops.relative_strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
 
 
 def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
