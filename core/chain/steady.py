@@ -169,7 +169,7 @@ def _extrapolated(known: Mapping[float, Array], square: float) -> Array:
     at, values = np.array(list(known)) - square, np.array(list(known.values()))
     powers = (at / np.abs(at).max()) ** np.arange(1 + degree(at, values))[:, None]
     # the least weights that give the value at zero of every power exactly
-    weights = np.linalg.lstsq(powers, np.eye(len(powers))[0])[0]
+    weights = np.linalg.lstsq(powers, np.eye(len(powers))[0], rcond=None)[0]
     return (weights @ values.reshape(len(at), -1)).reshape(values.shape[1:])
 
 
