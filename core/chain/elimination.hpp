@@ -103,8 +103,8 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
         add_beyond(congruence(back[k], Q), im);
         if (k == 0 && clamped) add(*clamped, 6, 6, re);
         for (int p = D - 1; p > 5; --p) {
+            if (re[p][p] < 0.0) ++count;
             const double inverse = 1.0 / re[p][p];
-            if (inverse < 0.0) ++count;
             for (int i = 0; i < p; ++i) {
                 const double a = re[p][i] * inverse, b = -im[p][i] * inverse;
                 for (int j = 0; j <= i; ++j) {

@@ -141,7 +141,7 @@ inline void axes(const Pairs& gram, double (&value)[2], double (&turn)[2][2]) {
 // A growing basis, and the operator on it.
 struct Basis {
     Rows vectors;      // ``limit`` rows
-    Rows projected;    // (m, m), m the size at most
+    Rows projected;    // (m, m), with room for the vectors to come
     int size, before;  // rows that are filled, and where those of the last step begin
 };
 

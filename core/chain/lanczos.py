@@ -23,7 +23,7 @@ from .pencil import ChainPencil
 
 Array = NDArray[np.float64]
 
-_VECTOR_TOLERANCE = 1e-8  # relative error of the vectors; that of the frequencies is its square, a rounding unit
+_VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
 _MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 16, 2  # the same, starting from the modes of a similar pencil

@@ -1,6 +1,8 @@
 // Chains: what Python calls of core/chain.
 #pragma once
 
+#include <algorithm>
+
 #include "../chain/chain.hpp"
 #include "../chain/elimination.hpp"
 #include "../chain/energies.hpp"

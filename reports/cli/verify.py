@@ -178,7 +178,7 @@ def command(
                 chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
             )
             try:
-                known_forms = page(out) if page and not stopped else PASSED
+                of_forms = page(out) if page and not stopped else PASSED
                 if run.cells:
                     show(run, out, None if stopped or scheduler else pool)
                     if junit:
@@ -188,7 +188,7 @@ def command(
                 stopped = stopped or Stopped(said(error), INCOMPLETE)
             if not stopped:
                 kept.remove()
-                return max(summary.status(run), known_forms)
+                return max(summary.status(run), of_forms)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
