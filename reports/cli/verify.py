@@ -150,6 +150,7 @@ def command(
     options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
     options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
     options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
+    options += ["--closed-forms"] if closed_forms else []
     plain = not (rpm or omega or changes or decks.mount != Mount())
     line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
     about = Run(

@@ -143,7 +143,9 @@ def test_verify_compares_closed_forms_too(
     status, shown, _ = southwell(f"{run} --out {tmp_path}", capsys)
     assert status == expected
     assert shown.count("1e-09 | ✘ fail") == expected
-    assert "\n## Closed forms\n" in (tmp_path / "report.md").read_text(encoding="utf-8")
+    report = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert "\n## Closed forms\n" in report
+    assert "Command: `southwell verify hodges-rutkowski --codes exact-beam --closed-forms`" in report
 
 
 def test_a_folder_that_is_a_file_is_refused(
