@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 _VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
 _MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
 _FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
-_FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 16, 2  # the same, starting from the modes of a similar pencil
+_FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 
 
@@ -39,7 +39,7 @@ class Start:
     """Start of the basis for a similar pencil.
 
     Attributes:
-        vectors: (2, 2n) combinations of the lowest modes and a few more.
+        vectors: (2, 2n) combinations of the lowest modes.
         size: number of vectors of the basis at which convergence is first checked.
     """
 
@@ -80,7 +80,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     order = np.argsort(frequencies)
     completeness.check(p, frequencies[order], 1.0 / found.next_values)
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
-    combined = (_phases(found.neighbours.shape[1]) @ found.neighbours.T).real @ found.basis
+    combined = (_phases(len(z)) @ z).real @ found.basis
     start = Start(combined, len(found.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
     return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
@@ -127,14 +127,12 @@ class _Ritz:
         values: (m,) ascending, positive.
         vectors: (s, m).
         next_values: (k,) positive ones below ``values``.
-        neighbours: (s, m + k) ``vectors``, and those of up to ``_EXTRA_MODES`` more values.
     """
 
     basis: Array
     values: Array
     vectors: NDArray[np.complex128]
     next_values: Array
-    neighbours: NDArray[np.complex128]
 
 
 def _converged(a: loops.Operator, w: Array, count: int, first_look: int | None) -> _Ritz:
@@ -154,9 +152,8 @@ def _converged(a: loops.Operator, w: Array, count: int, first_look: int | None) 
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
-        z = np.asarray(z[:, size - more :], np.complex128)
-        mu, beyond, own = mu[size - wanted :], mu[size - more : size - wanted], z[:, more - wanted :]
-        last = own[before:]
+        mu, beyond, z = mu[size - wanted :], mu[size - more : size - wanted], z[:, size - wanted :]
+        last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
@@ -168,7 +165,7 @@ def _converged(a: loops.Operator, w: Array, count: int, first_look: int | None) 
         raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
     if error[positive].max() > 1e-6:
         raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: request fewer modes")
-    return _Ritz(basis[:size], mu[positive], own[:, positive], beyond[beyond > smallest], z)
+    return _Ritz(basis[:size], mu[positive], z[:, positive], beyond[beyond > smallest])
 
 
 def _massive(p: ChainPencil) -> tuple[Array, Array]:

@@ -159,31 +159,12 @@ def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Sha
     """
     if not known:
         return None
-    found = known[omega**2] if omega**2 in known else _extrapolated(known, omega**2)
+    found = known.get(omega**2)
+    if found is None:
+        at, values = np.array(list(known)) - omega**2, np.array(list(known.values()))
+        found = loops.extrapolated(at, values, loops.degree(at, values))
     nodes, relative = loops.bent(chain.nodes[0], chain.between, found)
     return Shape(nodes, found[:, 6:], relative)
-
-
-def _extrapolated(known: Mapping[float, Array], square: float) -> Array:
-    """Coordinates (n, 6 or 12) at Ω² = ``square``, which is not among the known ones."""
-    at, values = np.array(list(known)) - square, np.array(list(known.values()))
-    powers = (at / np.abs(at).max()) ** np.arange(1 + degree(at, values))[:, None]
-    # the least weights that give the value at zero of every power exactly
-    weights = np.linalg.lstsq(powers, np.eye(len(powers))[0], rcond=None)[0]
-    return (weights @ values.reshape(len(at), -1)).reshape(values.shape[1:])
-
-
-def degree(at: Array, values: Array) -> int:
-    """Degree of the polynomial to extrapolate from ``values`` (k, …) at the abscissae ``at`` (k,), the latest last, to zero.
-
-    The terms of Newton's interpolation decrease up to the degree at which rounding errors dominate. The polynomial ends before
-    the smallest term.
-    """
-    x = at[::-1]
-    reach = np.cumprod(np.append(1.0, -x[:-1]))
-    weights = np.tril((reach / np.cumprod(x[:, None] - x + np.eye(len(x)), axis=1)).T)  # of divided differences
-    terms = np.abs(weights @ values[::-1].reshape(len(x), -1)).max(1)
-    return max(int(np.argmin(terms[1:])), 1) if len(x) > 1 else 0
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:

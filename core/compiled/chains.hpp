@@ -6,6 +6,7 @@
 #include "../chain/chain.hpp"
 #include "../chain/elimination.hpp"
 #include "../chain/energies.hpp"
+#include "../chain/extrapolation.hpp"
 #include "../chain/shapes.hpp"
 #include "elements.hpp"
 
@@ -111,6 +112,29 @@ inline py::tuple bent(const py::array& first, const py::array& between, const py
         to[k + 1] = to[k] * step[k];
     }
     return py::make_tuple(nodes, relative);
+}
+
+// Values (k, …) as rows.
+inline Rows given(const py::array& values) {
+    if (values.ndim() < 1 || !values.shape(0)) throw std::invalid_argument("there are no values");
+    check(values, values.size());
+    return {const_cast<double*>(static_cast<const double*>(values.data())),
+            static_cast<long>(values.size() / values.shape(0)), static_cast<int>(values.shape(0))};
+}
+
+// Degree of the polynomial to extrapolate to zero from values (k, …) at abscissae (k,), the latest last.
+inline int degree(const py::array& x, const py::array& values) {
+    return degree_of(items<double>(x, values.shape(0)), given(values));
+}
+
+// Values (…) at zero of the polynomial of this degree through values (k, …) at abscissae (k,), in the sense of least squares.
+inline Doubles extrapolated(const py::array& x, const py::array& values, int degree) {
+    const Rows rows = given(values);
+    if (degree < 0 || degree >= rows.count)
+        throw std::invalid_argument("the degree must be below the number of values");
+    Doubles out(Shape(values.shape() + 1, values.shape() + values.ndim()));
+    at_zero(items<double>(x, rows.count), rows, degree, out.mutable_data());
+    return out;
 }
 
 // Products (k, dn) of a symmetric (sign 1) or skew (−1) matrix with the rows of x (k, dn).

@@ -100,6 +100,16 @@ def displaced(nodes: Array, relative: Array, step: Array) -> tuple[Array, Array]
 def bent(first: Array, between: Array, coordinates: Array) -> tuple[Array, Array]:
     """The poses (n+1, 4, 4) and (n, 4, 4) from the first node's, after the elements' twists ``coordinates`` (n, 6 or more)."""
 
+def degree(x: Array, values: Array) -> int:
+    """Degree of the polynomial with which to extrapolate values (k, …) at abscissae x (k,), the latest last, to x = 0.
+
+    The terms of Newton's interpolation decrease up to the degree at which rounding errors dominate. The polynomial ends before
+    the smallest term.
+    """
+
+def extrapolated(x: Array, values: Array, degree: int) -> Array:
+    """The value (…) at x = 0 of the polynomial fitted by least squares to values (k, …) at abscissae x (k,)."""
+
 def product(matrix: Array, sign: float, back: Array, x: Array) -> Array:
     """``matrices.product``."""
 

@@ -43,6 +43,8 @@ inline void define(py::module_& m) {
     m.def("chain_sum", &chain_sum);
     m.def("displaced", &displaced);
     m.def("bent", &bent);
+    m.def("degree", &degree);
+    m.def("extrapolated", &extrapolated);
     m.def("product", &product);
     m.def("quadratic_forms", &quadratic_forms);
     m.def("twists", &twists);

@@ -1,6 +1,7 @@
 """A blade as a chain: rigid bodies at nodes along the blade, joined by beam elements."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -53,7 +54,7 @@ class Chain:
         if not self.corner.size:
             object.__setattr__(self, "corner", np.tile(np.eye(4), (len(self.nodes) - 1, 1, 1)))
 
-    @property
+    @cached_property
     def between(self) -> Array:
         """(n, 4, 4) undeformed poses of nodes 1 … n, each in the frame of the previous node."""
         return self.beams.undeformed @ sp.inverse(self.corner)
@@ -100,11 +101,10 @@ def discretize(
         )
     at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
-    nodes, ends = sections.frames(blade, s), sections.frames(blade, s[1:], before=True)
-    undeformed = sp.inverse(nodes[:-1]) @ ends
+    nodes, undeformed = seg.nodes, seg.undeformed
     corner = np.tile(np.eye(4), (elements, 1, 1))
     kinked = np.isin(s[1:], blade.kinks)
-    corner[kinked] = sp.inverse(nodes[1:][kinked]) @ ends[kinked]
+    corner[kinked] = sp.inverse(nodes[1:][kinked]) @ nodes[:-1][kinked] @ undeformed[kinked]
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
@@ -127,7 +127,7 @@ def discretize(
             preload=np.zeros((elements, 6)),
             inner_preload=np.zeros((elements, 6)),
         ),
-        samples=_samples(blade, seg, at, nodes, undeformed),
+        samples=_samples(seg),
         scale=blade.length,
         force=force,
         corner=corner,
@@ -227,7 +227,6 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
     return node.ravel(), points.s.ravel(), points.weight.ravel()
 
 
-def _samples(blade: Blade, seg: StaticSolution, at: Array, nodes: Array, undeformed: Array) -> Points:
-    e = seg.at_element
-    pose = sp.inverse(nodes[:-1])[e] @ sections.frames(blade, at)
-    return bm.riding(undeformed, e, pose, seg.at_shape, seg.at_bubble, np.zeros((len(at), 6, 6)))
+def _samples(seg: StaticSolution) -> Points:
+    none = np.zeros((len(seg.at_element), 6, 6))
+    return bm.riding(seg.undeformed, seg.at_element, seg.at_pose, seg.at_shape, seg.at_bubble, none)

@@ -13,6 +13,7 @@ the same points. The inverse of a linear stiffness is not a polynomial: interval
 resolve it.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -94,7 +95,9 @@ class StaticSolution:
         shape: (q, 6, 6) twist of the point from the twist of b: f(s) f(b)⁻¹.
         bubble: (q, 6, 6) twist of the points under uniform loads, both ends clamped, scaled to unit stiffness; a load that
             causes no motion has a zero column.
-        at_element, at_shape, at_bubble: (m,), (m, 6, 6), (m, 6, 6) the same at the requested arc lengths.
+        at_element, at_pose, at_shape, at_bubble: (m,), (m, 4, 4), (m, 6, 6), (m, 6, 6) the same at the requested arc lengths.
+        nodes: (n+1, 4, 4) undeformed poses of the nodes in the hub's axes; at a kink, of the section on the tip side.
+        undeformed: (n, 4, 4) undeformed pose of each element's end section in the frame of its first node.
         shortening: (n, 6, 6) G: δᵀGδ is the shortening ½∫(|y′|² − |Γ|²) of the static shape, with transverse displacement y and
             Reissner's shear strain Γ (shear alone does not shorten), less that in the logarithmic strain δ of the ends.
         mean, slope: (n, 6, 6), (n, 6, 12) A and B of ``measures``.
@@ -108,8 +111,11 @@ class StaticSolution:
     shape: Array
     bubble: Array
     at_element: Index
+    at_pose: Array
     at_shape: Array
     at_bubble: Array
+    nodes: Array
+    undeformed: Array
     shortening: Array
     mean: Array
     slope: Array
@@ -159,17 +165,18 @@ def _between(blade: Blade) -> Array:
     fixed = (np.diff(s) <= _STEP * blade.length) | (len(s) > _MANY)
     found = []
     for i in np.flatnonzero(change > np.where(fixed, _PIECE, _LARGE)):
-        g = growth[i][growth[i] != 0.0]
-        t = 0.0
-        while (t := t + _stride(1.0 + t * g, g)) < 1.0:
+        for t in _pieces(float(growth[i].max()), float(growth[i].min())):
             found.append(s[i] + t * (s[i + 1] - s[i]))
     return np.array(found)
 
 
-def _stride(size: Array, slope: Array) -> float:
-    """Largest step of t in which none of the sizes (c,), with these slopes (c,), changes by more than ``_PIECE``."""
-    allowed = np.where(slope > 0, _PIECE - 1.0, 1.0 - 1.0 / _PIECE)
-    return float((allowed * size / np.abs(slope)).min())
+def _pieces(fastest: float, slowest: float) -> Iterator[float]:
+    """Where to divide 0 < t < 1, so that no ``1 + t g`` with g between these values changes by more than ``_PIECE``."""
+    before = 1.0 / fastest if fastest > 0.0 else np.inf  # distances of the nearest poles from the interval's start
+    beyond = -1.0 / slowest if slowest < 0.0 else np.inf
+    t = 0.0
+    while (t := t + min((_PIECE - 1.0) * (before + t), (1.0 - 1.0 / _PIECE) * (beyond - t))) < 1.0:
+        yield t
 
 
 def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolution:
@@ -183,12 +190,16 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     at = np.zeros(0) if at is None else at
     interval = np.clip(np.searchsorted(points.start, at, side="right") - 1, 0, None)
     until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
-    first = frames(blade, nodes[:-1])
-    pose = sp.inverse(first)[element][:, None] @ frames(blade, s.ravel()).reshape(*s.shape, 4, 4)
+    n = len(nodes) - 1
+    placed, inside, wanted = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
+    ends = frames(blade, nodes[1:], before=True) if blade.kinks else placed[1:]
+    to_first = sp.inverse(placed[:-1])
+    pose = to_first[element][:, None] @ inside.reshape(*s.shape, 4, 4)
+    undeformed = to_first @ ends
     lever = sp.adjoint(pose)
     soft = compliance(blade, s.ravel()).reshape(*s.shape, 6, 6)
     turn = lever @ soft @ np.swapaxes(lever, -1, -2)
-    start = np.searchsorted(element, np.arange(len(nodes) - 1))
+    start = np.searchsorted(element, np.arange(n))
 
     def over(weights: Array, values: Array) -> Array:
         """Weighted sums over the Gauss points of each interval, times its length: (i, w, k, l)."""
@@ -213,8 +224,8 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], there @ stiffness[at_element]
     size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
     load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
-    inside, _, total = running(load)
-    carried = total[element][:, None] - inside  # beyond each point
+    nearer, _, total = running(load)
+    carried = total[element][:, None] - nearer  # beyond each point
     loose, there, tip = running(turn @ carried)
     bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
     at_bubble = there - at_shape @ tip[at_element]
@@ -223,7 +234,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
     static = local @ stiffness[element][:, None]
     loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
-    last = sp.log(sp.inverse(first) @ frames(blade, nodes[1:], before=True))
+    last = sp.log(undeformed)
     length = np.diff(nodes)[element][:, None, None]
     part = (s - nodes[element][:, None])[..., None] / length
     rate = turn @ stiffness[element][:, None]
@@ -238,8 +249,11 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         shape=shape,
         bubble=bubble @ unit[q],
         at_element=at_element,
+        at_pose=to_first[at_element] @ wanted,
         at_shape=at_shape,
         at_bubble=at_bubble @ unit[at_element],
+        nodes=placed,
+        undeformed=undeformed,
         shortening=shortening,
         mean=mean,
         slope=slope,
