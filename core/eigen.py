@@ -77,12 +77,21 @@ def scaling(M: Array, C: Array, K: Array) -> Array:
         UnstableError: if a coordinate has no stiffness, apart from rounding.
         EigenError: if an entry is not finite.
     """
-    _check_finite(M, C, K)
-    k, m = np.diagonal(K), np.diagonal(M)
+    check_finite(M, C, K)
+    k = np.diagonal(K)
+    check_stiffness(k, np.diagonal(M))
+    return 1.0 / np.sqrt(k)
+
+
+def check_stiffness(k: Array, m: Array) -> None:
+    """Check that coordinates with stiffness k and mass m (n,), the diagonals of K and M, have a stiffness.
+
+    Raises:
+        UnstableError: if one has none, apart from rounding.
+    """
     usual = np.median(k[m > 0] / m[m > 0]) if (m > 0).any() else 1.0
     if (k <= 1e-14 * usual * m).any():
         raise unstable()
-    return 1.0 / np.sqrt(k)
 
 
 @dataclass(frozen=True)
@@ -125,7 +134,7 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     Raises:
         EigenError: if LAPACK does not converge, or an entry is not finite.
     """
-    _check_finite(M, C, K)
+    check_finite(M, C, K)
     n = len(M)
     Z, W = rigid or (np.zeros((n, 0)), np.zeros((n, 0)))
     k, m = np.abs(np.diagonal(K)), np.diagonal(M)
@@ -174,7 +183,8 @@ def _by_mass(M: Array) -> tuple[Array, Array]:
     return (vectors[:, ~massless], vectors[:, massless]) if massless.any() else (np.eye(len(M)), np.zeros((len(M), 0)))
 
 
-def _check_finite(*matrices: Array) -> None:
+def check_finite(*matrices: Array) -> None:
+    """Raise ``EigenError`` if an entry is not finite."""
     if not all(np.isfinite(a).all() for a in matrices):
         raise EigenError(
             "eigenvalues: the matrices are not finite: an implausibly large mass, stiffness or speed; check units"

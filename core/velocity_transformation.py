@@ -1,7 +1,7 @@
 """A blade's modes by the method of Park et al. (2010): bodies, joints, B, M*, Q*, partition, linearisation, eigenproblem.
 
 The bodies and elements are those of ``solve``, which works with the twists of the bodies and never forms B. Here they form a
-mechanism in relative coordinates with dense matrices: the same result by the paper's method, for some tens of elements.
+mechanism in relative coordinates with a dense stiffness: the same result by the paper's method, for some tens of elements.
 """
 
 import time
@@ -22,11 +22,12 @@ from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
 from .modes import Modes
-from .multibody import equilibrium, linearization
+from .multibody import equilibrium
 from .multibody.dynamics import unbalanced
 from .multibody.loops import size_of
-from .multibody.lowest import Definite, definite, lowest
+from .multibody.lowest import lowest
 from .multibody.mechanism import MechanismError, at_rate
+from .multibody.rotating import Rotating, rotating
 from .multibody.spanning import compile_tree
 from .multibody.state import State, state_at
 from .multibody.strained import out_of_range
@@ -35,7 +36,7 @@ from .space import spatial as sp
 
 Array = NDArray[np.float64]
 
-MAX_ELEMENTS = 200  # dense matrices with 12 coordinates per element: gigabytes and minutes above this
+MAX_ELEMENTS = 200  # the time grows with their cube
 _ORDER = 4  # of the extrapolation over speeds
 _CONVERGED = 1e-13  # largest last correction of a steady state, rad, or a fraction of the blade's length (at least 1 m)
 _BALANCED = 1e-8  # largest distance from the steady state, in the same unit
@@ -107,36 +108,34 @@ def sweep(
         if not np.isfinite(omega):
             raise ValueError(f"omega: {omega}: give a finite rotor speed in rad/s")
         begun = time.perf_counter()
-        try:
-            linear = _about_steady_state(tree, body, omega, effects, known)
-        except (SteadyStateError, eigen.UnstableError):
-            if not known:
-                raise
-            linear = _about_steady_state(tree, body, omega, effects, {})  # without extrapolation from other speeds
+        linear = _about_steady_state(tree, body, omega, effects, known)
         found = lowest(linear.pencil, count, found)
         known = dict([*known.items(), (omega**2, linear.corrected)][-_ORDER - 1 :])
-        shapes = _shapes(body, linear.about, found.vectors)
+        shapes = _shapes(body, linear, found.vectors)
         yield Modes(omega, found.frequencies, shapes, body.elements, seconds=time.perf_counter() - begun)
 
 
 @dataclass(frozen=True)
 class _Linear:
-    """M̂, Ĉ, K̂ about a state, factored, and Newton's correction of the state, −K̂⁻¹ Q̂ over the free coordinates."""
+    """M, C, K about a state, and Newton's correction of the state, −K⁻¹ Q over the free coordinates."""
 
-    about: linearization.Linearization
-    pencil: Definite
+    state: State
+    pencil: Rotating
     correction: Array
 
     @property
     def corrected(self) -> Array:
         """The coordinates (n,) after the correction."""
-        q = self.about.state.q.copy()
-        q[self.about.partition.free] += self.correction
+        q = self.state.q.copy()
+        q[self.pencil.free] += self.correction
         return q
 
 
 def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects, known: dict[float, Array]) -> _Linear:
-    """The linearisation about the steady state at ``omega`` (rad/s), extrapolated from the known ones if there are any.
+    """The linearisation about the steady state at ``omega`` (rad/s).
+
+    Newton's method starts from the known steady states or, without any, from the undeformed blade. Where it fails,
+    ``equilibrium.steady`` finds the state.
 
     Raises:
         SteadyStateError: no steady state at this speed.
@@ -144,8 +143,11 @@ def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects,
     """
     here = replace(tree, mechanism=at_rate(tree.mechanism, "hub.rz", omega))
     try:
-        near = _corrected(here, _extrapolated(known, omega), effects) if known else None
-        found = near or _linear(here, equilibrium.steady(here), effects)
+        found = _corrected(here, _extrapolated(known, omega, np.zeros(len(tree.coordinates))), effects)
+    except (MechanismError, eigen.UnstableError):  # at a state that is no equilibrium
+        found = None
+    try:
+        found = found or _linear(here, equilibrium.steady(here), effects)
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
     except eigen.UnstableError as error:
@@ -160,10 +162,10 @@ def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects,
     return found
 
 
-def _extrapolated(known: dict[float, Array], omega: float) -> Array:
-    """Coordinates (n,) by the polynomial in Ω² through the known ones."""
+def _extrapolated(known: dict[float, Array], omega: float, undeformed: Array) -> Array:
+    """Coordinates (n,) by the polynomial in Ω² through the known ones; ``undeformed`` without any."""
     at = omega**2
-    return sum((prod((at - y) / (x - y) for y in known if y != x) * q for x, q in known.items()), np.zeros(()))
+    return sum((prod((at - y) / (x - y) for y in known if y != x) * q for x, q in known.items()), undeformed)
 
 
 def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
@@ -171,7 +173,7 @@ def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
     last = np.inf
     while True:
         found = _linear(tree, state_at(tree, q), effects)
-        k, free = found.about.state.kinematics, found.about.partition.free
+        k, free = found.state.kinematics, found.pencil.free
         unit = np.where(tree.screw[free, 3:].any(1), 1.0, size_of(k.poses))
         size = float(np.abs(found.correction / unit).max(initial=0.0))
         if not size <= 0.5 * last or out_of_range(tree, k.poses):
@@ -182,29 +184,21 @@ def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
 
 
 def _linear(tree: Tree, state: State, effects: Effects) -> _Linear:
-    of = linearization.about(tree, state)
-    pencil = definite(of.M, of.C if effects.coriolis else np.zeros_like(of.C), of.K)
-    left = unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[of.partition.free]
-    return _Linear(of, pencil, -pencil.displacement(left))
+    pencil = rotating(state, effects.coriolis)
+    left = unbalanced(tree, state.kinematics, state.cartesian, state.q, state.v)[pencil.free]
+    return _Linear(state, pencil, -pencil.solve(left[:, None])[:, 0])
 
 
-def _shapes(
-    body: Chain, linear: linearization.Linearization, vectors: NDArray[np.complex128]
-) -> NDArray[np.complex128]:
-    """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the independent coordinates."""
-    k, n = linear.state.kinematics, len(body.nodes)
-    dq = np.zeros((len(k.q), vectors.shape[1]), complex)
-    dq[linear.partition.free] = linear.partition.spread(vectors)  # δq = R δq_I
+def _shapes(body: Chain, linear: _Linear, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, 21, 4) mode shapes at the common stations from vectors (i, m) over the free coordinates."""
+    k, n, m = linear.state.kinematics, len(body.nodes), vectors.shape[1]
     nodes = k.poses[1 : n + 1]  # after the hub, whose axes coincide with the ground's
-    carries = linear.tree.carries[1 : n + 1].astype(float)
-    each = (k.J.T[:, :, None] * dq[:, None, :]).reshape(len(dq), -1)
-    ground = (carries @ each).reshape(n, 6, -1)  # δZ = B δq
-    twists = sp.adjoint(sp.inverse(nodes)) @ ground  # in the nodes' axes
-    inner = linear.tree.inner[:, None] + np.arange(6)  # β of each element; none where the mass is lumped
+    parts = linear.pencil.twists(np.stack([vectors.real, vectors.imag], axis=2).reshape(-1, 2 * m))
+    ground, of_beta = np.split(parts.reshape(-1, 6, 2 * m), [len(k.poses)])  # δZ = B δq
+    twists = sp.adjoint(sp.inverse(nodes[1:])) @ ground[2 : n + 1]  # in the nodes' axes
     beta = np.zeros((n - 1, body.beams.inner))
-    dbeta = np.zeros((*beta.shape, vectors.shape[1]), complex)
-    if len(inner):  # a joint at the root has none
-        beta[-len(inner) :], dbeta[-len(inner) :] = k.q[inner], dq[inner]
-    moved = np.concatenate([twists[1:], dbeta], axis=1).astype(np.complex128).transpose(2, 0, 1)
-    parts = np.stack([moved.real, moved.imag], axis=1).reshape(-1, *moved.shape[1:])
-    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), parts)
+    dbeta = np.zeros((*beta.shape, 2 * m))  # β of each element; none where the mass is lumped
+    if len(of_beta):  # a joint at the root has none
+        beta[-len(of_beta) :], dbeta[-len(of_beta) :] = k.q[k.tree.joints :].reshape(-1, 6), of_beta
+    moved = np.concatenate([twists, dbeta], axis=1).transpose(2, 0, 1)
+    return mode_shapes(body, Shape(nodes, beta, sp.inverse(nodes[:-1]) @ nodes[1:]), moved)

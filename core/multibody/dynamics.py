@@ -14,7 +14,7 @@ from ..element import beams as bm
 from ..element.measures import response
 from ..space import spatial as sp
 from ..space.inertia import transformed
-from .congruence import congruent, stretched
+from .congruence import add_springs, congruent
 from .kinematics import Kinematics, projected
 from .mechanism import Load, MechanismError, Spring
 from .tree import Batch, Tree
@@ -268,17 +268,29 @@ def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> A
 def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Array]:
     """Analytic M*, C*, K* (n, n) of τ with respect to accelerations, velocities and coordinates.
 
-    M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + G with G_kj = −(J_j × J_k)ᵀ f_j for j beyond k, f_j the
-    total wrench on all bodies that coordinate j carries: the rotation of the screws relative to the forces they transmit.
+    M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``of_joints``.
     """
     M, C, K = congruent(k, c.row, c.column, c.blocks)
-    carried = tree.carries.T.astype(float) @ c.g[: len(tree.bodies)]  # f_j
-    force = -(np.swapaxes(sp.ad(k.J.T), -1, -2) @ carried[..., None])[..., 0]  # J_j ×* f_j
-    K += tree.beyond.T * (k.J.T @ force.T)
-    for at, spring in stretched(k, c.ends, c.stiffness):
-        K[np.ix_(at, at)] += spring
+    j = tree.joints
+    K[:j, :j] += of_joints(tree, k, c)
     for s in tree.mechanism.coordinate_springs:
-        j = tree.coordinate(s.coordinate)
-        K[j, j] += s.stiffness
-        C[j, j] += s.damping
+        i = tree.coordinate(s.coordinate)
+        C[i, i] += s.damping
     return M, C, K
+
+
+def of_joints(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
+    """Springs on coordinates and between bodies, and G (j, j): the part of K* that is not a projection of K.
+
+    G_ik = −(J_i × J_k)ᵀ f_i for i beyond k, f_i the total wrench on all bodies that coordinate i carries: the rotation of the
+    screws relative to the forces they transmit.
+    """
+    j = tree.joints
+    carried = tree.carries[:, :j].T.astype(float) @ c.g[: len(tree.bodies)]  # f_i
+    force = -(np.swapaxes(sp.ad(k.J.T[:j]), -1, -2) @ carried[..., None])[..., 0]  # J_i ×* f_i
+    K = tree.beyond[:j, :j].T * (k.J.T[:j] @ force.T)
+    add_springs(k, c.ends, c.stiffness, K)
+    for s in tree.mechanism.coordinate_springs:
+        i = tree.coordinate(s.coordinate)
+        K[i, i] += s.stiffness
+    return K

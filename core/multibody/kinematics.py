@@ -67,35 +67,46 @@ class Kinematics:
 
 def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
     """Poses (b, 4, 4) of the bodies and screws J (6, n) at coordinates q (n,)."""
+    j, groups = tree.joints, tree.groups
+    q, screw = q[:j], tree.screw[:j]
     whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # full turns, removed before the exponential's series
-    amount = np.where(tree.screw[:, 3:].any(1), q - whole, q)
-    steps = tree.fixed @ sp.exp(tree.screw * amount[:, None])
-    groups = tree.groups
-    series = np.append(steps, np.eye(4)[None], axis=0)[groups.members]  # of the links of a group, one after the other
+    amount = np.where(screw[:, 3:].any(1), q - whole, q)
+    steps = tree.fixed[:j] @ sp.exp(screw * amount[:, None])
+    before = groups.before[: len(groups.before) - len(tree.inner)]
+    series = np.append(steps, np.eye(4)[None], axis=0)[
+        groups.members[: len(before)]
+    ]  # of a group's links, one after the other
     for k in range(1, series.shape[1]):
         series[:, k] = series[:, k - 1] @ series[:, k]
     base = np.empty((len(series) + 1, 4, 4))
     base[-1] = np.eye(4)  # the ground, so that index −1 finds it
-    for j, before in enumerate(groups.before):
-        base[j] = base[before] @ series[j, -1]
-    series = base[groups.before][:, None] @ series
-    links = np.append(series.reshape(-1, 4, 4)[groups.place], np.eye(4)[None], axis=0)
-    # a screw is invariant under motion along it
-    J = (sp.adjoint(links[:-1]) @ tree.screw[..., None])[..., 0].T
+    for g, parent in enumerate(before):
+        base[g] = base[parent] @ series[g, -1]
+    series = base[before][:, None] @ series
+    links = np.append(series.reshape(-1, 4, 4)[groups.place[:j]], np.eye(4)[None], axis=0)
+    J = np.zeros((6, len(tree.coordinates)))
+    J[:, :j] = (sp.adjoint(links[:-1]) @ screw[..., None])[..., 0].T  # a screw is invariant under motion along it
     return links[tree.link] @ tree.on_link, J
 
 
 def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
     """Poses, screws and twists at coordinates, velocities and accelerations, each (n,)."""
     x, J = poses(tree, q)
-    Y = tree.beyond @ (J * v).T  # of the links that the screws move with
+    Y = _before(tree, J * v)  # of the links that the screws move with
     J1 = _cross(Y, J)
-    A = tree.beyond @ (J * a + J1 * v).T
+    A = _before(tree, J * a + J1 * v)
     J2 = _cross(A, J) + _cross(Y, J1)
     carries = tree.carries.astype(float)
     Y = carries @ (J * v).T  # Y = B v (eq. 3)
     A = carries @ (J * a + J1 * v).T  # Ẏ = B v̇ + Ḃ v (eq. 4)
     return Kinematics(tree, q, x, J, J1, J2, Y, A)
+
+
+def _before(tree: Tree, twists: Array) -> Array:
+    """(n, 6) sum of the twists (6, n) of the coordinates before each one."""
+    out, j = np.zeros(twists.T.shape), tree.joints
+    out[:j] = tree.beyond[:j, :j] @ twists[:, :j].T
+    return out
 
 
 def projected(k: Kinematics, wrenches: Array, J: Array | None = None) -> Array:

@@ -105,6 +105,11 @@ class Tree:
     def _number(self) -> dict[str, int]:
         return {name: j for j, name in enumerate(self.coordinates)}
 
+    @property
+    def joints(self) -> int:
+        """Number of coordinates of joints, which come before the internal ones of beams."""
+        return int(self.inner[0]) if len(self.inner) else len(self.coordinates)
+
     def body(self, name: str) -> int:
         """Index of a body; −1 is the ground."""
         return -1 if name == GROUND else self.bodies.index(name)
