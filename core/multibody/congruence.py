@@ -31,11 +31,6 @@ def congruent(k: Kinematics, row: Index, column: Index, blocks: Array) -> tuple[
     return M, C, K
 
 
-def over_joints(p: "Places", J: Array, blocks: NDArray[Any]) -> NDArray[Any]:
-    """Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies."""
-    return _projected(p, J, J[None], blocks[:, None])[0]
-
-
 def add_springs(k: Kinematics, ends: Index, stiffness: Array, out: Array) -> None:
     """Add to ``out`` (j, j) the stiffness of springs (s, 6, 6) between two bodies (s, 2), −1 the ground.
 
@@ -46,12 +41,11 @@ def add_springs(k: Kinematics, ends: Index, stiffness: Array, out: Array) -> Non
     spring, at = np.nonzero(moves[ends[:, 1]] != moves[ends[:, 0]])
     number = np.bincount(spring, minlength=len(ends))
     column = np.arange(len(at)) - (np.cumsum(number) - number)[spring]
-    strains, J = np.full((len(ends), number.max(initial=0)), -1), np.zeros((len(ends), number.max(initial=0), 6))
+    most = int(number.max(initial=0))
+    strains, J = np.full((len(ends), most), -1), np.zeros((len(ends), most, 6))
     strains[spring, column] = at
     J[spring, column] = np.where(moves[ends[spring, 1], at], 1.0, -1.0)[:, None] * k.J.T[at]
-    one, other = (
-        np.broadcast_to(x, (*strains.shape, strains.shape[1])) for x in (strains[:, :, None], strains[:, None])
-    )
+    one, other = np.broadcast_arrays(strains[:, :, None], strains[:, None])
     there = (one >= 0) & (other >= 0)
     np.add.at(out, (one[there], other[there]), (J @ stiffness @ np.swapaxes(J, 1, 2))[there])
 
@@ -93,6 +87,11 @@ def places(tree: Tree, at: Index, row: Index, column: Index) -> Places:
     members = place[groups.members]
     by_row, by_column = (entries[of][:, of] for entries in (by_row, by_column))
     return Places(of, rows, columns, by_row, by_column, rows[:, g] * columns[:, h], members[g], members[h])
+
+
+def over_joints(p: Places, J: Array, blocks: NDArray[Any]) -> NDArray[Any]:
+    """Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies."""
+    return _projected(p, J, J[None], blocks[:, None])[0]
 
 
 def _projected(p: Places, J: Array, right: Array, blocks: NDArray[Any]) -> NDArray[Any]:

@@ -3,9 +3,8 @@
 A⁻¹S is skew in the A product, A = diag(K, M), so the basis is orthonormal in that product, and A times the basis is stored too.
 A step takes one solution with K and two products; with eight vectors in a block these take hardly longer than with one, and
 double frequencies are found. The first block consists of random vectors after a step, or of random combinations of modes of a
-similar problem. A count proves that no
-mode is missing: H(ω) = K + iωC − ω²M has as many negative eigenvalues as there are frequencies below ω (Sylvester's law of
-inertia). If the count differs or the basis becomes long, the dense solver of ``eigen`` is used.
+similar problem. A count proves that no mode is missing. If it differs or the basis becomes long, the dense solver of ``eigen``
+is used.
 """
 
 import numpy as np

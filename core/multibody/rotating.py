@@ -24,6 +24,7 @@ from .congruence import Places, over_joints, places
 from .dynamics import of_joints
 from .kinematics import Kinematics
 from .partition import free_coordinates
+from .screws import Screws, diagonal, of_bodies, onto_joints, screws
 from .state import State
 
 Array = NDArray[np.float64]
@@ -32,34 +33,6 @@ Index = NDArray[np.intp]
 _LAPACK: Any = lapack
 _SAME = 1e-9  # largest difference between the bodies' twists, as a fraction of the twist
 _PANEL = 64  # rows of LAPACK's blocks
-
-
-@dataclass(frozen=True)
-class _Groups:
-    """Coordinates of joints that move the same bodies, in g groups of up to c (see ``tree.Groups``).
-
-    Attributes:
-        members: (g, c) their places among f coordinates; f pads.
-        place: (f,) position of each coordinate in the flattened ``members``.
-        screws: (g, 6, c) J, with zeros for padding.
-        moves: (b, g) 1: the group moves the body; else 0.
-    """
-
-    members: Index
-    place: Index
-    screws: Array
-    moves: Array
-
-
-def _groups(k: Kinematics, joints: Index) -> _Groups:
-    groups, f = k.tree.groups, len(joints)
-    last = int(groups.of[joints].max(initial=-1)) + 1
-    number = np.full(len(k.q) + 1, f)
-    number[joints] = np.arange(f)
-    members = number[groups.members[:last]]
-    screws = np.append(k.J[:, joints], np.zeros((6, 1)), axis=1)[:, members].transpose(1, 0, 2)
-    first = groups.members[:last, 0]
-    return _Groups(members, groups.place[joints], np.ascontiguousarray(screws), k.tree.carries[:, first].astype(float))
 
 
 @dataclass(frozen=True)
@@ -98,7 +71,7 @@ class Rotating:
 
     def twists(self, x: Array) -> Array:
         """B x (6 (b + m), w) for x (n, w): the twists of the bodies in the ground's axes, then β."""
-        return np.concatenate([self._of_bodies(x[: self._f]), x[self._f :]])
+        return np.concatenate([of_bodies(self._screws, x[: self._f]), x[self._f :]])
 
     def inertia(self, x: Array) -> Array:
         """M x (n, w) for x (n, w)."""
@@ -118,9 +91,9 @@ class Rotating:
     def solve(self, force: Array) -> Array:
         """K⁻¹ f (n, w) for f (n, w)."""
         f, reach = self._f, self._reach
-        load = force[:f] - self._onto_joints(self._reached @ force[f:])
+        load = force[:f] - onto_joints(self._screws, self._reached @ force[f:])
         joints = _LAPACK.dpotrs(self._root, load, lower=1)[0]
-        return np.concatenate([joints, self._flexibility @ force[f:] - reach @ self._of_bodies(joints)])
+        return np.concatenate([joints, self._flexibility @ force[f:] - reach @ of_bodies(self._screws, joints)])
 
     def below(self, omega: float) -> int:
         """Number of frequencies below ``omega`` (rad/s): of negative eigenvalues of H(ω), by Sylvester's law of inertia."""
@@ -134,25 +107,13 @@ class Rotating:
         return len(self.on_joints)
 
     @cached_property
-    def _groups(self) -> _Groups:
-        return _groups(self.kinematics, self.free[: self._f])
-
-    def _of_bodies(self, q: Array) -> Array:
-        """B q (6 b, w) of the bodies for coordinates q (f, w) of joints."""
-        g, w = self._groups, q.shape[1]
-        own = g.screws @ np.append(q, np.zeros((1, w)), axis=0)[g.members]
-        return (g.moves @ own.reshape(len(own), -1)).reshape(-1, w)
-
-    def _onto_joints(self, wrenches: Array) -> Array:
-        """Bᵀ g (f, w) of wrenches g (6 b, w) on the bodies."""
-        g, w = self._groups, wrenches.shape[1]
-        carried = (g.moves.T @ wrenches.reshape(len(g.moves), -1)).reshape(-1, 6, w)
-        return (g.screws.transpose(0, 2, 1) @ carried).reshape(-1, w)[g.place]
+    def _screws(self) -> Screws:
+        return screws(self.kinematics, self.free[: self._f])
 
     def _onto(self, forces: Array) -> Array:
         """Bᵀ g (n, w) of forces g (6 (b + m), w)."""
         bodies = 6 * len(self.kinematics.poses)
-        return np.concatenate([self._onto_joints(forces[:bodies]), forces[bodies:]])
+        return np.concatenate([onto_joints(self._screws, forces[:bodies]), forces[bodies:]])
 
     def _without_inner(self, blocks: NDArray[Any], own: NDArray[Any], side: NDArray[Any]) -> NDArray[Any]:
         """(f, f) over the coordinates of joints, from blocks (p, 6, 6), and those on β (m, 6, 6) and (m, 6, 12)."""
@@ -269,10 +230,8 @@ def _check(p: Rotating) -> None:
         np.linalg.cholesky(p.own[:, 2])
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
-    g, both = p._groups, p._on_bodies
-    moved = g.moves[p.row[both]] * g.moves[p.column[both]]
-    carried = (moved.T @ p.blocks[both, 0].reshape(-1, 36)).reshape(-1, 6, 6)
-    inertia = np.einsum("gik,gij,gjk->gk", g.screws, carried, g.screws).ravel()[g.place]
+    both = p._on_bodies
+    inertia = diagonal(p._screws, p.row[both], p.column[both], p.blocks[both, 0])
     eigen.check_stiffness(np.diagonal(p._condensed), inertia)
     _ = p._root
 
