@@ -54,8 +54,8 @@ def skew(v: Array) -> Array:
 
 
 def for_fem(coefficients: Array, trailing: int) -> Array:
-    """Coefficients (e, q, …) with ``trailing`` dimensions after e, q, in scikit-fem's order (…, e, q)."""
-    return np.moveaxis(coefficients, range(-trailing, 0), range(trailing))
+    """Coefficients (e, q, …) with ``trailing`` dimensions after e, q, in scikit-fem's order (…, e, q), also in memory."""
+    return np.ascontiguousarray(np.moveaxis(coefficients, range(-trailing, 0), range(trailing)))
 
 
 def strain_rate(slope: Array, axes: Array) -> Array:
