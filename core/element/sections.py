@@ -223,7 +223,8 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     q, at_element = np.repeat(element, GAUSS), element[interval]
     shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], there @ stiffness[at_element]
     size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
-    load = np.swapaxes(sp.adjoint(sp.inverse(pose)), -1, -2) * size  # unit loads of the sections, as wrenches at a
+    to_section = sp.adjoint(sp.inverse(pose))
+    load = np.swapaxes(to_section, -1, -2) * size  # unit loads of the sections, as wrenches at a
     nearer, _, total = running(load)
     carried = total[element][:, None] - nearer  # beyond each point
     loose, there, tip = running(turn @ carried)
@@ -232,14 +233,15 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
     unit = _unit_stiffness(work)
     local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
-    static = local @ stiffness[element][:, None]
     loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
     last = sp.log(undeformed)
+    of_ends = sp.tangent(last)  # the twist of b from δ
+    strain = local @ (stiffness @ of_ends)[element][:, None]
+    turned = shape.reshape(turn.shape)[..., 3:, :] @ of_ends[element][:, None]
     length = np.diff(nodes)[element][:, None, None]
     part = (s - nodes[element][:, None])[..., None] / length
-    rate = turn @ stiffness[element][:, None]
-    uneven = _uneven(pose, part, length, last[element][:, None], shape.reshape(turn.shape), rate, static, loaded)
-    shortening, mean, slope = (whole(v) for v in uneven)
+    bow = _bow(to_section, part, length, last[element][:, None], strain, turned)
+    uneven = 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
     return StaticSolution(
         element=q,
         s=s.ravel(),
@@ -254,44 +256,34 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         at_bubble=at_bubble @ unit[at_element],
         nodes=placed,
         undeformed=undeformed,
-        shortening=shortening,
-        mean=mean,
-        slope=slope,
+        shortening=whole(bow),
+        mean=whole(strain),
+        slope=whole(uneven),
     )
 
 
-def _uneven(
-    pose: Array, part: Array, length: Array, last: Array, shape: Array, rate: Array, static: Array, loaded: Array
-) -> tuple[Array, Array, Array]:
-    """Integrands of G, A and B of ``measures`` at the Gauss points (i, q, …).
+def _bow(to_section: Array, part: Array, length: Array, last: Array, strain: Array, turned: Array) -> Array:
+    """Integrand (i, q, 6, 6) of G of ``measures`` at the Gauss points.
 
     Args:
-        pose: (i, q, 4, 4) of the points in the element's frame.
+        to_section: (i, q, 6, 6) from twists in the element's frame to those of the sections, in their axes.
         part: (i, q, 1) fraction of the element's length before the points.
         length: (i, 1, 1) of the elements, m.
         last: (i, 1, 6) logarithm of the undeformed elements.
-        shape, rate: (i, q, 6, 6) the points' twists from that of b, and their derivatives along the arc.
-        static, loaded: (i, q, 6, 6) the sections' strains from the twist of b, and from β.
+        strain, turned: (i, q, 6, 6), (i, q, 3, 6) the sections' strains, and their rotations in the element's axes, from δ.
     """
-    ends_move = sp.tangent(last)
     along = part * last
-    displaced = _across(pose, shape @ ends_move, rate @ ends_move)
-    helicoid = _across(pose, part[..., None] * sp.tangent(along), sp.adjoint(sp.exp(along)) / length[..., None])
-    strain = static @ ends_move
+    uniform = to_section[..., 1:3, :] @ (sp.adjoint(sp.exp(along)) / length[..., None])  # the helicoid's shear strain
+    turning = part[..., None] * sp.tangent(along)[..., 3:, :]
+    tilt = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ to_section[..., :3, :3]  # θ_z and −θ_y of a rotation θ
+    displaced = strain[..., 1:3, :] + tilt @ turned  # y′ = Γ_y + θ_z, z′ = Γ_z − θ_y
+    helicoid = uniform + tilt @ turning
     shear = np.eye(6)[1:3] / length[..., None]  # of the helicoid
-    bow = 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(shear))
-    return bow, strain, 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
+    return 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(shear))
 
 
 def _squared(slope: Array) -> Array:
     return np.swapaxes(slope, -1, -2) @ slope
-
-
-def _across(pose: Array, twist: Array, rate: Array) -> Array:
-    """(…, 2, 6) transverse slope of the displaced reference curve, from twists at a and their derivatives along the arc."""
-    p, x = pose[..., :3, 3], pose[..., :3, 0]
-    slope = rate[..., :3, :] - sp.skew(p) @ rate[..., 3:, :] - sp.skew(x) @ twist[..., 3:, :]
-    return np.swapaxes(pose[..., :3, 1:3], -1, -2) @ slope
 
 
 def _unit_stiffness(work: Array) -> Array:
