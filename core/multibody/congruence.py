@@ -90,12 +90,24 @@ def places(tree: Tree, at: Index, row: Index, column: Index) -> Places:
 
 
 def over_joints(p: Places, J: Array, blocks: NDArray[Any]) -> NDArray[Any]:
-    """Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies."""
-    return _projected(p, J, J[None], blocks[:, None])[0]
+    """Upper half of Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies.
+
+    Below the diagonal are zeros.
+    """
+    return _upper(p, J, J[None], blocks[:, None])[0]
 
 
 def _projected(p: Places, J: Array, right: Array, blocks: NDArray[Any]) -> NDArray[Any]:
-    """Bᵀ Σ X_k B_k (w, c, c): for each of w results, the sum over the matrices X_k.
+    """Bᵀ Σ X_k B_k (w, c, c); arguments as for ``_upper``."""
+    whole = _upper(p, J, right, blocks)
+    left = (J[:, None] @ _wide(_summed(p.rows, blocks))[p.of])[:, 0]  # (c, 6x): J_iᵀ Σ X_rs over all s
+    for out, screws in zip(whole, right, strict=True):
+        np.copyto(out, left @ screws.T, where=p.by_row)
+    return whole
+
+
+def _upper(p: Places, J: Array, right: Array, blocks: NDArray[Any]) -> NDArray[Any]:
+    """Bᵀ Σ X_k B_k (w, c, c): for each of w results, the sum over the matrices X_k; zero where ``by_row``.
 
     Args:
         p: the places of the blocks.
@@ -104,13 +116,11 @@ def _projected(p: Places, J: Array, right: Array, blocks: NDArray[Any]) -> NDArr
         blocks: (p, x, 6, 6) of the matrices X_k.
     """
     whole = np.zeros((len(right), len(J), len(J)), blocks.dtype)
-    left = (J[:, None] @ _wide(_summed(p.rows, blocks))[p.of])[:, 0]  # (c, 6x): J_iᵀ Σ X_rs over all s
     of_column = _wide(_summed(p.columns, blocks))[p.of]
     for out, screws in zip(whole, right, strict=True):
         forces = (of_column @ screws[:, :, None])[:, :, 0]  # (c, 6): Σ X_rs J_j over all r
         np.matmul(J, forces.T, out=out)
         out *= p.by_column
-        np.copyto(out, left @ screws.T, where=p.by_row)
     _pairs(whole, J, right, _summed(p.pairs, blocks), p.i, p.j)
     return whole
 

@@ -116,7 +116,7 @@ class Rotating:
         return np.concatenate([onto_joints(self._screws, forces[:bodies]), forces[bodies:]])
 
     def _without_inner(self, blocks: NDArray[Any], own: NDArray[Any], side: NDArray[Any]) -> NDArray[Any]:
-        """(f, f) over the coordinates of joints, from blocks (p, 6, 6), and those on β (m, 6, 6) and (m, 6, 12)."""
+        """Upper half (f, f) over the coordinates of joints, from blocks (p, 6, 6), those on β (m, 6, 6) and (m, 6, 12)."""
         lost = -side.conj().transpose(0, 2, 1) @ np.linalg.solve(own, side)
         lost = lost.reshape(-1, 2, 6, 2, 6).transpose(0, 1, 3, 2, 4).reshape(-1, 6, 6)
         J = self.kinematics.J.T[self.free[: self._f]]
@@ -137,12 +137,12 @@ class Rotating:
 
     @cached_property
     def _condensed(self) -> Array:
-        """K (f, f) without internal coordinates."""
+        """Upper half of K (f, f) without internal coordinates."""
         return self._without_inner(self.blocks[:, 2], self.own[:, 2], self.side[:, 2])
 
     @cached_property
     def _root(self) -> Array:
-        """L of K = L Lᵀ without internal coordinates, the lower half; from the upper half of K."""
+        """L of K = L Lᵀ without internal coordinates, the lower half."""
         root, info = _LAPACK.dpotrf(self._condensed.T, lower=1, clean=0)  # the transpose has the order LAPACK needs
         if info:
             raise eigen.unstable()
@@ -246,9 +246,9 @@ def _sparse(row: Index, column: Index, blocks: NDArray[Any], shape: tuple[int, i
 def _negative(H: NDArray[np.complex128]) -> int:
     """Number of negative eigenvalues of a Hermitian matrix, which is overwritten, from the pivots of its LDLᴴ factorisation.
 
-    Only its lower half is used. A pivot of two rows has one negative eigenvalue (Bunch and Kaufman 1977).
+    Only its upper half is used. A pivot of two rows has one negative eigenvalue (Bunch and Kaufman 1977).
     """
-    factors, pivots, info = _LAPACK.zhetrf(H.T, lwork=_PANEL * len(H), overwrite_a=True)
+    factors, pivots, info = _LAPACK.zhetrf(H.T, lower=1, lwork=_PANEL * len(H), overwrite_a=True)
     if info < 0:
         raise eigen.EigenError(f"eigenvalues: LDLᴴ factorisation: argument {-info}")
     single = pivots > 0
