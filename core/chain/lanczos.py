@@ -109,9 +109,10 @@ def _start_vectors(p: ChainPencil, a: loops.Operator, near: Start | None) -> Arr
     w[:, n:] = y
     lost = solve_error(p, w)
     if not lost < _MAX_SOLVE_ERROR:
+        unstable = "" if p.factor.positive else "not positive definite: the steady state is unstable; or it is "
         raise EigensolverError(
-            f"the stiffness of {len(p.K)} elements is lost to rounding (relative error of a solution {lost:.1e}): use "
-            "fewer elements, or check units"
+            f"the stiffness of {len(p.K)} elements is {unstable}lost to rounding (relative error of a solution {lost:.1e}): "
+            "use fewer elements, or check units"
         )
     if not p.factor.positive:
         raise eigen.unstable()

@@ -8,7 +8,7 @@ import pytest
 
 from southwell.core import eigen, solve
 from southwell.core.blade import uniform_blade
-from southwell.core.chain import completeness, lanczos, solution
+from southwell.core.chain import completeness, elimination, lanczos, solution
 from southwell.core.chain.completeness import MissedModesError
 from southwell.core.chain.pencil import ChainPencil
 from southwell.core.effects import ALL_EFFECTS
@@ -87,4 +87,12 @@ def test_stiffness_lost_to_rounding_is_not_called_unstable(monkeypatch: pytest.M
     with pytest.raises(
         lanczos.EigensolverError, match=r"stiffness of 40 elements is lost to rounding .*fewer elements"
     ):
+        solve.mesh_modes(FLAT, 8.0, 40, 5)
+
+
+def test_stiffness_that_may_be_either_is_called_both(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lanczos, "solve_error", lambda *_: 1e-2)
+    indefinite = property(lambda p: elimination.factor(p.K, p.back, p.clamped)._replace(positive=False))
+    monkeypatch.setattr(ChainPencil, "factor", indefinite)
+    with pytest.raises(lanczos.EigensolverError, match=r"the steady state is unstable; or it is lost to rounding"):
         solve.mesh_modes(FLAT, 8.0, 40, 5)
