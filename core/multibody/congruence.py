@@ -90,9 +90,9 @@ def places(tree: Tree, at: Index, row: Index, column: Index) -> Places:
 
 
 def over_joints(p: Places, J: Array, blocks: NDArray[Any]) -> NDArray[Any]:
-    """Upper half of Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies.
+    """Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies.
 
-    Below the diagonal are zeros.
+    Only the upper half is complete: ``by_row`` is true only below the diagonal, since joints come after those that carry them.
     """
     return _upper(p, J, J[None], blocks[:, None])[0]
 

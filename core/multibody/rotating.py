@@ -100,7 +100,7 @@ class Rotating:
         powers = np.array([-(omega**2), 1j * omega, 1.0])
         blocks, own, side = (np.einsum("k,pkij->pij", powers, a) for a in (self.blocks, self.own, self.side))
         inside = np.linalg.eigvalsh(own)
-        return _negative(self._without_inner(blocks, own, side)) + int((inside < 0.0).sum())
+        return _negative(self._without_inner(blocks, side, np.linalg.solve(own, side))) + int((inside < 0.0).sum())
 
     @property
     def _f(self) -> int:
@@ -115,9 +115,12 @@ class Rotating:
         bodies = 6 * len(self.kinematics.poses)
         return np.concatenate([onto_joints(self._screws, forces[:bodies]), forces[bodies:]])
 
-    def _without_inner(self, blocks: NDArray[Any], own: NDArray[Any], side: NDArray[Any]) -> NDArray[Any]:
-        """Upper half (f, f) over the coordinates of joints, from blocks (p, 6, 6), those on β (m, 6, 6) and (m, 6, 12)."""
-        lost = -side.conj().transpose(0, 2, 1) @ np.linalg.solve(own, side)
+    def _without_inner(self, blocks: NDArray[Any], side: NDArray[Any], moved: NDArray[Any]) -> NDArray[Any]:
+        """(f, f) over the coordinates of joints, of which only the upper half is complete.
+
+        From blocks (p, 6, 6), ``side`` (m, 6, 12), and −β due to the twists of both ends, ``moved`` (m, 6, 12).
+        """
+        lost = -side.conj().transpose(0, 2, 1) @ moved
         lost = lost.reshape(-1, 2, 6, 2, 6).transpose(0, 1, 3, 2, 4).reshape(-1, 6, 6)
         J = self.kinematics.J.T[self.free[: self._f]]
         return over_joints(self._places, J, np.concatenate([blocks[self._on_bodies], lost])) + self.on_joints
@@ -137,8 +140,8 @@ class Rotating:
 
     @cached_property
     def _condensed(self) -> Array:
-        """Upper half of K (f, f) without internal coordinates."""
-        return self._without_inner(self.blocks[:, 2], self.own[:, 2], self.side[:, 2])
+        """K (f, f) without internal coordinates, of which only the upper half is complete."""
+        return self._without_inner(self.blocks[:, 2], self.side[:, 2], self._moved)
 
     @cached_property
     def _root(self) -> Array:
@@ -155,10 +158,15 @@ class Rotating:
         return _sparse(each, each, np.linalg.inv(self.own[:, 2]), (len(each), len(each)))
 
     @cached_property
+    def _moved(self) -> NDArray[Any]:
+        """−β (m, 6, 12) due to the twists of both ends, without forces on β."""
+        return np.linalg.solve(self.own[:, 2], self.side[:, 2])
+
+    @cached_property
     def _reach(self) -> bsr_array:
-        """−β (6 m, 6 b) due to the twists of the bodies, without forces on β."""
-        m, found = len(self.own), np.linalg.solve(self.own[:, 2], self.side[:, 2])
-        blocks = found.reshape(-1, 6, 2, 6).transpose(0, 2, 1, 3).reshape(-1, 6, 6)
+        """``_moved`` by the twists of the bodies (6 m, 6 b)."""
+        m = len(self.own)
+        blocks = self._moved.reshape(-1, 6, 2, 6).transpose(0, 2, 1, 3).reshape(-1, 6, 6)
         return _sparse(np.repeat(np.arange(m), 2), self.ends.ravel(), blocks, (m, len(self.kinematics.poses)))
 
     @cached_property

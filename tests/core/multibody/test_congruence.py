@@ -48,22 +48,38 @@ def trees() -> dict[str, Tree]:
     return {name: compile_tree(m) for name, m in {**blades, "branches": between_branches()}.items()}
 
 
-@pytest.mark.parametrize("name", [*CASES, "consistent", "half_end", "branches"])
-def test_sums_over_the_tree_are_products_with_b(name: str) -> None:
+def moving(name: str) -> tuple[Kinematics, dynamics.Cartesian]:
     tree = trees()[name] if name not in CASES else compile_tree(at_time(CASES[name]()[0], 0.0))
     n = len(tree.coordinates)
     q, v, a = 0.1 * np.random.default_rng(5).normal(size=(3, n))
     if len(tree.inner):  # beams with mass are carried steadily
         v, a = np.eye(n)[0], np.zeros(n)
     k = kinematics(tree, q, v, a)
-    c = dynamics.cartesian(tree, k)
+    return k, dynamics.cartesian(tree, k)
+
+
+@pytest.mark.parametrize("name", [*CASES, "consistent", "half_end", "branches"])
+def test_sums_over_the_tree_are_products_with_b(name: str) -> None:
+    k, c = moving(name)
     M, C, K = congruence.congruent(k, c.row, c.column, c.blocks)
-    j = tree.joints
+    j = k.tree.joints
     congruence.add_springs(k, c.ends, c.stiffness, K[:j, :j])
     for ours, theirs in zip((M, C, K), written_out(k, c), strict=True):
         assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max(initial=1e-300)
     forces = np.einsum("bin,bi->n", k.B, c.g)
     assert np.abs(projected(k, c.g) - forces).max() <= 1e-14 * np.abs(k.B).max() * np.abs(c.g).sum()
+
+
+@pytest.mark.parametrize("name", [*CASES, "consistent", "half_end", "branches"])
+def test_over_joints_the_upper_half_is_complete(name: str) -> None:
+    k, c = moving(name)
+    b, at = len(k.poses), np.arange(k.tree.joints)
+    on = (c.row < b) & (c.column < b)
+    row, column, blocks = c.row[on], c.column[on], c.blocks[on, 2]
+    B = k.B[:, :, at]
+    expected = np.einsum("pai,pab,pbj->ij", B[row], blocks, B[column])
+    ours = congruence.over_joints(congruence.places(k.tree, at, row, column), k.J.T[at], blocks)
+    assert np.abs(np.triu(ours - expected)).max(initial=0.0) <= 1e-14 * np.abs(expected).max(initial=1e-300)
 
 
 @pytest.mark.parametrize(("least", "regular"), [(1.0, True), (1e-4, True), (1e-8, False), (1e-10, False), (0.0, False)])
