@@ -126,6 +126,7 @@ BLADES = {
     "curved-solid": Asks(
         taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True, stations=True, solid=True
     ),
+    "prebent-beam": Asks(twist=True, unlike=True, sheared=True, curved=True),
     "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
 }
 
