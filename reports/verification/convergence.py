@@ -80,11 +80,20 @@ def _frame(axes: Axes, levels: Sequence[Level], cells: dict[tuple[float, int, st
     axes.set_yscale("log")
     axes.set_xlim(0.8 * min(refinements), 1.9 * max(refinements))
     axes.set_ylim(10.0 ** np.floor(np.log10(min(errors)) - 0.1), 10.0 ** np.ceil(np.log10(max(errors)) + 0.1))
-    ticks = [n for n in (1, 3, 10, 30, 100, 300, 1000, 3000) if min(refinements) <= n <= max(refinements)]
-    axes.xaxis.set_major_locator(FixedLocator(ticks))
+    axes.xaxis.set_major_locator(FixedLocator(ticks(min(refinements), max(refinements))))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}"))
     decades(axes.yaxis, 8)
+
+
+def ticks(least: int, most: int) -> list[int]:
+    """Round numbers from ``least`` to ``most``: as few to a decade as give three of them."""
+    found: list[int] = []
+    for digits in ((1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 8)):
+        found = [d * 10**k for k in range(len(str(most))) for d in digits if least <= d * 10**k <= most]
+        if len(found) >= 3:
+            break
+    return found
 
 
 def _error(level: Level, cell: Cell) -> float:

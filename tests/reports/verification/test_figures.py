@@ -20,7 +20,7 @@ from southwell.cases.judge.results import Level, Run
 from southwell.cases.verify.lumping import lumping
 from southwell.reports.shared.style import COLOURS, INK, MARKERS, looks, save, spread
 from southwell.reports.shared.units import GAMMA, RAD_S, RPM, Units
-from southwell.reports.verification.convergence import convergence
+from southwell.reports.verification.convergence import convergence, ticks
 from southwell.reports.verification.figures import campbell, differences
 from southwell.reports.verification.lumped import BOTH, EXACT, FRAME, MASS, Taken, taken
 from southwell.reports.verification.lumped import lumping as lumping_figure
@@ -117,6 +117,19 @@ def test_convergence_shows_the_order_and_the_errors_of_the_rows() -> None:
         n, error = points(line)
         slopes.append(-np.polyfit(np.log(n), np.log(error), 1)[0])
     np.testing.assert_allclose(sorted(slopes), [2.0, 2.0, 4.0], rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "expected"),
+    [
+        (12, 60, [20, 30, 40, 50, 60]),
+        (20, 160, [20, 50, 100]),
+        (2, 160, [3, 10, 30, 100]),
+        (5, 5, [5]),
+    ],
+)
+def test_the_axis_of_elements_has_three_labels_or_more(least: int, most: int, expected: list[int]) -> None:
+    assert ticks(least, most) == expected
 
 
 def test_convergence_puts_a_code_with_fewer_effects_into_the_panel_of_the_modes_name() -> None:
