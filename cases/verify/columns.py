@@ -34,7 +34,8 @@ OTHER_METHOD = "core, velocity transformation"
 """The column of core's other method, which checks the chain solver."""
 
 ELEMENTS = (20, 50)
-"""Numbers of elements of that column, whose cost is cubic; the second if neither method is stable with the first."""
+"""Numbers of elements of that column, whose cost is cubic; the second if neither method is stable with the first. Codes with
+core's discretisation also have the first if core is stable with it: refinement does not reduce rounding, which is compared."""
 
 References = Sequence[tuple[float, Reference]]
 """Rotor speeds, rad/s, and core's references at these speeds."""
@@ -192,13 +193,18 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
     )
 
 
-def _same(
-    head: Head, name: str, blade: Blade, elements: int, effects: Effects, limits: Limits, core: References
-) -> Rows:
-    runs = [(omega, elements, r.core.count) for omega, r in core]
-    theirs = answers(name, blade, runs, limits, head.version)
-    scaled = (core_solver.rescaled(blade, factor) for factor in (3.0, 7.0))
-    mine, *again = (core_solver.answers(b, runs, "half_end", "body_fixed", effects) for b in (blade, *scaled))
+def _same(head: Head, name: str, blade: Blade, finest: int, effects: Effects, limits: Limits, core: References) -> Rows:
+    def ask(elements: int, scale: float = 1.0) -> list[Answer]:
+        runs = [(omega, elements, r.core.count) for omega, r in core]
+        return core_solver.answers(core_solver.rescaled(blade, scale), runs, "half_end", "body_fixed", effects)
+
+    elements = min(ELEMENTS[0], finest)
+    mine = ask(elements)
+    if any(isinstance(answer, Failure) for answer in mine):
+        elements = finest
+        mine = ask(elements)
+    again = [ask(elements, scale) for scale in (3.0, 7.0)]
+    theirs = answers(name, blade, [(omega, elements, r.core.count) for omega, r in core], limits, head.version)
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
     rows = zip(core, theirs, mine, noises, strict=True)
     return _join(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
