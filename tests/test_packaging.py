@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import zipfile
 from importlib.metadata import version
@@ -14,6 +15,7 @@ import pytest
 from packaging.version import Version
 
 import southwell
+from southwell.core import compiled
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -65,7 +67,10 @@ def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
-    """Names of the files in a wheel built from a copy of the checkout, without the network."""
+    """Names of the files in a wheel built from a copy of the checkout, without the network.
+
+    The compiled modules are those of the checkout, which the installation has compiled: they lie where a build has put them.
+    """
     needed = Version(re.search(r"setuptools>=(\d+)", PROJECT["build-system"]["requires"][0])[1])  # type: ignore[index]
     if Version(version("setuptools")) < needed:
         pytest.skip(f"setuptools {version('setuptools')} is older than {needed}: pip install -e '.[dev]'")
@@ -74,9 +79,14 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
         copy = source / path.relative_to(ROOT)
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, copy)
+    here = f"lib.{sysconfig.get_platform()}-{sys.implementation.cache_tag}"
+    built = source.joinpath("build", here, "southwell", "core", "compiled")
+    built.mkdir(parents=True)
+    for module in Path(compiled.__file__).parent.glob(f"*{sysconfig.get_config_var('EXT_SUFFIX')}"):
+        shutil.copy(module, built)
     command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out), "."]
-    built = subprocess.run(command, cwd=source, capture_output=True, text=True, env={**os.environ, "PIP_NO_INDEX": "1"})
-    assert built.returncode == 0, built.stderr
+    made = subprocess.run(command, cwd=source, capture_output=True, text=True, env={**os.environ, "PIP_NO_INDEX": "1"})
+    assert made.returncode == 0, made.stderr
     (file,) = out.glob("*.whl")
     return set(zipfile.ZipFile(file).namelist())
 
