@@ -16,7 +16,11 @@ from southwell.tests.support.mechanisms import CASES
 pytestmark = pytest.mark.numerical
 
 
-@pytest.mark.parametrize("name", CASES)
+SLOW = {"five-bar, undamped"}
+"""It takes many times as long as the others."""
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in CASES])
 def test_many_guesses_reach_one_state(name: str) -> None:
     """20 of 200 guesses, all of them every night (SOUTHWELL_GUESSES); for the other mechanisms, see ``guesses``."""
     mechanism, guess = CASES[name]()

@@ -127,6 +127,7 @@ def test_a_core_that_misses_a_closed_form_ends_with_status_1(
     assert "1.0e-06 | 1e-09 | ✘ fail" in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("error", "expected"), [(0.0, 0), (1e-6, 1)])
 def test_verify_compares_closed_forms_too(
     few: tuple[ClosedForm, ...],
