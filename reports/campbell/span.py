@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 from ...cases.input import atomic
 from ...cases.input.properties import Sections, sections
 from ...core.blade import Blade
-from ..shared.style import COLOURS, MUTED, WIDTH, house
+from ..shared.style import COLOURS, MUTED, WIDTH, decades, house, power
 
 Array = NDArray[np.float64]
 Lines = list[tuple[str, Array]]
+
+DECADES = 30.0
+"""Ratio of the largest to the smallest stiffness above which their axis is logarithmic."""
 
 
 def draw(blade: Blade) -> Figure:
@@ -35,12 +38,14 @@ def draw(blade: Blade) -> Figure:
         ),
     ]
     with house():
-        figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
+        figure = Figure(figsize=(WIDTH, 7.2))
         figure.suptitle(f"{blade.name}: properties along the span", x=0.01, ha="left", fontweight="bold", fontsize=11.5)
+        figure.subplots_adjust(0.095, 0.07, 0.985, 0.91, 0.24, 0.34)
         for axes, (title, unit, lines, log) in zip(figure.subplots(3, 2).flat, panels, strict=True):
-            _panel(axes, blade.stations, lines, log)
+            exponent = _exponent(lines) if log else 0
+            _panel(axes, blade.stations, [(name, values / 10.0**exponent) for name, values in lines], log)
             axes.set_title(title)
-            axes.set_ylabel(unit)
+            axes.set_ylabel(f"{power(exponent)} {unit}" if exponent else unit)
         for axes in figure.axes[-2:]:
             axes.set_xlabel("arc length from the root, m")
     return figure
@@ -50,15 +55,29 @@ def _centres(found: Sections, k: int) -> Lines:
     return [(name, getattr(found, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
 
 
+def _finite(lines: Lines) -> Array:
+    return np.concatenate([values[np.isfinite(values)] for _, values in lines])
+
+
+def _exponent(lines: Lines) -> int:
+    """The power of ten of the unit of an axis from zero; 0 for one of several decades, whose labels are powers of ten."""
+    shown = _finite(lines)
+    return 0 if not shown.size or shown.max() > DECADES * shown.min() else int(np.floor(np.log10(shown.max())))
+
+
 def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
     dashes = ("-", (0, (5, 2)), (0, (1, 1.5)))
     for k, (name, values) in enumerate(lines):
         drawn = np.isfinite(values)
         label = name if drawn.all() else f"{name} rigid".strip()
         axes.plot(s[drawn], values[drawn], color=COLOURS[k], linestyle=dashes[k], linewidth=1.5, label=label)
-    shown = np.concatenate([v[np.isfinite(v)] for _, v in lines])
+    shown = _finite(lines)
     if log and shown.size:
-        axes.set_yscale("log")
+        if shown.max() > DECADES * shown.min():
+            axes.set_yscale("log")
+            decades(axes.yaxis, 6)
+        else:
+            axes.set_ylim(0, 1.1 * shown.max())
     elif not log and shown.size and np.abs(shown).max() < 1e-9:
         axes.set_ylim(-1, 1)
         axes.text(0.5, 0.6, "zero throughout", transform=axes.transAxes, ha="center", color=MUTED)

@@ -103,10 +103,15 @@ def band(count: int, across: int = 4) -> float:
     return 0.62 + 0.185 * -(-count // across)
 
 
+def power(exponent: int) -> str:
+    """A power of ten as plain text: 10⁻⁴."""
+    return "10" + str(exponent).translate(_RAISED)
+
+
 def decades(axis: Axis, most: int) -> None:
     """Label at most ``most`` decades of a logarithmic axis: 10⁻⁴ as plain text, which is drawn faster than a formula."""
     axis.set_major_locator(LogLocator(numticks=most))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: "10" + str(round(log10(value))).translate(_RAISED)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: power(round(log10(value)))))
     axis.set_minor_formatter(NullFormatter())
 
 

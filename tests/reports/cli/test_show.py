@@ -1,11 +1,13 @@
 """``southwell show``: published and worked-out numbers in what it prints, files it writes, bad input."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from southwell.core.blade import uniform_blade
 from southwell.reports.campbell import span
 from southwell.reports.cli import app as cli
 from southwell.tests.support.blade_files import real
@@ -151,3 +153,14 @@ def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str])
             cli.main([command, table, "--length", "40"])
         assert left.value.code == 2
         assert "does not define rotor speeds: give them" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("ratio", "label", "scale"), [(2.0, "10⁷ N", "linear"), (100.0, "N", "log")])
+def test_the_axis_of_a_stiffness_is_logarithmic_over_several_decades(ratio: float, label: str, scale: str) -> None:
+    blade = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=1.2)
+    tapered = replace(blade, stiffness=blade.stiffness / np.array([1.0, ratio])[:, None, None])
+    axes = span.draw(tapered).axes[2]
+    assert (axes.get_ylabel(), axes.get_yscale()) == (label, scale)
+    low, high = axes.get_ylim()
+    ticks = zip(axes.get_yticks(), axes.get_yticklabels(), strict=True)
+    assert [text.get_text() for at, text in ticks if low <= at <= high and text.get_text()]
