@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import venv
+from ctypes.util import find_library
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import version
@@ -33,12 +34,16 @@ class Environment:
         requires: pinned requirements.
         bare: pinned packages installed without their declared dependencies; the code itself is first.
         script: name of the script in this folder, without ``.py``, that answers one request.
+        libraries: names of shared libraries of the system that it loads, without ``lib``.
+        packages: Debian packages that have them.
     """
 
     name: str
     requires: tuple[str, ...]
     bare: tuple[str, ...]
     script: str
+    libraries: tuple[str, ...] = ()
+    packages: tuple[str, ...] = ()
 
     @property
     def folder(self) -> Path:
@@ -51,16 +56,37 @@ class Environment:
         """Its Python interpreter."""
         return self.folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
+    @property
+    def created(self) -> bool:
+        """Whether the environment is complete."""
+        return (self.folder / READY).exists()
+
+    @property
+    def lacking(self) -> str:
+        """What installs the libraries that the system does not have; empty if it has all."""
+        absent = ", ".join(f"lib{name}" for name in self.libraries if find_library(name) is None)
+        return f"apt-get install {' '.join(self.packages)} (not found: {absent})" if absent else ""
+
+    @property
+    def hint(self) -> str:
+        """How to install what is missing."""
+        return (self.created and self.lacking) or f"southwell codes install {self.name}"
+
     def version(self) -> str | None:
-        """The code's version; None if the environment has not been created."""
-        return self.bare[0].partition("==")[2] if (self.folder / READY).exists() else None
+        """The code's version; None if the environment has not been created or the system lacks a library."""
+        return self.bare[0].partition("==")[2] if self.created and not self.lacking else None
 
 
 READY = "ready"
 """Name of the file that marks a complete environment."""
 
 SHARPY = Environment(
-    "sharpy", ("numpy==1.26.4", "scipy==1.13.1", "colorama==0.4.6"), ("ic-sharpy==2.4",), "sharpy_worker"
+    "sharpy",
+    ("numpy==1.26.4", "scipy==1.13.1", "colorama==0.4.6"),
+    ("ic-sharpy==2.4",),
+    "sharpy_worker",
+    ("lapack", "gfortran", "gomp"),
+    ("liblapack3", "libgfortran5", "libgomp1"),
 )
 
 FRAME3DD = Environment("frame3dd", ("numpy==1.26.4",), ("wisdem==4.2.9",), "frame3dd_worker")
@@ -73,8 +99,10 @@ def install(environment: Environment) -> Path:
     """Create an environment, replacing an earlier incomplete one; return its folder.
 
     Raises:
-        EnvironmentMissingError: pip could not install it.
+        EnvironmentMissingError: the system lacks a library, or pip could not install it.
     """
+    if lacking := environment.lacking:
+        raise EnvironmentMissingError(f"{environment.name}: {lacking}")
     folder = environment.folder
     shutil.rmtree(folder, ignore_errors=True)
     venv.create(folder, with_pip=True)
@@ -107,7 +135,7 @@ def ask(environment: Environment, request: dict[str, Any], timeout: float) -> di
             reported an error.
     """
     if environment.version() is None:
-        raise CodeError(f"{environment.name} is not installed: southwell codes install {environment.name}")
+        raise CodeError(f"{environment.name} is not installed: {environment.hint}")
     script = Path(__file__).with_name(f"{environment.script}.py")
     try:
         done = subprocess.run(

@@ -57,7 +57,11 @@ class Frame3DD:
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
     digits = 8  # it iterates on equations that ``STIFF`` makes ill-conditioned
-    hint = "southwell codes install frame3dd"
+
+    @property
+    def hint(self) -> str:
+        """How to install what is missing."""
+        return FRAME3DD.hint
 
     def version(self) -> str | None:
         """Version of WISDEM in its environment."""

@@ -59,7 +59,11 @@ class Sharpy:
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
     digits = 8  # its steady state converges to a tolerance
-    hint = "southwell codes install sharpy"
+
+    @property
+    def hint(self) -> str:
+        """How to install what is missing."""
+        return SHARPY.hint
 
     def version(self) -> str | None:
         """Version of SHARPy in its environment."""

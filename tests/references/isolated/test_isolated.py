@@ -96,6 +96,25 @@ def test_the_installation_hint_if_missing() -> None:
         isolated.ask(SHARPY, {}, 1.0)
 
 
+def test_an_environment_whose_system_libraries_are_missing_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the packages are fetched, and in an environment that another machine has made."""
+    asked = pip(monkeypatch)
+    needing = replace(ECHO, libraries=("lapack", "gfortran"), packages=("liblapack3", "libgfortran5"))
+    found = {"lapack": "liblapack.so.3", "gfortran": "libgfortran.so.5"}
+    monkeypatch.setattr(isolated, "find_library", found.get)
+    made(needing)
+    assert needing.version() == "2.5"
+    del found["lapack"]
+    remedy = r"apt-get install liblapack3 libgfortran5 \(not found: liblapack\)"
+    assert needing.version() is None
+    assert re.fullmatch(remedy, needing.hint)
+    with pytest.raises(CodeError, match=f"echo is not installed: {remedy}"):
+        isolated.ask(needing, {}, 1.0)
+    with pytest.raises(isolated.EnvironmentMissingError, match=f"echo: {remedy}"):
+        isolated.install(needing)
+    assert not asked
+
+
 def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
     """Record the pip commands, with the contents of requirements files; ``fails``: a package that is not found."""
     asked: list[list[str]] = []
@@ -111,6 +130,7 @@ def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
         )
 
     monkeypatch.setattr(isolated.subprocess, "run", run)
+    monkeypatch.setattr(isolated, "find_library", lambda name: name)  # whatever this system has
     monkeypatch.setattr(isolated.venv, "create", lambda folder, with_pip: folder.mkdir(parents=True))
     return asked
 
