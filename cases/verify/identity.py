@@ -10,7 +10,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from hashlib import sha256
 from pathlib import PurePath
 from types import FunctionType
@@ -24,6 +24,12 @@ from ...references.protocol import sources
 TIME = "seconds"
 """The field with the time an answer took; not part of a digest."""
 
+
+PLAIN = frozenset({type(None), bool, int, float, complex})
+TEXT, ARRAYS, NAMED = (str, PurePath), (np.ndarray, np.generic), (Enum, FunctionType, type)
+SETS, SEQUENCES = (set, frozenset), (list, tuple)
+CONTAINERS = (partial, Mapping, *SEQUENCES)
+"""Kinds of values, as tuples: a union would be made anew in each of a quarter of a million checks."""
 
 RECENT = 4096
 """Number of objects whose digests are kept."""
@@ -46,8 +52,7 @@ def _digested(value: Any) -> tuple[bytes, frozenset[str]]:
     made, modules = sha256(), set[str]()
 
     def add(part: bytes) -> None:
-        made.update(b"%d:" % len(part))
-        made.update(part)
+        made.update(b"%d:%b" % (len(part), part))
 
     _feed(value, add, modules)
     return made.digest(), frozenset(modules)
@@ -71,31 +76,31 @@ def _once(value: Any) -> tuple[bytes, frozenset[str]]:
 def _feed(value: Any, add: Callable[[bytes], None], modules: set[str]) -> None:
     """Add the value as byte strings; containers include type and length, so that different values differ."""
     kind = type(value)
-    if value is None or kind in (bool, int, float, complex):
+    if kind in PLAIN:
         add(kind.__name__.encode())
         add(repr(value).encode())
-    elif isinstance(value, str | PurePath):
+    elif isinstance(value, TEXT):
         add(b"str")
         add(str(value).encode("utf-8", "surrogatepass"))
     elif isinstance(value, bytes):
         add(b"bytes")
         add(value)
-    elif isinstance(value, np.ndarray | np.generic):
+    elif isinstance(value, ARRAYS):
         add(f"array {value.dtype.str} {value.shape}".encode())
         add(np.ascontiguousarray(value).tobytes())
-    elif isinstance(value, Enum | FunctionType | type):
+    elif isinstance(value, NAMED):
         name = value.name if isinstance(value, Enum) else ""
         of = kind if isinstance(value, Enum) else value
         if "<" in of.__qualname__:
             raise TypeError(f"{of.__qualname__}: an anonymous function cannot be identified")
         modules.add(of.__module__)
         add(f"named {of.__module__}.{of.__qualname__}.{name}".encode())
-    elif is_dataclass(value) and kind.__dataclass_params__.frozen:  # pyright: ignore[reportAttributeAccessIssue]
+    elif _frozen(kind):
         made, found = _once(value)
         modules |= found
         add(b"frozen")
         add(made)
-    elif isinstance(value, set | frozenset):
+    elif isinstance(value, SETS):
         found = [_digested(member) for member in value]
         add(f"set {len(found)}".encode())
         for made, its in sorted(found, key=lambda pair: pair[0]):
@@ -105,7 +110,7 @@ def _feed(value: Any, add: Callable[[bytes], None], modules: set[str]) -> None:
         add(b"unset")
     else:
         name, members = _members(value)
-        if not isinstance(value, partial | Mapping | list | tuple):
+        if not isinstance(value, CONTAINERS):
             modules.add(kind.__module__)
         add(f"{name} {len(members)}".encode())
         for member in members:
@@ -118,13 +123,23 @@ def _members(value: Any) -> tuple[str, tuple[Any, ...]]:
         return "partial", (value.func, value.args, value.keywords)
     if isinstance(value, Mapping):
         return "mapping", tuple(value.items())
-    if isinstance(value, list | tuple):
+    if isinstance(value, SEQUENCES):
         return "sequence", tuple(value)
-    if is_dataclass(value):
-        return _name(type(value)), tuple(getattr(value, f.name) for f in fields(value) if f.name != TIME)
-    if isinstance(value, msgspec.Struct):
-        return _name(type(value)), tuple(getattr(value, name) for name in value.__struct_fields__)
-    return _name(type(value)), _state(value)
+    names = _fields(type(value))
+    return _name(type(value)), tuple(getattr(value, name) for name in names) if names is not None else _state(value)
+
+
+@cache
+def _frozen(kind: type) -> bool:
+    return is_dataclass(kind) and kind.__dataclass_params__.frozen  # pyright: ignore[reportAttributeAccessIssue]
+
+
+@cache
+def _fields(kind: type) -> tuple[str, ...] | None:
+    """The fields of a dataclass or a structure that count; None for other kinds."""
+    if is_dataclass(kind):
+        return tuple(f.name for f in fields(kind) if f.name != TIME)
+    return kind.__struct_fields__ if issubclass(kind, msgspec.Struct) else None
 
 
 def _name(kind: type) -> str:
