@@ -45,8 +45,13 @@ NIGHTLY = {
 }
 
 
-NIGHTLY_CODES = {("curved-solid", "calculix")}
-"""Two minutes; ``test_curved`` compares CalculiX's modes of that solid with scikit-fem's at one refinement."""
+NIGHTLY_CODES = {
+    ("curved-solid", "calculix"),
+    ("curved-solid", "scikit-fem-solid"),
+    ("park-cantilever", "scikit-fem-solid"),
+}
+"""Half a minute to two minutes each. At one refinement, ``test_curved`` compares the solids' modes with core's and with each
+other's, and ``test_solid`` those of a cantilever with core's."""
 
 
 def marks(blade: str, code: str) -> list[pytest.MarkDecorator]:
