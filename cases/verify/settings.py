@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import UNSET
 from scipy.integrate import trapezoid
 
-from ...core.blade import Blade
+from ...core.blade import Blade, clamped, straight
 from ..input.schema import Case, Variant
 from ..judge.pairing import MOTIONS
 from ..judge.results import Setting, Unit
@@ -64,6 +64,17 @@ def _dimensional(blade: Blade) -> dict[str, str]:
     }
     if blade.twist.any():
         facts["twist"] = f"{np.degrees(blade.twist[0]):g}° at the root, {np.degrees(blade.twist[-1]):g}° at the tip"
+    if blade.precone:
+        facts["precone"] = f"{np.degrees(blade.precone):g}° (positive downwind)"
+    if blade.pitch:
+        facts["pitch"] = f"{np.degrees(blade.pitch):g}° (positive with the leading edge downwind)"
+    if not straight(blade):
+        _, sweep, prebend = blade.curve[-1]
+        facts["tip off the axis"] = f"{prebend:.4g} m downwind, {sweep:.4g} m to the leading edge"
+    if blade.tip_mass.any():
+        facts["tip mass"] = f"{blade.tip_mass[0, 0]:g} kg"
+    if not clamped(blade):
+        facts["root"] = "on hinges or springs"
     if not blade.mass[:, 3:, 3:].any():
         facts["rotary inertia"] = "none"
     return facts
