@@ -96,6 +96,11 @@ def tip(blade: Blade) -> Mass | None:
     return _properties(blade.tip_mass) if blade.tip_mass[0, 0] > 0 else None
 
 
+def farthest(values: Array) -> float:
+    """The value (n,) of the largest magnitude, with its sign, to a nanometre."""
+    return round(float(values[np.abs(values).argmax()]), 9) + 0.0
+
+
 def _inertia(blade: Blade) -> Array:
     """Inertia (6, 6) about the hub's centre by Gauss quadrature between stations; mass is linear between them."""
     s, weight = (part.ravel() for part in gauss.between(blade.stations, _GAUSS))

@@ -195,8 +195,11 @@ def _source(head: Head, blade: Blade, source: Discretisation, core: References) 
 
 def _same(head: Head, name: str, blade: Blade, finest: int, effects: Effects, limits: Limits, core: References) -> Rows:
     def ask(elements: int, scale: float = 1.0) -> list[Answer]:
-        runs = [(omega, elements, r.core.count) for omega, r in core]
-        return core_solver.answers(core_solver.rescaled(blade, scale), runs, "half_end", "body_fixed", effects)
+        scaled = core_solver.rescaled(blade, scale)
+        return core_solver.answers(scaled, runs(elements), "half_end", "body_fixed", effects)
+
+    def runs(elements: int) -> list[Asked]:
+        return [(omega, elements, r.core.count) for omega, r in core]
 
     elements = min(ELEMENTS[0], finest)
     mine = ask(elements)
@@ -204,7 +207,7 @@ def _same(head: Head, name: str, blade: Blade, finest: int, effects: Effects, li
         elements = finest
         mine = ask(elements)
     again = [ask(elements, scale) for scale in (3.0, 7.0)]
-    theirs = answers(name, blade, [(omega, elements, r.core.count) for omega, r in core], limits, head.version)
+    theirs = answers(name, blade, runs(elements), limits, head.version)
     noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
     rows = zip(core, theirs, mine, noises, strict=True)
     return _join(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)

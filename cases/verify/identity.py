@@ -29,7 +29,7 @@ PLAIN = frozenset({type(None), bool, int, float, complex})
 TEXT, ARRAYS, NAMED = (str, PurePath), (np.ndarray, np.generic), (Enum, FunctionType, type)
 SETS, SEQUENCES = (set, frozenset), (list, tuple)
 CONTAINERS = (partial, Mapping, *SEQUENCES)
-"""Kinds of values, as tuples: a union would be made anew in each of a quarter of a million checks."""
+"""Kinds of values, as tuples: a union is made anew at each check."""
 
 RECENT = 4096
 """Number of objects whose digests are kept."""

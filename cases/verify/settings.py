@@ -6,7 +6,8 @@ import numpy as np
 from msgspec import UNSET
 from scipy.integrate import trapezoid
 
-from ...core.blade import Blade, clamped, straight
+from ...core.blade import Blade, clamped
+from ..input.properties import farthest
 from ..input.schema import Case, Variant
 from ..judge.pairing import MOTIONS
 from ..judge.results import Setting, Unit
@@ -56,28 +57,23 @@ def _setting(case: Case, variant: Variant) -> Setting:
 
 def _dimensional(blade: Blade) -> dict[str, str]:
     mass = trapezoid(blade.mass[:, 0, 0], blade.stations)
+    first, last, cone, pitch = np.degrees([blade.twist[0], blade.twist[-1], blade.precone, blade.pitch])
+    sweep, prebend = (farthest(blade.curve[:, k]) for k in (1, 2))
     facts = {
         "length": f"{blade.length:g} m",
         "hub radius": f"{blade.hub_radius:g} m",
         "mass": f"{mass + blade.tip_mass[0, 0]:.6g} kg",
         "stations": f"{len(blade.stations)}",
+        "twist": f"{first:g}° at the root, {last:g}° at the tip" if blade.twist.any() else "",
+        "precone": f"{cone:g}° (positive downwind)" if cone else "",
+        "pitch": f"{pitch:g}° (positive with the leading edge downwind)" if pitch else "",
+        "prebend": f"{prebend:.4g} m (positive downwind)" if prebend else "",
+        "sweep": f"{sweep:.4g} m (positive to the leading edge)" if sweep else "",
+        "tip mass": f"{blade.tip_mass[0, 0]:g} kg" if blade.tip_mass.any() else "",
+        "root": "" if clamped(blade) else "on hinges or springs",
+        "rotary inertia": "" if blade.mass[:, 3:, 3:].any() else "none",
     }
-    if blade.twist.any():
-        facts["twist"] = f"{np.degrees(blade.twist[0]):g}° at the root, {np.degrees(blade.twist[-1]):g}° at the tip"
-    if blade.precone:
-        facts["precone"] = f"{np.degrees(blade.precone):g}° (positive downwind)"
-    if blade.pitch:
-        facts["pitch"] = f"{np.degrees(blade.pitch):g}° (positive with the leading edge downwind)"
-    if not straight(blade):
-        _, sweep, prebend = blade.curve[-1]
-        facts["tip off the axis"] = f"{prebend:.4g} m downwind, {sweep:.4g} m to the leading edge"
-    if blade.tip_mass.any():
-        facts["tip mass"] = f"{blade.tip_mass[0, 0]:g} kg"
-    if not clamped(blade):
-        facts["root"] = "on hinges or springs"
-    if not blade.mass[:, 3:, 3:].any():
-        facts["rotary inertia"] = "none"
-    return facts
+    return {what: value for what, value in facts.items() if value}
 
 
 def _dimensionless(blade: Blade) -> dict[str, str]:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cases.input.properties import Mass, Sections, about_hub, about_root, tip
+from ...cases.input.properties import Mass, Sections, about_hub, about_root, farthest, tip
 from ...core.blade import Blade, straight
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def facts(blade: Blade) -> dict[str, str]:
     x, y, z = np.where(np.abs(hub.centre) < 1e-9 * blade.length, 0.0, hub.centre)
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
     loose = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
-    bends = f"prebend {_farthest(blade.curve[:, 2]):.5g} m, sweep {_farthest(blade.curve[:, 1]):.5g} m (largest)"
+    bends = f"prebend {farthest(blade.curve[:, 2]):.5g} m, sweep {farthest(blade.curve[:, 1]):.5g} m (largest)"
     end, pitch = tip(blade), float(np.degrees(blade.pitch))
     return {
         "mass": f"{hub.mass:.6g} kg" + (f", of which {end.mass:.6g} kg at the tip" if end else ""),
@@ -53,10 +53,6 @@ def facts(blade: Blade) -> dict[str, str]:
         "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,
     }
-
-
-def _farthest(values: Array) -> float:
-    return float(values[np.abs(values).argmax()]) + 0.0
 
 
 def _body(found: Mass) -> str:

@@ -60,9 +60,15 @@ def _finite(lines: Lines) -> Array:
 
 
 def _exponent(lines: Lines) -> int:
-    """The power of ten of the unit of an axis from zero; 0 for one of several decades, whose labels are powers of ten."""
+    """The power of ten of an axis's unit; 0 for short labels, and for a logarithmic axis, whose labels are powers of ten."""
     shown = _finite(lines)
-    return 0 if not shown.size or shown.max() > DECADES * shown.min() else int(np.floor(np.log10(shown.max())))
+    if not shown.size or _logarithmic(shown) or 0.1 <= shown.max() < 1e4:
+        return 0
+    return int(np.floor(np.log10(shown.max())))
+
+
+def _logarithmic(shown: Array) -> bool:
+    return bool(shown.max() > DECADES * shown.min())
 
 
 def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
@@ -73,7 +79,7 @@ def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
         axes.plot(s[drawn], values[drawn], color=COLOURS[k], linestyle=dashes[k], linewidth=1.5, label=label)
     shown = _finite(lines)
     if log and shown.size:
-        if shown.max() > DECADES * shown.min():
+        if _logarithmic(shown):
             axes.set_yscale("log")
             decades(axes.yaxis, 6)
         else:

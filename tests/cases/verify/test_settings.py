@@ -13,7 +13,7 @@ EVERYWHERE = {"length", "hub radius", "mass", "stations", "speeds", "modes compa
     ("case", "more"),
     [
         ("park-cantilever", {"source's discretisation"}),
-        ("prebent-beam", {"twist", "precone", "pitch", "tip off the axis"}),
+        ("prebent-beam", {"twist", "precone", "pitch", "prebend"}),
         ("articulated", {"root"}),
     ],
 )
@@ -26,4 +26,4 @@ def test_the_facts_of_a_coned_and_prebent_blade() -> None:
     facts = settings(library.load("prebent-beam"))[0].facts
     assert facts["precone"] == "-4° (positive downwind)"
     assert facts["pitch"] == "5° (positive with the leading edge downwind)"
-    assert facts["tip off the axis"] == f"{-25 * (1 - np.cos(0.4)):.4g} m downwind, 0 m to the leading edge"
+    assert facts["prebend"] == f"{-25 * (1 - np.cos(0.4)):.4g} m (positive downwind)"
