@@ -12,6 +12,8 @@ LOOPS := $(shell find core -name '*.hpp' -o -name '*.cpp')
 # one thread a process: the runs are parallel already
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
+# without its bytecode on disk, each of the many processes would compile the package again
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: verify test test-slow lint bench condense readme docs clean
 

@@ -18,15 +18,15 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(Path(f.name).stem for f in files(data).iterdir() if f.name.endswith(".toml")))
 
 
-def absent() -> dict[str, str]:
-    """Cases of the package whose blade files are not included and not found: name → remedy."""
-    out = {}
+def everything() -> tuple[dict[str, Case], dict[str, str]]:
+    """The cases of the package by name, and the remedy for each whose blade files are not included and not found."""
+    found, absent = {}, {}
     for name in names():
         try:
-            load(name)
+            found[name] = load(name)
         except FilesMissingError as error:
-            out[name] = str(error).removeprefix(f"{name}: ")
-    return out
+            absent[name] = str(error).removeprefix(f"{name}: ")
+    return found, absent
 
 
 def mechanisms() -> tuple[str, ...]:

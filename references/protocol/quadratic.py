@@ -8,12 +8,14 @@ Core has a different solver and never uses this one.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.linalg import blas
 from scipy.sparse import linalg as spla
 
 from .interface import CodeError
@@ -87,13 +89,14 @@ def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
     Raises:
         CodeError: it is not, or the matrix is not finite.
     """
-    wrong = abs(matrix - sign * matrix.T).max()
+    difference = matrix - sign * matrix.T
+    wrong = max(difference.max(), -difference.min())
     if not np.isfinite(wrong):
         raise CodeError(f"{name}: not finite: the linearisation of the code is not usable")
     if wrong > ASYMMETRY * size:
         kind = "symmetric" if sign == 1 else "skew"
         raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
-    return (matrix + sign * matrix.T) / 2
+    return matrix - difference / 2
 
 
 def _factor(K: Any) -> Solve:
@@ -103,8 +106,9 @@ def _factor(K: Any) -> Solve:
         LinAlgError: it is not.
     """
     if not sp.issparse(K):
-        cholesky = scipy.linalg.cho_factor(K, lower=True)
-        return lambda b: scipy.linalg.cho_solve(cholesky, b, check_finite=False)
+        L = np.asfortranarray(scipy.linalg.cholesky(K, lower=True))
+        forward, back = partial(blas.dtrsv, L, lower=1), partial(blas.dtrsv, L, lower=1, trans=1)
+        return lambda b: back(forward(b))  # for one vector several times as fast as LAPACK's dpotrs
     # no rows are exchanged, so that the pivots' signs are the inertia of K (Sylvester)
     factor = spla.splu(
         sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}

@@ -11,7 +11,8 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.encounters import Encounter
 from ..shared.style import INK, MUTED, WIDTH, house, title
 from ..shared.units import Units
-from .marks import blend, gap
+from .marks import blend
+from .tables import gap
 
 ACROSS = 3
 

@@ -8,11 +8,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.campbell.encounters import Encounter
 from ...core.participation import FAMILIES, MIXED
-from ..shared.certain import certain
 from ..shared.style import INK, MUTED
 from ..shared.units import Units
+from .tables import gap
 
 FAMILY_COLOURS = {
     "flapwise": "#0072B2",
@@ -167,13 +166,6 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
     for d in diagram.tracks.doubts:
         at = (d.omega[0] * units.speeds, d.frequency * units.frequencies)
         axes.annotate("?", at, ha="center", va="center", size=10, weight="bold", color=RED, zorder=7)
-
-
-def gap(e: Encounter, units: Units, digits: int = 3) -> str:
-    """The gap of two modes that meet; if it is below their uncertainty, an upper bound."""
-    if not e.gap_uncertainty < 0.5 * e.gap:
-        return f"< {(e.gap + e.gap_uncertainty) * units.frequencies:.{digits}g}"
-    return certain(e.gap * units.frequencies, e.gap_uncertainty / e.gap, digits)
 
 
 def legend(diagram: Campbell) -> list[Line2D]:

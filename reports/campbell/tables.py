@@ -16,7 +16,6 @@ from ...cases.campbell.sweep import Named
 from ...core.participation import MIXED, spoken
 from ..shared.certain import certain, relative, remarks
 from ..shared.units import Units
-from .marks import gap
 
 TOO_NEAR = "✘"
 
@@ -176,6 +175,13 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
         "Exchanged: the part of the shapes that is exchanged. Lower mode: its kinetic energy, before → after."
     )
     return Sheet("Modes that come close", head, tuple(rows), note)
+
+
+def gap(e: Encounter, units: Units, digits: int = 3) -> str:
+    """The gap of two modes that meet; if it is below their uncertainty, an upper bound."""
+    if not e.gap_uncertainty < 0.5 * e.gap:
+        return f"< {(e.gap + e.gap_uncertainty) * units.frequencies:.{digits}g}"
+    return certain(e.gap * units.frequencies, e.gap_uncertainty / e.gap, digits)
 
 
 def _narrower(e: Encounter, units: Units) -> str:

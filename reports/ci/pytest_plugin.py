@@ -108,8 +108,8 @@ def _all() -> "list[Case]":
     """Every case whose files are present."""
     from ...cases.input import library
 
-    absent = library.absent()
-    return [library.load(n) for n in library.names() if n not in absent]
+    found, _ = library.everything()
+    return list(found.values())
 
 
 @dataclass(frozen=True)

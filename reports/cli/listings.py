@@ -27,12 +27,12 @@ def cases() -> int:
     table = Table(box=box.SIMPLE_HEAD)
     for head in ("case", "what", "blades", "speeds"):
         table.add_column(head, overflow="fold")
-    absent = library.absent()
+    found, absent = library.everything()
     for name in library.names():
         if name in absent:
             table.add_row(name, absent[name], "", "")
             continue
-        known = library.load(name)
+        known = found[name]
         first, *_ = settings(known)
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
         table.add_row(name, known.text.title, blades, first.facts["speeds"])

@@ -32,6 +32,7 @@ from ..ci import junit as xml
 from ..shared import summary
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..shared.writing import writable
+from ..verification import closed_forms_page
 from . import campbell_options, measured, versions
 from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
@@ -131,7 +132,8 @@ def command(
     launch.prepare()  # for ``describe``, while the cases are read
     decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
-    chosen = [changed(case_of(name, decks), given) for name in dict.fromkeys(case or everything())]
+    wanted = [case_of(name, decks) for name in dict.fromkeys(case)] if case else everything()
+    chosen = [changed(one, given) for one in wanted]
     if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
         raise UsageError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
@@ -197,8 +199,6 @@ def command(
 
 def _closed_forms(pool: Executor) -> Callable[[Path], int]:
     """Start the comparison with closed forms; the function writes the page to a folder and returns the exit status."""
-    from ..verification import closed_forms_page  # matplotlib, while the workers start
-
     page = remembering(pool).submit(closed_forms_page.computed)
     return lambda out: closed_forms_page.write(page.result(), out)
 

@@ -61,9 +61,9 @@ def changed(case: Case | MechanismCase, given: Sequence[Change]) -> Case | Mecha
     return replace(case, text=text, variants=variants)
 
 
-def everything() -> tuple[str, ...]:
+def everything() -> list[Case | MechanismCase]:
     """Every case and mechanism whose files are present; the others are reported as not run."""
-    absent = library.absent()
+    found, absent = library.everything()
     for name, why in absent.items():
         print(f"southwell: {name}: not run: {why}", file=sys.stderr)
-    return (*(name for name in library.names() if name not in absent), *library.mechanisms())
+    return [*found.values(), *(mechanism_case.case(library.mechanism(name)) for name in library.mechanisms())]

@@ -17,7 +17,6 @@ from ...core.regular_files import read_bytes
 from ..shared.certain import certain, relative, remarks
 from ..shared.style import house, save
 from ..shared.units import RAD_S, Units
-from .figure import stages
 
 FILE = "condensation.md"
 
@@ -44,6 +43,8 @@ def picture(found: Example, drawn: Drawn, folder: Path) -> list[Path]:
     Raises:
         OSError: if a file cannot be written.
     """
+    from .figure import stages  # Matplotlib, which the text does not need
+
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     vector, raster = (folder / "figures" / f"condensation.{kind}" for kind in ("svg", "png"))
     figure = stages(drawn.bricks, drawn.cuts, drawn.segments, drawn.root, found.freedoms)

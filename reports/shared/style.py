@@ -2,6 +2,8 @@
 
 The colours are those of Okabe and Ito (Color Universal Design, 2008), which people with any common colour vision can
 distinguish. Colour is never the only distinction: codes also differ in marker, families in line style.
+
+Matplotlib takes a second to import, so only what draws imports it: pages take their colours from here without it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,17 +12,16 @@ from dataclasses import dataclass
 from io import StringIO
 from math import log10
 from pathlib import Path
-from typing import Any
-
-import matplotlib as mpl
-from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from typing import TYPE_CHECKING, Any
 
 from ...cases.input import atomic
 from .compact import compact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 INK, MUTED, FAINT = "#1a1a1a", "#6b6b6b", "#d0d0d0"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8A6D3B")
@@ -67,6 +68,8 @@ class Look:
 @contextmanager
 def house() -> Iterator[None]:
     """Apply the settings under which figures are drawn and saved, regardless of the user's Matplotlib settings."""
+    import matplotlib as mpl
+
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(RC)
@@ -85,7 +88,7 @@ WIDTH = 8.6
 """Width of every figure, inches."""
 
 
-def key(figure: Figure, handles: Sequence[Line2D], left: float, across: int = 4) -> None:
+def key(figure: "Figure", handles: "Sequence[Line2D]", left: float, across: int = 4) -> None:
     """Draw the legend in a band along the lower edge, whose height is given by ``band``."""
     figure.legend(
         handles=handles,
@@ -108,21 +111,23 @@ def power(exponent: int) -> str:
     return "10" + str(exponent).translate(_RAISED)
 
 
-def decades(axis: Axis, most: int) -> None:
+def decades(axis: "Axis", most: int) -> None:
     """Label at most ``most`` decades of a logarithmic axis: 10⁻⁴ as plain text, which is drawn faster than a formula."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     axis.set_major_locator(LogLocator(numticks=most))
     axis.set_major_formatter(FuncFormatter(lambda value, _: power(round(log10(value)))))
     axis.set_minor_formatter(NullFormatter())
 
 
-def title(figure: Figure, text: str, below: str = "") -> None:
+def title(figure: "Figure", text: str, below: str = "") -> None:
     """Draw the figure's title in the upper left corner, with an optional muted line below it."""
     height = figure.get_figheight()
     figure.text(0.012, 1 - 0.25 / height, text, weight="bold", size=10.5)
     figure.text(0.012, 1 - 0.44 / height, below, size=8.5, color=MUTED)
 
 
-def svg(figure: Figure) -> str:
+def svg(figure: "Figure") -> str:
     """The figure as SVG with its text as text, without date or random identifiers."""
     out = StringIO()
     with house():
@@ -130,7 +135,7 @@ def svg(figure: Figure) -> str:
     return compact(out.getvalue())
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: "Figure", path: Path) -> None:
     """Write the figure's SVG.
 
     Raises:
@@ -156,7 +161,7 @@ def spread(wanted: Sequence[float], gap: float) -> list[float]:
     return out
 
 
-def beside(axes: Axes, labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
+def beside(axes: "Axes", labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
     """Draw labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
 
     Args:

@@ -67,9 +67,8 @@ def report(folder: Path) -> Pages:
 
 def cases() -> Pages:
     """One page per case that comes with the package, and an index."""
-    absent = library.absent()
-    known = [library.load(name) for name in library.names() if name not in absent]
-    known += [mechanism_case.case(library.mechanism(name)) for name in library.mechanisms()]
+    found, absent = library.everything()
+    known = [*found.values(), *(mechanism_case.case(library.mechanism(name)) for name in library.mechanisms())]
     rows = [_row(case) for case in known]
     rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
     head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"

@@ -1,8 +1,5 @@
 """Figures of core against closed-form solutions of mechanisms: frequencies above, differences below."""
 
-import re
-from pathlib import Path
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,30 +8,17 @@ from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
 from ...cases.closed_forms.closed_forms import ClosedForm, differences
-from ...core.regular_files import read_bytes
 from ..shared.style import COLOURS, FAINT, INK, MARKERS, MUTED, WIDTH, decades, house, title
 from ..shared.style import beside as labels
 
 Complex = NDArray[np.complex128]
 Array = NDArray[np.float64]
 
-PAGE = "closed-forms.md"
-"""What ``southwell closed-forms`` writes."""
-
 FINE = 600
 """Number of points on the curve of a closed form."""
 
 LEAST = 1e-17
 """Lower limit of the differences drawn, for the log axis."""
-
-
-def beside(folder: Path) -> str:
-    """A report's page, with headings one level lower and without formulas; empty if there is none."""
-    path = folder / PAGE
-    if not path.exists():
-        return ""
-    text = re.sub(r"\$\$.*?\$\$\n\n", "", read_bytes(path).decode(errors="replace"), flags=re.DOTALL)
-    return re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 
 def solved(form: ClosedForm) -> tuple[Complex, Array]:

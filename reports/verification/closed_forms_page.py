@@ -1,28 +1,30 @@
 """``southwell closed-forms``: writes the page of mechanisms that have closed-form solutions."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
+from numpy.typing import NDArray
 
 from ...cases.closed_forms.closed_forms import FORMS, ClosedForm
 from ...cases.input import atomic
 from ...cases.verify.cached import remembered
+from ...core.regular_files import read_bytes
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.statuses import FAILED, PASSED
 from ..shared.style import svg
 from ..shared.writing import writable
-from .closed_forms_figure import PAGE, Array, Complex, figure, solved
 
-Found = tuple[ClosedForm, Complex, Array]
+Found = tuple[ClosedForm, NDArray[np.complex128], NDArray[np.float64]]
 Page = tuple[dict[str, str], list[dict[str, str]], bool]
 """The page and its figures, by path; the rows of its table; and whether all differences are within their targets."""
 
-FOLDER = "closed-forms"
-"""Sub-folder of the figures."""
+PAGE, FOLDER = "closed-forms.md", "closed-forms"
+"""File name of the page, and sub-folder of its figures."""
 
 
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
@@ -52,6 +54,15 @@ def write(page: Page, out: Path) -> int:
     return PASSED if passed else FAILED
 
 
+def beside(folder: Path) -> str:
+    """A report's page, with headings one level lower and without formulas; empty if there is none."""
+    path = folder / PAGE
+    if not path.exists():
+        return ""
+    text = re.sub(r"\$\$.*?\$\$\n\n", "", read_bytes(path).decode(errors="replace"), flags=re.DOTALL)
+    return re.sub(r"^#", "##", text, flags=re.MULTILINE)
+
+
 def pages() -> dict[str, str]:
     """The page and its figures as SVG, by path."""
     return remembered(computed)[0]
@@ -59,11 +70,15 @@ def pages() -> dict[str, str]:
 
 def computed() -> Page:
     """Compare core with all closed forms."""
+    from .closed_forms_figure import solved  # Matplotlib, which the stored page does not need
+
     found = [(form, *solved(form)) for form in FORMS]
     return _page(found), _rows(found), all(np.nanmax(off) < form.target for form, _, off in found)
 
 
 def _page(found: Sequence[Found]) -> dict[str, str]:
+    from .closed_forms_figure import figure
+
     out, parts = {}, [_HEAD, table(_rows(found))]
     for form, values, off in found:
         out[f"{FOLDER}/{form.name}.svg"] = svg(figure(form, values, off))

@@ -1,12 +1,11 @@
 """The report of a run in GitHub-flavoured Markdown: the verdict, a heat table, then one section per case."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from matplotlib.figure import Figure
 
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
@@ -17,21 +16,9 @@ from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
-from ..shared.style import save, svg
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import bench, case_tables, closed_forms_figure, controls, error_budget, evidence, lumped, releases, witnesses
-from .convergence import convergence
-from .figures import campbell, differences
-
-Draw = Callable[[Run, str, Units, Sequence[str]], Figure | None]
-
-FIGURES: dict[str, Draw] = {
-    "campbell": campbell,
-    "differences": differences,
-    "convergence": convergence,
-}
-"""Figures of each blade, by the last part of the file name."""
+from . import bench, case_tables, closed_forms_page, controls, error_budget, evidence, lumped, releases, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -68,13 +55,13 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
             name = f"{file_name(case)}-{kind}.svg"
             atomic.write(figures / name, image)
             drawn.setdefault(case, []).append(f"figures/{name}")
-    if figure := lumped.lumping(run):
-        save(figure, figures / "lumped-mass.svg")
+    if found := lumped.taken(run):
+        atomic.write(figures / "lumped-mass.svg", drawing.submit(_lumping, found).result())
     path = folder / "report.md"
     beside = {
         "cost": bench.beside(folder),
         "condensed": page.beside(folder),
-        "known": closed_forms_figure.beside(folder),
+        "known": closed_forms_page.beside(folder),
     }
     atomic.write(path, render(run, drawn, **beside))
     return path
@@ -87,9 +74,15 @@ def part(run: Run, case: str) -> Run:
 
 
 def _figures(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[str, str]:
-    """The figures of one case as SVG, by kind."""
-    drawn = {kind: draw(run, case, units, among) for kind, draw in FIGURES.items()}
-    return {kind: svg(figure) for kind, figure in drawn.items() if figure}
+    from . import drawing  # Matplotlib
+
+    return drawing.of_case(run, case, units, among)
+
+
+def _lumping(found: lumped.Taken) -> str:
+    from . import drawing
+
+    return drawing.of_lumping(found)
 
 
 def units(run: Run, case: str) -> Units:

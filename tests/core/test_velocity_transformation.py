@@ -33,11 +33,7 @@ from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 from southwell.tests.support.dense import dense
 
 BLADES: dict[str, tuple[Case, Variant]] = {
-    variant.name: (case, variant)
-    for name in library.names()
-    if name not in library.absent()
-    for case in [library.load(name)]
-    for variant in case.variants
+    variant.name: (case, variant) for case in library.everything()[0].values() for variant in case.variants
 }
 AGREE = 1e-9
 CLAMPED = np.inf

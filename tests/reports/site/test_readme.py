@@ -81,11 +81,11 @@ def test_the_page_of_results_has_every_case_and_the_run_times() -> None:
 def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cases whose blade files are not part of the package may be among them."""
     run = results.read(readme.ROWS)
-    all_ = {name: library.load(name) for name in set(library.names()) - set(library.absent())}
+    all_, _ = library.everything()
     monkeypatch.delenv("SOUTHWELL_BLADES", raising=False)
-    absent = set(library.absent())
+    _, absent = library.everything()
     ours = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
-    theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | absent
+    theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | set(absent)
     assert ours <= set(summary.cases(run)) <= ours | theirs | set(library.mechanisms())
     anywhere = set(registry.OURS) - set(readme.ISOLATED)
     assert {registry.code(name).name for name in anywhere} <= {c.code for c in run.cells}

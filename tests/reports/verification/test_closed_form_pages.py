@@ -104,7 +104,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> tuple[ClosedForm, ...]:
 def test_the_command_writes_what_the_report_takes_up(
     few: tuple[ClosedForm, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert not closed_forms_figure.beside(tmp_path)
+    assert not closed_forms_page.beside(tmp_path)
     status, shown, _ = southwell(f"closed-forms --out {tmp_path}", capsys)
     assert status == 0
     assert shown.count("✔ pass") == len(few)

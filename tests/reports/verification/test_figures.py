@@ -23,7 +23,7 @@ from southwell.reports.shared.units import GAMMA, RAD_S, RPM, Units
 from southwell.reports.verification.convergence import convergence, ticks
 from southwell.reports.verification.figures import campbell, differences
 from southwell.reports.verification.lumped import BOTH, EXACT, FRAME, MASS, Taken, taken
-from southwell.reports.verification.lumped import lumping as lumping_figure
+from southwell.reports.verification.lumped_figure import lumping as lumping_figure
 
 from ...support import samples
 
@@ -55,9 +55,9 @@ def all_figures(run: Run) -> list[Figure]:
 
 
 @pytest.mark.slow
-def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path, lumped: Run) -> None:
+def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path, parts: Taken) -> None:
     for k in range(2):
-        for j, figure in enumerate([*all_figures(samples.run()), drawn(lumping_figure(lumped))]):
+        for j, figure in enumerate([*all_figures(samples.run()), lumping_figure(parts)]):
             save(figure, tmp_path / f"{k}-{j}.svg")
     for j in range(4):
         text = (tmp_path / f"0-{j}.svg").read_bytes()
@@ -172,8 +172,8 @@ def labels(axes: Axes) -> list[Text]:
     return [t for t in (*axes.texts, axes.title, axes._left_title, *ticks) if t.get_text().strip()]  # type: ignore[attr-defined]
 
 
-def test_labels_do_not_lie_on_each_other(lumped: Run) -> None:
-    for figure in [*all_figures(samples.run()), drawn(lumping_figure(lumped))]:
+def test_labels_do_not_lie_on_each_other(parts: Taken) -> None:
+    for figure in [*all_figures(samples.run()), lumping_figure(parts)]:
         figure.draw_without_rendering()
         texts = [t for axes in figure.axes if axes.get_visible() for t in labels(axes)]
         assert len(texts) > 8
@@ -181,9 +181,9 @@ def test_labels_do_not_lie_on_each_other(lumped: Run) -> None:
         assert not [(a, b) for k, (a, p) in enumerate(boxes) for b, q in boxes[:k] if p.overlaps(q)]
 
 
-def test_labels_are_not_cut_off(lumped: Run) -> None:
+def test_labels_are_not_cut_off(parts: Taken) -> None:
     long = Run((samples.cell(code="core, velocity transformation", difference=1e-13, target=1e-8),))
-    for figure in [*all_figures(samples.run()), drawn(lumping_figure(lumped)), drawn(differences(long, "beam", RAD_S))]:
+    for figure in [*all_figures(samples.run()), lumping_figure(parts), drawn(differences(long, "beam", RAD_S))]:
         figure.draw_without_rendering()
         canvas = figure.bbox.padded(1.0)
         texts = [t for t in [*figure.texts, *(t for axes in figure.axes for t in labels(axes))] if t.get_text().strip()]

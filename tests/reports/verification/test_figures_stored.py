@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from southwell.cases.judge.results import Run
 from southwell.references.protocol import store
 from southwell.reports.shared.units import Units
-from southwell.reports.verification import report
+from southwell.reports.verification import drawing, report
 from southwell.reports.verification.figures import differences
 
 from ...support import samples
@@ -27,7 +27,7 @@ def counted(run: Run, case: str, units: Units, among: tuple[str, ...]) -> Figure
 def stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(store.FRESH, raising=False)
     monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(report, "FIGURES", {"differences": counted})
+    monkeypatch.setattr(drawing, "FIGURES", {"differences": counted})
     DRAWN.clear()
 
 
