@@ -26,7 +26,7 @@ import scipy.sparse as ss
 from ..regular_files import LARGEST_DATA, read_bytes
 from . import matrix_market
 from .exported import Exported, MatrixFileError, assembled, labelled
-from .matrix_words import real, whole
+from .matrix_words import real, reals, whole, wholes
 
 REAL = (1, 2)
 SQUARE, SYMMETRIC = 1, 6
@@ -101,7 +101,7 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
                 continue
             active[given[0] if active else 1] = given[1:] if active else given
         elif card:
-            triangles[card] += [real(name, number, w) for w in words]
+            triangles[card] += reals(name, [number] * len(words), words).tolist()
     key = _chosen(name, "*MATRIX, TYPE", list(triangles), what)
     freedoms: list[tuple[int, int]] = []
     now: list[int] = []
@@ -119,27 +119,29 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
 
 
 def _triplets(name: str, lines: list[str]) -> Exported:
-    labels: list[list[int]] = []
-    values: list[float] = []
+    numbers: list[int] = []
+    rows: list[list[str]] = []
     for number, line in enumerate(lines, 1):
-        words = re.findall(r"[^\s,]+", line)
+        words = line.replace(",", " ").split()
         if not words or words[0][0] in "*%#$":
             continue
-        width = len(labels[0]) + 1 if labels else len(words)
+        width = len(rows[0]) if rows else len(words)
         if len(words) != width or width not in (3, 5):
             raise MatrixFileError(
                 f"{name}, line {number}: {len(words)} columns, expected row, column, value, or node, freedom, node, "
                 "freedom, value: truncated, or another format?"
             )
-        labels.append([whole(name, number, w) for w in words[:-1]])
-        values.append(real(name, number, words[-1]))
-    if not labels:
+        numbers.append(number)
+        rows.append(words)
+    if not rows:
         raise MatrixFileError(f"{name}: no matrix found: is it in one of the formats listed in docs/condense.md?")
-    at = np.array(labels, dtype=np.intp)
+    *labels, entries = zip(*rows, strict=True)
+    at = np.column_stack([wholes(name, numbers, column) for column in labels])
+    values = reals(name, numbers, entries)
     if at.shape[1] == 4:
-        return assembled(name, at[:, :2], at[:, 2:], np.array(values))
-    rows, columns = (np.column_stack([at[:, k], np.ones(len(at), np.intp)]) for k in (0, 1))
-    found = assembled(name, rows, columns, np.array(values))
+        return assembled(name, at[:, :2], at[:, 2:], values)
+    ones = np.ones(len(at), np.intp)
+    found = assembled(name, np.column_stack([at[:, 0], ones]), np.column_stack([at[:, 1], ones]), values)
     if (found.nodes != 1 + np.arange(len(found.nodes))).any():
         raise MatrixFileError(
             f"{name}: rows {found.nodes.tolist()[:3]}…: not all from 1 to the last: rows without entries?"

@@ -1,14 +1,14 @@
 """Matrix Market files of real square matrices: coordinate or array; general, symmetric or skew-symmetric.
 
-Files are parsed line by line in Python: a parser in C may crash at a number that was cut off, and allocates whatever size a
-header states. Source: R. Boisvert, R. Pozo, K. Remington, *The Matrix Market exchange formats*, NISTIR 5935 (1996).
+Files are parsed in Python: a parser in C may crash at a number that was cut off, and allocates whatever size a header
+states. Source: R. Boisvert, R. Pozo, K. Remington, *The Matrix Market exchange formats*, NISTIR 5935 (1996).
 """
 
 import numpy as np
 import scipy.sparse as ss
 
 from .exported import Exported, MatrixFileError
-from .matrix_words import real, whole
+from .matrix_words import reals, whole, wholes
 
 MOST_ROWS = 1_000_000
 """Largest number of rows; the length of the file limits a dense matrix further."""
@@ -33,37 +33,35 @@ def read(name: str, text: str) -> Exported:
         raise MatrixFileError(f"{name}: not a Matrix Market file of real numbers: its first line is {lines[0][:80]!r}")
     if words[4] not in SIGN:
         raise MatrixFileError(f"{name}: {words[4][:40]!r}: only general, symmetric or skew-symmetric matrices are read")
-    content = [(k, line.split()) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("%")]
+    numbers = [k for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("%")]
+    size = lines[numbers[0] - 1].split() if numbers else []
     sparse = words[2] == "coordinate"
-    if not content or len(content[0][1]) != (3 if sparse else 2):
+    if len(size) != (3 if sparse else 2):
         raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: truncated?")
-    number, size = content[0]
+    number, *numbers = numbers
     rows, columns, *_ = (whole(name, number, word) for word in size)
     if rows != columns:
         raise MatrixFileError(f"{name}: a matrix of {rows} × {columns}: a stiffness is square")
     if not 0 < rows <= MOST_ROWS:
         raise MatrixFileError(f"{name}, line {number}: {rows} rows: only 1 to {MOST_ROWS} are read")
-    sign = SIGN[words[4]]
+    sign, content = SIGN[words[4]], [lines[k - 1] for k in numbers]
     if sparse:
-        return _entries(name, content[1:], rows, whole(name, number, size[2]), sign)
-    return _whole(name, content[1:], rows, sign)
+        return _entries(name, numbers, content, rows, whole(name, number, size[2]), sign)
+    return _whole(name, numbers, content, rows, sign)
 
 
-def _entries(name: str, lines: list[tuple[int, list[str]]], n: int, count: int, sign: float) -> Exported:
+def _entries(name: str, numbers: list[int], lines: list[str], n: int, count: int, sign: float) -> Exported:
     if len(lines) != count:
         raise MatrixFileError(f"{name}: {len(lines)} entries, expected {count}: truncated?")
-    at, values = np.zeros((count, 2), dtype=np.intp), np.zeros(count)
-    for k, (number, words) in enumerate(lines):
-        if len(words) != 3:
-            raise MatrixFileError(
-                f"{name}, line {number}: {len(words)} columns, expected row, column, value: truncated?"
-            )
-        at[k], values[k] = [whole(name, number, word) for word in words[:2]], real(name, number, words[2])
-        if not (1 <= at[k, 0] <= n and 1 <= at[k, 1] <= n):
-            raise MatrixFileError(
-                f"{name}, line {number}: entry {at[k].tolist()} of a matrix with {n} rows: correct it"
-            )
-    i, j = at.T - 1
+    for number, line in zip(numbers, lines, strict=True):
+        if (columns := len(line.split())) != 3:
+            raise MatrixFileError(f"{name}, line {number}: {columns} columns, expected row, column, value: truncated?")
+    words = " ".join(lines).split()
+    i, j = wholes(name, numbers, words[0::3]) - 1, wholes(name, numbers, words[1::3]) - 1
+    values = reals(name, numbers, words[2::3])
+    for k in np.flatnonzero((np.minimum(i, j) < 0) | (np.maximum(i, j) >= n))[:1]:
+        entry = [int(i[k]) + 1, int(j[k]) + 1]
+        raise MatrixFileError(f"{name}, line {numbers[k]}: entry {entry} of a matrix with {n} rows: correct it")
     if len(np.unique(i * n + j)) != count:
         raise MatrixFileError(f"{name}: an entry is given twice: two matrices in one file?")
     other = np.flatnonzero(i != j) if sign else np.zeros(0, dtype=np.intp)
@@ -74,18 +72,19 @@ def _entries(name: str, lines: list[tuple[int, list[str]]], n: int, count: int, 
     return Exported(name, ss.csr_array((values, (rows, columns)), shape=(n, n)))
 
 
-def _whole(name: str, lines: list[tuple[int, list[str]]], n: int, sign: float) -> Exported:
+def _whole(name: str, numbers: list[int], lines: list[str], n: int, sign: float) -> Exported:
     """A dense matrix column by column; of a symmetric one the lower triangle, of a skew-symmetric one without diagonal."""
     count = n * n if not sign else n * (n + 1) // 2 if sign > 0 else n * (n - 1) // 2
     if len(lines) != count:
         raise MatrixFileError(f"{name}: {len(lines)} values, expected {count} for {n} rows: truncated?")
-    if wrong := next((k for k, words in lines if len(words) != 1), None):
-        raise MatrixFileError(f"{name}, line {wrong}: an array has one value per line: correct it")
-    values = [real(name, k, words[0]) for k, words in lines]
+    for number, line in zip(numbers, lines, strict=True):
+        if len(line.split()) != 1:
+            raise MatrixFileError(f"{name}, line {number}: an array has one value per line: correct it")
+    values = reals(name, numbers, [line.strip() for line in lines])
     matrix = np.zeros((n, n))
     if not sign:
-        return Exported(name, ss.csr_array(np.array(values).reshape(n, n).T))
+        return Exported(name, ss.csr_array(values.reshape(n, n).T))
     columns, rows = np.triu_indices(n, 0 if sign > 0 else 1)  # the lower triangle, column by column
     matrix[rows, columns] = values
-    matrix[columns, rows] = sign * np.array(values)
+    matrix[columns, rows] = sign * values
     return Exported(name, ss.csr_array(matrix))

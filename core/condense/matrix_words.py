@@ -1,6 +1,12 @@
 """Numbers in exported matrices, as Fortran and Nastran write them."""
 
 import re
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .exported import MatrixFileError
 
@@ -44,3 +50,31 @@ def real(name: str, number: int, word: str) -> float:
     if abs(value) > LARGEST_ENTRY:
         raise MatrixFileError(f"{name}, line {number}: {word[:40]}: implausibly large: check the exponent")
     return value
+
+
+def wholes(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np.intp]:
+    """As ``whole``, for many words and the numbers of their lines: (n,)."""
+    return _many(whole, np.intp, "+-0123456789", LARGEST_LABEL - 1, name, numbers, words)
+
+
+def reals(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np.float64]:
+    """As ``real``, for many words and the numbers of their lines: (n,)."""
+    return _many(real, np.float64, "+-.0123456789Ee", LARGEST_ENTRY, name, numbers, words)
+
+
+def _many(
+    one: Callable[[str, int, str], float],
+    kind: type,
+    characters: str,
+    most: float,
+    name: str,
+    numbers: Sequence[int],
+    words: Sequence[str],
+) -> NDArray[Any]:
+    """All words at once if they have only these ``characters``, else each by ``one``, which names the line of a wrong one."""
+    if set("".join(words)) <= set(characters):
+        with suppress(ValueError, OverflowError):
+            values = np.array(words, dtype=kind)
+            if (np.abs(values) <= most).all():
+                return values
+    return np.array([one(name, k, word) for k, word in zip(numbers, words, strict=True)], dtype=kind)
