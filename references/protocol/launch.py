@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections import deque
 from contextlib import suppress
@@ -22,6 +23,7 @@ PRELOADED = ("southwell.references.preloaded",)
 """What a kept or prepared process imports."""
 
 _keeping = False
+_starting = threading.Lock()
 _kept: "_Forker | None" = None
 _prepared: "deque[_Forker]" = deque()  # one at most
 
@@ -105,7 +107,7 @@ class Child:
 
 
 def keep() -> None:
-    """Keep the process that forks, from the next start on; for a process that starts many, from one thread."""
+    """Keep the process that forks, from the next start on; for a process that starts many."""
     global _keeping
     _keeping = True
 
@@ -118,10 +120,7 @@ def prepare() -> None:
 
 def start(module: str, space: int) -> Child:
     """Start a process that calls ``main()`` of a module and has at most ``space`` bytes of address space."""
-    global _kept
-    if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
-        _kept = _forker(PRELOADED)
-    forker = _kept or _take_prepared() or _forker((module,))
+    forker = _keep_one() or _take_prepared() or _forker((module,))
     pipes = [os.pipe() for _ in range(4)]
     theirs = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
     mine = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
@@ -135,6 +134,14 @@ def start(module: str, space: int) -> Child:
         os.set_blocking(number, False)
     stdin, stdout, stderr = (os.fdopen(n, m, buffering=0) for n, m in zip(mine, ("wb", "rb", "rb"), strict=False))
     return Child(stdin, stdout, stderr, mine[3], forker)
+
+
+def _keep_one() -> _Forker | None:
+    global _kept
+    with _starting:  # one for all threads
+        if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
+            _kept = _forker(PRELOADED)
+        return _kept
 
 
 def _take_prepared() -> _Forker | None:

@@ -19,7 +19,7 @@ from southwell.references.protocol.process import Limits
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("keeping")]
 
 CASES: dict[str, tuple[Case, Variant]] = {
     variant.name: (case, variant) for case in library.everything()[0].values() for variant in case.variants

@@ -20,6 +20,8 @@ from southwell.reports.verification import controls as reported
 
 from ...support import samples
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40

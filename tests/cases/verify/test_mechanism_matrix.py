@@ -24,6 +24,8 @@ from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
 
+pytestmark = pytest.mark.usefixtures("keeping")
+
 HEAD = Head("case", "code", "1", "same discretisation", 1e-8)
 TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
 

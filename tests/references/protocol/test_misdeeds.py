@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -11,11 +10,12 @@ import pytest
 
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import Modes
-from southwell.references.protocol import description, launch, registry
+from southwell.references.protocol import description, registry
 from southwell.references.protocol.description import Description, describe
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.worker import answers
 
+from ...support.keeping import kept
 from ...support.misdeeds import ANSWERS, DECLARATIONS, TABLE, Misdeed, answering, declaring, module
 
 pytestmark = pytest.mark.slow
@@ -38,19 +38,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield made
 
 
-@contextmanager
-def kept() -> Iterator[None]:
-    """Keep the process that forks, as a worker of verify does, until the end of the block."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(launch, "_keeping", True)
-        patch.setattr(launch, "_kept", None)
-        try:
-            yield
-        finally:
-            if launch._kept:
-                launch._kept.close()
-
-
 def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Failure]]:
     """The description of the code and its answers; a code without a description is not run."""
     path = misdeed.write(folder)
@@ -63,8 +50,7 @@ def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Fail
 @pytest.fixture(scope="module")
 def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]]]:
     with kept(), ThreadPoolExecutor(2) as threads:
-        first = does(TABLE[0], folder)  # alone: it starts the process that is kept
-        return dict(zip(TABLE, [first, *threads.map(partial(does, folder=folder), TABLE[1:])], strict=True))
+        return dict(zip(TABLE, threads.map(partial(does, folder=folder), TABLE), strict=True))
 
 
 @pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
