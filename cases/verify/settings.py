@@ -57,7 +57,7 @@ def _setting(case: Case, variant: Variant) -> Setting:
 
 def _dimensional(blade: Blade) -> dict[str, str]:
     mass = trapezoid(blade.mass[:, 0, 0], blade.stations)
-    first, last, cone, pitch = np.degrees([blade.twist[0], blade.twist[-1], blade.precone, blade.pitch])
+    first, last = np.degrees(blade.twist[[0, -1]])
     sweep, prebend = (farthest(blade.curve[:, k]) for k in (1, 2))
     facts = {
         "length": f"{blade.length:g} m",
@@ -65,12 +65,9 @@ def _dimensional(blade: Blade) -> dict[str, str]:
         "mass": f"{mass + blade.tip_mass[0, 0]:.6g} kg",
         "stations": f"{len(blade.stations)}",
         "twist": f"{first:g}° at the root, {last:g}° at the tip" if blade.twist.any() else "",
-        "precone": f"{cone:g}° (positive downwind)" if cone else "",
-        "pitch": f"{pitch:g}° (positive with the leading edge downwind)" if pitch else "",
         "prebend": f"{prebend:.4g} m (positive downwind)" if prebend else "",
         "sweep": f"{sweep:.4g} m (positive to the leading edge)" if sweep else "",
-        "tip mass": f"{blade.tip_mass[0, 0]:g} kg" if blade.tip_mass.any() else "",
-        "root": "" if clamped(blade) else "on hinges or springs",
+        **_mounting(blade, "kg"),
         "rotary inertia": "" if blade.mass[:, 3:, 3:].any() else "none",
     }
     return {what: value for what, value in facts.items() if value}
@@ -78,4 +75,20 @@ def _dimensional(blade: Blade) -> dict[str, str]:
 
 def _dimensionless(blade: Blade) -> dict[str, str]:
     axial, bending = blade.stiffness[0, 0, 0], blade.stiffness[0, 5, 5]
-    return {"slenderness": f"{np.sqrt(axial / bending):g}", "hub ratio": f"{blade.hub_radius:g}"}
+    facts = {
+        "slenderness": f"{np.sqrt(axial / bending):g}",
+        "hub ratio": f"{blade.hub_radius:g}",
+        **_mounting(blade, "times the blade's mass"),
+    }
+    return {what: value for what, value in facts.items() if value}
+
+
+def _mounting(blade: Blade, unit: str) -> dict[str, str]:
+    """What is at the blade's ends, or empty; ``unit`` is that of mass."""
+    cone, pitch = np.degrees([blade.precone, blade.pitch])
+    return {
+        "precone": f"{cone:g}° (positive downwind)" if cone else "",
+        "pitch": f"{pitch:g}° (positive with the leading edge downwind)" if pitch else "",
+        "tip mass": f"{blade.tip_mass[0, 0]:g} {unit}" if blade.tip_mass.any() else "",
+        "root": "" if clamped(blade) else "on hinges or springs",
+    }
