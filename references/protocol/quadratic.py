@@ -8,14 +8,12 @@ Core has a different solver and never uses this one.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import blas
 from scipy.sparse import linalg as spla
 
 from .interface import CodeError
@@ -107,8 +105,8 @@ def _factor(K: Any) -> Solve:
     """
     if not sp.issparse(K):
         L = np.asfortranarray(scipy.linalg.cholesky(K, lower=True))
-        forward, back = partial(blas.dtrsv, L, lower=1), partial(blas.dtrsv, L, lower=1, trans=1)
-        return lambda b: back(forward(b))  # for one vector several times as fast as LAPACK's dpotrs
+        (trsv,) = scipy.linalg.get_blas_funcs(("trsv",), (L,))
+        return lambda b: trsv(L, trsv(L, b, lower=1), lower=1, trans=1)  # for one vector faster than LAPACK's potrs
     # no rows are exchanged, so that the pivots' signs are the inertia of K (Sylvester)
     factor = spla.splu(
         sp.csc_matrix(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
