@@ -29,7 +29,8 @@ def _setting(case: Case, variant: Variant) -> Setting:
     text = case.text
     (unit,) = (u for u in get_args(Unit) if getattr(text.speeds, u) is not UNSET)
     speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
-    facts = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
+    known = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
+    facts = {what: value for what, value in known.items() if value}
     facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
     some = len(text.compare.motions) < len(MOTIONS)
     moving = f" that move mostly {' or '.join(text.compare.motions)}" if some else ""
@@ -59,7 +60,7 @@ def _dimensional(blade: Blade) -> dict[str, str]:
     mass = trapezoid(blade.mass[:, 0, 0], blade.stations)
     first, last = np.degrees(blade.twist[[0, -1]])
     sweep, prebend = (farthest(blade.curve[:, k]) for k in (1, 2))
-    facts = {
+    return {
         "length": f"{blade.length:g} m",
         "hub radius": f"{blade.hub_radius:g} m",
         "mass": f"{mass + blade.tip_mass[0, 0]:.6g} kg",
@@ -70,21 +71,19 @@ def _dimensional(blade: Blade) -> dict[str, str]:
         **_mounting(blade, "kg"),
         "rotary inertia": "" if blade.mass[:, 3:, 3:].any() else "none",
     }
-    return {what: value for what, value in facts.items() if value}
 
 
 def _dimensionless(blade: Blade) -> dict[str, str]:
     axial, bending = blade.stiffness[0, 0, 0], blade.stiffness[0, 5, 5]
-    facts = {
+    return {
         "slenderness": f"{np.sqrt(axial / bending):g}",
         "hub ratio": f"{blade.hub_radius:g}",
         **_mounting(blade, "times the blade's mass"),
     }
-    return {what: value for what, value in facts.items() if value}
 
 
 def _mounting(blade: Blade, unit: str) -> dict[str, str]:
-    """What is at the blade's ends, or empty; ``unit`` is that of mass."""
+    """The angles at the hub, the tip mass and the root; empty where there is nothing to state. ``unit`` is that of mass."""
     cone, pitch = np.degrees([blade.precone, blade.pitch])
     return {
         "precone": f"{cone:g}° (positive downwind)" if cone else "",

@@ -3,7 +3,7 @@
 The colours are those of Okabe and Ito (Color Universal Design, 2008), which people with any common colour vision can
 distinguish. Colour is never the only distinction: codes also differ in marker, families in line style.
 
-Matplotlib takes a second to import, so only what draws imports it: pages take their colours from here without it.
+Matplotlib takes a second to import, so this module does not import it before something is drawn.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""One process that forks those of the codes, as each worker of ``verify`` keeps one; a start of its own takes a second each."""
+"""Keep the process that forks those of the codes, as a worker of ``verify`` does: starting one takes a second."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
