@@ -82,6 +82,7 @@ def _settings(exu: Any) -> Any:
     settings.solution.file.write = False
     settings.staticSolver.verboseMode = 0
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.staticSolver.newton.useModifiedNewton = True  # a Jacobian takes far longer than an iteration
     # step of Exudyn's numerical differentiation: relativeEpsilon × max(|q|, this); 1e-7 rad or m instead of 1e-9
     # leaves a rounding error of 1e-10 in the matrices
     settings.staticSolver.newton.numericalDifferentiation.minimumCoordinateSize = 1.0

@@ -45,9 +45,9 @@ def get(opened: store.Store, key: str) -> object:
         return None
 
 
-def put(opened: store.Store, key: str, code: str, answer: object) -> None:
-    """Store an answer, which is plain data, of a code."""
-    opened.put(key, f"{code}, answers", json.dumps(answer).encode())  # unlike msgspec, json keeps nan
+def put(opened: store.Store, key: str, code: str, line: bytes) -> None:
+    """Store an answer of a code as its process wrote it."""
+    opened.put(key, f"{code}, answers", line)
 
 
 def array(label: str, module: str, question: tuple[object, ...], make: Callable[[], Array]) -> Array:

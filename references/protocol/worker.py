@@ -78,7 +78,7 @@ def exchange(
     """
     kept = stored_answers.reusable(code, version, limits)
     keys = [stored_answers.key(module, request([k]), code, version) for k in range(count)] if kept else []
-    found = {k: _validated(made, k, stored_answers.get(kept, key)) for k, key in enumerate(keys) if kept}
+    found = {k: _validated(made, k, _modes(stored_answers.get(kept, key))) for k, key in enumerate(keys) if kept}
     out: dict[int, T | Failure] = {k: answer for k, answer in found.items() if not isinstance(answer, Failure)}
     asked = [k for k in range(count) if k not in out]
     lines, ended = converse(module, request(asked), len(asked), limits) if asked else ([], NOTHING)
@@ -88,13 +88,17 @@ def exchange(
         except NonsenseError as error:
             ended = Failure("nonsense", str(error))
             break
-        out[k] = boundary.failure(data) or _validated(made, k, data.get("modes"))
+        out[k] = boundary.failure(data) or _validated(made, k, _modes(data))
         if kept and not isinstance(out[k], Failure):
-            stored_answers.put(kept, keys[k], code, data["modes"])
+            stored_answers.put(kept, keys[k], code, line)
     return [out.get(k, ended) for k in range(count)]
 
 
 NOTHING = Failure("internal", "no question was asked")
+
+
+def _modes(reply: object) -> object:
+    return reply.get("modes") if isinstance(reply, dict) else None
 
 
 def _validated(made: Callable[[int, Any], T], number: int, data: Any) -> T | Failure:

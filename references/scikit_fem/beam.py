@@ -22,6 +22,7 @@ from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
+from .assembly import bilinear
 
 Array = NDArray[np.float64]
 
@@ -186,15 +187,11 @@ def _sections(blade: Blade, basis: Any) -> tuple[Array, Sections]:
 def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Array:
     """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, which is linear for any amplitude."""
     fem = _skfem()
-    spring, bedding, load = (
-        fem.BilinearForm(forms.spring),
-        fem.BilinearForm(forms.bedding),
-        fem.LinearForm(forms.load),
-    )
+    load = fem.LinearForm(forms.load)
     steady = parts[0].steady
-    K, f = spring.assemble(steady, k=at.EA), steady.zeros()
+    K, f = bilinear(forms.spring, steady, k=at.EA), steady.zeros()
     for p in parts:
-        K = K - omega**2 * bedding.assemble(p.steady, k=p.mass)
+        K = K - omega**2 * bilinear(forms.bedding, p.steady, k=p.mass)
         f = f + omega**2 * load.assemble(p.steady, k=p.mass * (blade.hub_radius + p.x))
     return fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
 
@@ -202,18 +199,14 @@ def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Arr
 def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     """Steady rotation of the sections about x by the propeller moment: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, by Newton's method."""
     fem = _skfem()
-    spring, bedding, load = (
-        fem.BilinearForm(forms.spring),
-        fem.BilinearForm(forms.bedding),
-        fem.LinearForm(forms.load),
-    )
+    load = fem.LinearForm(forms.load)
     steady = parts[0].steady
-    torsion, turn = spring.assemble(steady, k=at.GJ), steady.zeros()
+    torsion, turn = bilinear(forms.spring, steady, k=at.GJ), steady.zeros()
     for _ in range(NEWTON):
         K, f = torsion, -torsion @ turn
         for p in parts:
             J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
-            K = K - omega**2 * bedding.assemble(p.steady, k=J_yy - J_zz)
+            K = K - omega**2 * bilinear(forms.bedding, p.steady, k=J_yy - J_zz)
             f = f + omega**2 * load.assemble(p.steady, k=J_yz)
         step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
         turn = turn + step
@@ -224,7 +217,6 @@ def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
 
 def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
     """M, C, K of all coordinates about the steady state, in axes that rotate with the hub."""
-    fem = _skfem()
     parts, at = _parts(blade, basis), _sections(blade, basis)[1]
     stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
     U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, turn))
@@ -235,15 +227,15 @@ def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
     EI_yy, EI_zz, EI_yz = forms.rotated(at.EI_y, at.EI_z, parts[0].angle + rotation)
     stiffness = {"EA": at.EA, "GJ": at.GJ, "EI_yy": EI_yy, "EI_zz": EI_zz, "EI_yz": EI_yz}
     steady = {"g": 1 + U.grad[0], "g_s": U.hess[0, 0], "tension": at.EA * U.grad[0], "torque": at.GJ * rotation.grad[0]}
-    K = fem.BilinearForm(forms.elastic).assemble(basis, **stiffness, **steady)
+    K = bilinear(forms.elastic, basis, **stiffness, **steady)
     M = C = 0 * K
     for p in parts:
         J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
         inertia = {"mass": p.mass, "J_xx": p.I_x, "J_yy": J_yy, "J_zz": J_zz, "J_yz": J_yz}
         inertia["g"] = 1 + p.steady.interpolate(stretch).grad[0]
-        M = M + fem.BilinearForm(forms.inertia).assemble(p.basis, **inertia)
-        C = C + omega * fem.BilinearForm(forms.gyroscopic).assemble(p.basis, **inertia)
-        K = K - omega**2 * fem.BilinearForm(forms.centrifugal).assemble(p.basis, **inertia)
+        M = M + bilinear(forms.inertia, p.basis, **inertia)
+        C = C + omega * bilinear(forms.gyroscopic, p.basis, **inertia)
+        K = K - omega**2 * bilinear(forms.centrifugal, p.basis, **inertia)
     springs = np.zeros(basis.N)
     root = 1 + stretch[parts[0].steady.get_dofs("root").nodal["u_x"][0]]
     for slope, spring in _hinges(blade, basis).items():

@@ -25,6 +25,7 @@ from ..protocol.interface import CodeError, Independence, Shares
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
+from .assembly import bilinear
 from .reissner_beam import Beam, State, beam_of, skfem, spatial, stiffening, strain, strain_rate
 from .reissner_steady import steady
 
@@ -116,12 +117,11 @@ def _coordinates(beam: Beam, state: State) -> Array:
 
 def _matrices(beam: Beam, state: State, omega: float, Z: Array) -> tuple[Array, Array, Array]:
     """M, C, K of the coordinates, whose motions are the columns of ``Z``."""
-    fem = skfem()
     M = C = sp.csr_array((beam.basis.N, beam.basis.N))
     for part, axes in zip(beam.parts, state.part_axes, strict=True):
-        about, form = spatial(part, axes), fem.BilinearForm(forms.quadratic)
-        M = M + form.assemble(part.basis, on=forms.for_fem(forms.inertia(about), 2))
-        C = C + omega * form.assemble(part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))
+        about = spatial(part, axes)
+        M = M + bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.inertia(about), 2))
+        C = C + omega * bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))
     soft = np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
     roots = Z.shape[1] - len(soft)
     K = Z.T @ (stiffening(beam, state, omega) @ Z)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade, mass_at, stiffness_at
 from ..theories.reference_line import line, moments, root_axes
 from . import reissner_forms as forms
+from .assembly import bilinear
 
 Array = NDArray[np.float64]
 
@@ -110,9 +111,8 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
     s = np.array(basis.global_coordinates())[0]
     at_rest = line(blade, s)
     rigid = np.array(np.isinf(blade.stiffness).any(axis=(0, 2)))
-    on_forces = fem.BilinearForm(forms.quadratic)
     within = fem.Basis(mesh, forces.elem, intorder=INERTIA)
-    compliance = on_forces.assemble(within, on=forms.for_fem(_compliance(blade, within, ~rigid), 2))
+    compliance = bilinear(forms.quadratic, within, on=forms.for_fem(_compliance(blade, within, ~rigid), 2))
     parts = [_part(blade, fem.Basis(mesh, basis.elem, intorder=INERTIA), None)]
     if blade.tip_mass.any():
         parts.append(_part(blade, basis.boundary("tip"), blade.tip_mass))
@@ -134,7 +134,7 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
         slope=at_rest.slope,
         axes=at_rest.axes,
         compliance=compliance,
-        gram=on_forces.assemble(forces, on=forms.for_fem(np.broadcast_to(np.eye(6), (*s.shape, 6, 6)), 2)),
+        gram=bilinear(forms.quadratic, forces, on=forms.for_fem(np.broadcast_to(np.eye(6), (*s.shape, 6, 6)), 2)),
         rigid=rigid,
         to_free=to_free.tocsc(),
         springs=springs,
@@ -204,18 +204,17 @@ def spatial(part: Part, axes: Array) -> Array:
 def strain_rate(beam: Beam, state: State) -> Any:
     """B: section forces times the first variation of the strains by all coordinates."""
     on = forms.for_fem(forms.strain_rate(state.slope, state.axes), 2)
-    return skfem().BilinearForm(forms.mixed).assemble(beam.basis, beam.forces, on=on)
+    return bilinear(forms.mixed, beam.basis, beam.forces, on=on)
 
 
 def stiffening(beam: Beam, state: State, omega: float) -> Any:
     """Stiffness of all coordinates due to the steady section forces and the change of the centrifugal force."""
-    fem = skfem()
     force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
     on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
-    K = fem.BilinearForm(forms.quadratic_local).assemble(beam.basis, on=on)
+    K = bilinear(forms.quadratic_local, beam.basis, on=on)
     for part, place, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
         on = forms.for_fem(forms.centrifugal(place, spatial(part, axes)), 2)
-        K = K + omega**2 * fem.BilinearForm(forms.quadratic).assemble(part.basis, on=on)
+        K = K + omega**2 * bilinear(forms.quadratic, part.basis, on=on)
     return K
 
 

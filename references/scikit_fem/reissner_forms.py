@@ -132,17 +132,21 @@ def local(u: Any) -> Any:
 
 def quadratic(u: Any, v: Any, w: Any) -> Any:
     """Bilinear form with coefficients on q."""
-    return np.einsum("ij...,i...,j...", w.on, v, u)
+    return _product(v, w.on, u)
 
 
 def quadratic_local(u: Any, v: Any, w: Any) -> Any:
     """Bilinear form with coefficients on z."""
-    return np.einsum("ij...,i...,j...", w.on, local(v), local(u))
+    return _product(local(v), w.on, local(u))
 
 
 def mixed(u: Any, v: Any, w: Any) -> Any:
     """Bilinear form of a field of section forces v with z of a field u."""
-    return np.einsum("ij...,i...,j...", w.on, v, local(u))
+    return _product(v, w.on, local(u))
+
+
+def _product(left: Any, matrix: Array, right: Any) -> Any:
+    return np.einsum("i...,i...", left, np.einsum("ij...,j...->i...", matrix, right))
 
 
 def linear(v: Any, w: Any) -> Any:
