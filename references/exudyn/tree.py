@@ -43,7 +43,7 @@ class ExudynTree:
     shares: Shares = "nothing"
     independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
     effects = ALL_EFFECTS
-    levels = (12, 24, 48)
+    levels = (12, 24, 36)
     order = 2
     hint = ex.HINT
     distribution = ex.DISTRIBUTION

@@ -12,6 +12,7 @@ writes the child's exit code.
 """
 
 import ctypes
+import gc
 import importlib
 import json
 import os
@@ -36,6 +37,7 @@ def main() -> None:
     for name in sys.argv[2:] if sys.platform == "linux" else ():
         with suppress(Exception):  # the child imports its module again and reports the error
             importlib.import_module(name)
+    gc.freeze()  # else the collections of each child would copy all pages of what is imported
     while True:
         request, streams, _, _ = socket.recv_fds(link, REQUEST, 4)
         if not request:

@@ -36,7 +36,7 @@ class ScikitFemSolid:
     )
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = ALL_EFFECTS
-    levels = (10, 20, 40)
+    levels = (10, 20, 30)
     order = 4
     digits = 5  # the equations of slender solids are ill-conditioned
     hint = hexahedra.HINT

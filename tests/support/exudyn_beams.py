@@ -63,6 +63,6 @@ def observed_order(values: list[np.ndarray]) -> np.ndarray:
 
 
 def extrapolated(code, solve) -> tuple[np.ndarray, np.ndarray]:
-    """Richardson's value from the two finest of the code's levels, and the observed order from all three."""
-    values = [solve(elements) for elements in code.levels]
+    """Richardson's value from the two finest of three refinements, from the code's coarsest, and the observed order."""
+    values = [solve(factor * code.levels[0]) for factor in (1, 2, 4)]
     return values[2] + (values[2] - values[1]) / (2.0**code.order - 1), observed_order(values)

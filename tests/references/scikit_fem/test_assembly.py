@@ -11,7 +11,21 @@ from southwell.references.scikit_fem.assembly import bilinear
 skfem = pytest.importorskip("skfem")
 
 MESH = skfem.MeshLine(np.array([0.0, 0.3, 1.1, 1.2]))
-COEFFICIENTS = ["EA", "GJ", "EI_yy", "EI_zz", "EI_yz", "tension", "torque", "g_s", "mass", "J_xx", "J_yy", "J_zz", "J_yz"]
+COEFFICIENTS = [
+    "EA",
+    "GJ",
+    "EI_yy",
+    "EI_zz",
+    "EI_yz",
+    "tension",
+    "torque",
+    "g_s",
+    "mass",
+    "J_xx",
+    "J_yy",
+    "J_zz",
+    "J_yz",
+]
 
 
 def same(form: Any, trial: Any, test: Any = None, **given: Any) -> None:
