@@ -17,7 +17,8 @@ correct at zero speed, but in rotation their steady moment is missing, up to 2.7
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -33,6 +34,7 @@ from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Motion, Shares
 from ..theories.grading import element_ends
+from .input_file import write
 
 Array = NDArray[np.float64]
 
@@ -48,53 +50,15 @@ FREEDOMS = 9
 ITERATED = 500
 """Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector."""
 
+NEAR = 1e-3
+"""Relative difference between frequencies of a coarse mesh below which iteration may miss one of the two modes."""
+
 AGREEMENT = 1e-6
 """Relative difference between two iterated answers that is rounding."""
 
 ZERO_SHAPE = 1e-9
 """Largest lateral motion, of a vector of norm one, that counts as zero: an axial mode, whose motion pyBModes does not
 return."""
-
-MAIN = """==== pyBModes main input file ====
-{name}
-
----- General parameters ----
-f  Echo
-1  beam_type  1: blade
-{rpm!r}  rot_rpm
-1.0  rpm_mult
-{radius!r}  radius  of the tip, m
-{hub!r}  hub_rad  m
-0.0  precone  deg
-0.0  bl_thp  deg
-1  hub_conn  1: clamped
-{count}  modepr
-t  TabDelim
-f  mid_node_tw
-
----- Tip mass ----
-{tip}
-
----- Distributed-property identifiers ----
-1  id_mat  1: isotropic
-'sections.dat'  sec_props_file
-
-Property scaling factors
-{scaling}
-
----- Finite element discretization ----
-{elements}  nselt
-Ends of the elements over the blade's length
-{ends}
-"""
-
-TABLE = """{name}
-{count}  n_secs
-
-sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff axial_stff cg_offst sc_offst tc_offst
-(-) (deg) (deg) (kg/m) (kg-m) (kg-m) (Nm^2) (Nm^2) (Nm^2) (N) (m) (m) (m)
-{rows}
-"""
 
 
 class PyBModes:
@@ -156,10 +120,9 @@ class PyBModes:
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
         s = element_ends(blade, elements, SECTIONS)
-        with TemporaryDirectory() as folder:
-            rotor = _pybmodes().RotatingBlade(_write(Path(folder), blade, omega, s, count))
-            elements = len(s) - 1
-            frequencies, shapes = _moving(rotor, blade, count, FREEDOMS * elements, _most(blade, elements))
+        with _rotor(blade, omega, s, count) as rotor:
+            doubted = FREEDOMS * (len(s) - 1) > ITERATED and _doubled(blade, omega, count)
+            frequencies, shapes = _moving(rotor, blade, count, doubted, _most(blade, len(s) - 1))
         return Modes(omega, frequencies, shapes, len(s) - 1, seconds=time.perf_counter() - begun)
 
 
@@ -169,38 +132,21 @@ def _pybmodes() -> Any:
     return models
 
 
-def _write(folder: Path, blade: Blade, omega: float, s: Array, count: int) -> Path:
-    """Write the input file, and the section table in the same folder; return the path of the input file.
+@contextmanager
+def _rotor(blade: Blade, omega: float, s: Array, count: int) -> Iterator[Any]:
+    """pyBModes's model of a blade on elements that end at ``s`` (n+1,), m; its input file exists meanwhile."""
+    with TemporaryDirectory() as folder:
+        yield _pybmodes().RotatingBlade(write(Path(folder), blade, omega, s, count))
 
-    pyBModes's axes: v and w are y and z here, and twist has the opposite sign. Its polar inertia is the sum of a
-    section's two inertias, and spin softening depends on their difference; they are chosen to match both values of the blade.
-    """
-    at = sample(blade, blade.stations)
-    difference = at.I_z - at.I_y
-    none = np.zeros(len(blade.stations))
-    angle = -np.degrees(at.twist + blade.pitch)
-    flap, edge = (at.I_x - difference) / 2, (at.I_x + difference) / 2
-    columns = (
-        *(blade.stations / blade.length, angle, angle, at.mass, flap, edge),
-        *(at.EI_y, at.EI_z, at.GJ, at.EA, none, none, none),
-    )
-    rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in zip(*columns, strict=True))
-    table = TABLE.format(name=blade.name, count=len(blade.stations), rows=rows)
-    (folder / "sections.dat").write_text(table, encoding="latin-1", errors="replace")
-    main = MAIN.format(
-        name=blade.name,
-        rpm=float(omega) * 30 / np.pi,
-        radius=float(blade.hub_radius + blade.length),
-        hub=float(blade.hub_radius),
-        count=count,
-        tip="\n".join(["0.0  -"] * 9),
-        scaling="\n".join(["1.0  -"] * 10),
-        elements=len(s) - 1,
-        ends=" ".join(f"{v:.17g}" for v in s / blade.length),
-    )
-    path = folder / "blade.bmi"
-    path.write_text(main, encoding="latin-1", errors="replace")
-    return path
+
+def _doubled(blade: Blade, omega: float, count: int) -> bool:
+    """Whether two of the lowest modes have nearly the same frequency, or may have: by a coarse mesh, solved directly."""
+    s = element_ends(blade, SECTIONS, SECTIONS)
+    if FREEDOMS * (len(s) - 1) > ITERATED:
+        return True
+    with _rotor(blade, omega, s, count) as rotor:
+        f = rotor.run(min(count + SPARE, _most(blade, len(s) - 1)), check_model=False).frequencies
+    return bool((np.diff(f) <= NEAR * f[1:]).any())
 
 
 def _most(blade: Blade, elements: int) -> int:
@@ -212,11 +158,11 @@ def _most(blade: Blade, elements: int) -> int:
     return FREEDOMS * elements if polar else FREEDOMS * elements // 2
 
 
-def _moving(rotor: Any, blade: Blade, count: int, freedoms: int, most: int) -> tuple[Array, NDArray[np.complex128]]:
+def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> tuple[Array, NDArray[np.complex128]]:
     """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
 
     With more than ``ITERATED`` freedoms, pyBModes iterates from a random vector, which at times misses one of two modes with
-    the same frequency. Then more modes are requested until two answers agree.
+    the same frequency. Where there may be such modes (``doubted``), more modes are requested until two answers agree.
 
     Raises:
         CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
@@ -230,7 +176,7 @@ def _moving(rotor: Any, blade: Blade, count: int, freedoms: int, most: int) -> t
         pairs = zip(found.frequencies, found.shapes, strict=True)
         moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
         frequencies = 2 * np.pi * np.array([f for f, _ in moving])
-        confirmed = freedoms <= ITERATED or (
+        confirmed = not doubted or (
             len(before) == len(frequencies) and np.allclose(before, frequencies, rtol=AGREEMENT, atol=0.0)
         )
         if (len(moving) == count and confirmed) or asked == most:

@@ -255,7 +255,7 @@ def test_what_a_tip_mass_weighs_is_not_what_it_pulls() -> None:
         def unsupported(self, blade: Blade) -> str | None:
             return None
 
-    written, mass = pybmodes_beam._write, []
+    written, mass = pybmodes_beam.write, []
 
     def with_tip_mass(folder, blade, omega, s, count):
         path = written(folder, blade, omega, s, count)
@@ -267,7 +267,7 @@ def test_what_a_tip_mass_weighs_is_not_what_it_pulls() -> None:
         return path
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pybmodes_beam, "_write", with_tip_mass)
+        patch.setattr(pybmodes_beam, "write", with_tip_mass)
         found = failures(Credulous(), among="^tip mass")
     assert set(found) == {"tip mass rotating"}
     assert "2.478" in found["tip mass rotating"]
