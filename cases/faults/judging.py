@@ -141,7 +141,7 @@ FAULTS = (
     Fault("paired with the next", "pairing", "an index one too high", "next mode's frequency",
           ((refinement, "pair", next_one),), PARK),
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
-          ((pairing, "_norm", lambda right: lambda a, weight: 4.0 * right(a, weight)),), PARK),
+          ((pairing, "_norm", lambda right: lambda a, momenta: 4.0 * right(a, momenta)),), PARK),
     _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
              ((refinement, "pair", anything_goes), (cells, "pair", anything_goes)), "twist reversed in the adapter"),
     _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",

@@ -70,13 +70,14 @@ def weights(blade: Blade) -> Array:
 
 def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
     """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape has no modal mass."""
-    cross = np.einsum("msi,sij,ksj->mk", a.conj(), weight, b, optimize=True)
-    norms = np.outer(_norm(a, weight), _norm(b, weight))
+    momenta = [(weight @ shapes[..., None])[..., 0] for shapes in (a, b)]
+    cross = np.tensordot(a.conj(), momenta[1], ((1, 2), (1, 2)))
+    norms = np.outer(*(_norm(shapes, momentum) for shapes, momentum in zip((a, b), momenta, strict=True)))
     return np.divide(np.abs(cross) ** 2, norms, out=np.zeros_like(norms), where=norms > 0)
 
 
-def _norm(shapes: NDArray[np.complex128], weight: Array) -> Array:
-    return np.einsum("msi,sij,msj->m", shapes.conj(), weight, shapes, optimize=True).real
+def _norm(shapes: NDArray[np.complex128], momenta: NDArray[np.complex128]) -> Array:
+    return (shapes.conj() * momenta).sum((1, 2)).real
 
 
 def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:

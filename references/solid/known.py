@@ -46,8 +46,8 @@ ACROSS = (4, 2)
 TOLERANCE, STIFFNESS_TOLERANCE = 1e-6, 1e-3
 """Largest difference of curve, twist and mass, and of stiffness, of a blade that is recognised; relative."""
 
-POINTS = 5
-"""Stations at which sections are identified again; a polynomial between them follows the taper to 1e-5."""
+POINTS = 4
+"""Stations at which sections are identified again; a polynomial between them follows the taper to 4e-5."""
 
 
 def recognised(blade: Blade) -> tuple[CurvedSolid | None, str]:
