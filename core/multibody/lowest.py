@@ -61,8 +61,9 @@ def _lanczos(p: Rotating, count: int, w: Array, dual_w: Array) -> Eigen | None:
     projected, size = np.zeros((limit + _WIDTH, limit + _WIDTH)), 0
     while size < limit:
         if size:
-            overlap = dual[:size] @ w
-            w -= basis[:size].T @ overlap
+            overlap, near = np.zeros((size, _WIDTH)), slice(max(size - 2 * _WIDTH, 0), size)
+            overlap[near] = dual[near] @ w  # with the others there is none, but for rounding
+            w -= basis[near].T @ overlap[near]
             again = dual[:size] @ w  # what rounding leaves
             w -= basis[:size].T @ again
             overlap += again
