@@ -19,6 +19,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
@@ -99,15 +100,15 @@ class ScikitFemBeam:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        basis = _basis(element_ends(blade, elements, COARSEST))
-        matrices = _matrices(blade, omega, basis)
+        basis, parts, readings = _mesh(blade, elements)
+        matrices = _matrices(blade, omega, parts)
         clamp = basis.get_dofs("root").flatten()
         free = basis.complement_dofs(np.setdiff1d(clamp, list(_hinges(blade, basis))))
         M, C, K = (matrix[free][:, free] for matrix in matrices)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         q = np.zeros((basis.N, len(frequencies)), complex)
         q[free] = vectors
-        shapes = _shapes(basis, q, blade.length)
+        shapes = np.stack([read @ q[of] for of, read in readings], axis=-1).transpose(1, 0, 2)
         return Modes(omega, frequencies, shapes, basis.mesh.nelements, seconds=time.perf_counter() - begun)
 
 
@@ -163,6 +164,19 @@ class Part:
     angle: Array
 
 
+@latest
+def _mesh(blade: Blade, elements: int) -> tuple[Any, list[Part], list[tuple[Any, Any]]]:
+    """What is the same at every speed.
+
+    Returns:
+        The basis; the parts; for each field, its coordinates, and the matrix that gives the field at the common stations.
+    """
+    basis = _basis(element_ends(blade, elements, COARSEST))
+    at = STATIONS[None] * blade.length
+    readings = [(of, part.probes(at)) for of, part in zip(basis.split_indices(), basis.split_bases(), strict=True)]
+    return basis, _parts(blade, basis), readings
+
+
 def _parts(blade: Blade, basis: Any) -> list[Part]:
     """The line, and the tip if it has mass."""
     fem = _skfem()
@@ -215,9 +229,10 @@ def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     raise CodeError(f"omega: {omega:g} rad/s: no steady twist of the sections in {NEWTON} steps; lower the speed")
 
 
-def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
+def _matrices(blade: Blade, omega: float, parts: list[Part]) -> tuple[Any, Any, Any]:
     """M, C, K of all coordinates about the steady state, in axes that rotate with the hub."""
-    parts, at = _parts(blade, basis), _sections(blade, basis)[1]
+    basis = parts[0].basis
+    at = _sections(blade, basis)[1]
     stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
     U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, turn))
     if not (U.grad[0] > -1).all():
@@ -241,13 +256,6 @@ def _matrices(blade: Blade, omega: float, basis: Any) -> tuple[Any, Any, Any]:
     for slope, spring in _hinges(blade, basis).items():
         springs[slope] = spring / root**2  # the section rotates by the slope over the stretch
     return M, C, K + dia_array((springs[None], [0]), shape=K.shape)
-
-
-def _shapes(basis: Any, q: NDArray[np.complex128], length: float) -> NDArray[np.complex128]:
-    """(m, 21, 4) from coordinates (n, m)."""
-    at = STATIONS[None] * length
-    fields_ = [part.probes(at) @ q[i] for i, part in zip(basis.split_indices(), basis.split_bases(), strict=True)]
-    return np.stack(fields_, axis=-1).transpose(1, 0, 2)
 
 
 CODE = ScikitFemBeam()

@@ -22,6 +22,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
 from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
@@ -87,10 +88,7 @@ class ScikitFemReissner:
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         begun = time.perf_counter()
-        ends = element_ends(blade, elements, COARSEST)
-        if len(ends) - 1 > MAX_ELEMENTS:
-            raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MAX_ELEMENTS}")
-        beam = beam_of(blade, ends)
+        beam = _beam(blade, elements)
         state = steady(beam, omega)
         coordinates = _coordinates(beam, state)
         M, C, K = _matrices(beam, state, omega, coordinates)
@@ -99,6 +97,14 @@ class ScikitFemReissner:
         largest = float(np.linalg.norm(strain(beam, state)[..., :3], axis=-1).max())
         refinement = beam.elements - steps(blade)
         return Modes(omega, frequencies, shapes, refinement, strain=largest, seconds=time.perf_counter() - begun)
+
+
+@latest
+def _beam(blade: Blade, elements: int) -> Beam:
+    ends = element_ends(blade, elements, COARSEST)
+    if len(ends) - 1 > MAX_ELEMENTS:
+        raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MAX_ELEMENTS}")
+    return beam_of(blade, ends)
 
 
 def _coordinates(beam: Beam, state: State) -> Array:

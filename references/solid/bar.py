@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, sample, uniform
 from ...core.modes import Modes
 from ..protocol.interface import CodeError
+from ..protocol.latest import latest
 from .materials import Orthotropic
 from .mesh import Bricks, blade
 
@@ -88,6 +89,7 @@ def modes(blade: Blade, omega: float, elements: int, count: int, solve: Solve) -
         wanted *= 2
 
 
+@latest
 def bar(of: Blade, elements: int) -> tuple[Bricks, Orthotropic]:
     """The solid equivalent to a uniform blade, from the rotor's axis outwards, and its material."""
     at = sample(of, 0.0)

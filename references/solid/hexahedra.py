@@ -25,6 +25,7 @@ from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
 from ..protocol import install
 from ..protocol.interface import CodeError
+from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from .materials import Material, Orthotropic, rotated
 from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless
@@ -73,6 +74,7 @@ class Solid:
     volume: Array
 
 
+@latest
 def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     """Build the fields of a block."""
     import skfem as fem
@@ -145,6 +147,7 @@ def internal_force(s: Solid, u: Array) -> Array:
     return np.concatenate(parts)
 
 
+@latest
 def mass(s: Solid) -> ss.csr_array:
     """Mass matrix (n, n), kg, the same for each displacement component."""
     import skfem as fem

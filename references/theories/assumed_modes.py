@@ -21,6 +21,7 @@ from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import Code, Independence, Motion, Shares
+from ..protocol.latest import latest
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
 from .spectral import clamped
 from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
@@ -49,6 +50,7 @@ class Bending:
         return self.elastic + omega**2 * self.centrifugal
 
 
+@latest
 def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
     """Edgewise and flapwise bending, separate if the blade is untwisted, with ``terms`` polynomials in each interval."""
     at = line(blade, terms)
