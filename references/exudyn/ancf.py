@@ -108,7 +108,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
         )
     ex.hold(exu, mbs, nodes[0], CLAMPED)
     mbs.Assemble()
-    M, _, K = ex.linearized(exu, mbs)
+    M, _, K = ex.linearized(exu, mbs, still=True)
     M, B = sparse.csr_array(M), sparse.kron(sparse.eye_array(2 * len(nodes)), SPIN, format="csr")
     if omega:
         centrifugal = omega**2 * M @ B @ B
@@ -122,7 +122,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
         )
         mbs.Assemble()
         ex.settle(exu, mbs, omega, rounding=ROUNDING * section.EA[0] * elements)
-        _, _, K = ex.linearized(exu, mbs)
+        _, _, K = ex.linearized(exu, mbs, still=True)
     return M, 2 * omega * M @ B, K
 
 

@@ -71,10 +71,23 @@ def sparse_matrix(exu: Any, matrix: Any) -> Any:
     return container
 
 
-def linearized(exu: Any, mbs: Any) -> tuple[Array, Array, Array]:
-    """Mass, damping and gyroscopic, and stiffness matrix (n, n) about the initial values; constraints are not applied."""
-    mass, stiffness, damping = mbs.ComputeLinearizedSystem(_settings(exu))[:3]
-    return np.array(mass), np.array(damping), np.array(stiffness)
+def linearized(exu: Any, mbs: Any, still: bool = False) -> tuple[Array, Array, Array]:
+    """Mass, damping and gyroscopic, and stiffness matrix (n, n) about the initial values; constraints are not applied.
+
+    ``still``: nothing moves or damps, and the second matrix, which takes half of the time, is zero.
+    """
+    settings = _settings(exu)
+    if not still:
+        mass, stiffness, damping = mbs.ComputeLinearizedSystem(settings)[:3]
+        return np.array(mass), np.array(damping), np.array(stiffness)
+    solver = exu.MainSolverStatic()  # the same steps without the derivative by velocities
+    solver.InitializeSolver(mbs, settings)
+    solver.ComputeMassMatrix(mbs)
+    solver.ComputeJacobianODE2RHS(mbs, scalarFactor_ODE2=-1.0, scalarFactor_ODE2_t=0.0, scalarFactor_ODE1=0.0)
+    own = slice(solver.GetODE2size())
+    mass, stiffness = (np.array(of())[own, own] for of in (solver.GetSystemMassMatrix, solver.GetSystemJacobian))
+    solver.FinalizeSolver(mbs, settings)
+    return mass, np.zeros_like(mass), stiffness
 
 
 def _settings(exu: Any) -> Any:

@@ -119,7 +119,7 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
     mbs.Assemble()
     if omega:
         _steady_state(exu, mbs, omega, n)
-    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs))
+    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, still=not omega))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 

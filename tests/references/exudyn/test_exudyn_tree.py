@@ -9,7 +9,7 @@ from southwell.cases.judge.uncertainty import observed_order
 from southwell.core import solve
 from southwell.core.blade import TORSION, Blade, section_mass
 from southwell.core.modes import STATIONS
-from southwell.references.exudyn import hinged_segments
+from southwell.references.exudyn import hinged_segments, system
 from southwell.references.exudyn import tree as exudyn_tree
 from southwell.references.exudyn.tree import CODE as TREE
 from southwell.references.scikit_fem.reissner import CODE as REISSNER
@@ -216,3 +216,15 @@ def test_springs_at_the_root(root):
     blade = replace(unit(0.2, EA=1e4, I_y=1e-3, I_z=2e-3), root=np.array(root), pitch=0.3)
     found, core = limit(blade, 2.0)
     np.testing.assert_allclose(found, core, rtol=1e-4)
+
+
+def test_at_rest_only_the_derivative_by_velocities_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    tree = hinged_segments.plant(curved(), 8)
+    M, C, K, _ = exudyn_tree.linearize(tree, 0.0)
+    whole = system.linearized
+    monkeypatch.setattr(system, "linearized", lambda exu, mbs, still: whole(exu, mbs))
+    mass, damping, stiffness, _ = exudyn_tree.linearize(tree, 0.0)
+    np.testing.assert_array_equal(M, mass)
+    np.testing.assert_array_equal(K, stiffness)
+    assert not C.any()
+    assert np.abs(damping).max() < 1e-8 * np.sqrt(np.abs(mass).max() * np.abs(stiffness).max())
