@@ -32,6 +32,9 @@ RIVAL_MAC = 0.5
 DEGENERATE = 2e-3
 """Relative frequency gap below which codes may return different linear combinations of two shapes."""
 
+DOUBLE = 1e-7
+"""Relative frequency gap below which any combination of two shapes is as good as another."""
+
 
 @dataclass(frozen=True)
 class Pair:
@@ -91,7 +94,7 @@ def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:
     return out
 
 
-def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
+def aligned(modes: Modes, weight: Array, gap: float = DOUBLE) -> Modes:
     """The same modes, with shapes of equal frequency combined so that each moves along one axis where possible.
 
     The basis of a degenerate eigenspace is arbitrary; the modes that diagonalise the flapwise mass can be named.
@@ -109,16 +112,17 @@ def aligned(modes: Modes, weight: Array, gap: float = 1e-7) -> Modes:
 def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array, least: float = LEAST_MAC) -> list[Pair]:
     """Partners in ``other`` of the reference's modes ``wanted``.
 
-    One assignment over all modes of both maximises the sum of MACs. If the MAC of a pair is below ``least`` and the
-    reference's mode has close neighbours in frequency, the group is compared as a subspace and its members are matched
-    in order of frequency. ``least`` is the MAC below which two shapes are not partners.
+    One assignment over all modes of both maximises the sum of MACs. Modes of the same frequency are compared as a subspace and
+    matched in order of frequency; so are modes of nearly the same frequency if the MAC of one of them is below ``least``, the
+    MAC below which two shapes are not partners.
     """
     table = mac(reference.shapes, other.shapes, weight)
     rows, columns = linear_sum_assignment(-table)
     partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
     found: dict[int, Pair] = {}
     for group in groups(reference.frequencies):
-        if any(table[k, partner[k]] < least for k in group if k in partner):
+        same = float(np.ptp(reference.frequencies[group])) <= DOUBLE * reference.frequencies[group[-1]]
+        if same or any(table[k, partner[k]] < least for k in group if k in partner):
             found.update(_as_subspace(group, partner, reference, other, weight, least))
     return [found.get(k) or _alone(table[k], partner.get(k), other, least) for k in wanted]
 

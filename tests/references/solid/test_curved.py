@@ -237,7 +237,7 @@ def test_a_full_clamp_is_stiffer_than_a_beams() -> None:
 
 @pytest.mark.slow
 def test_frequencies_converge_with_the_fourth_power() -> None:
-    f = np.array([modes(CURVED, 0.0, n, 6).frequencies for n in CODE.levels])
+    f = np.array([modes(CURVED, 0.0, n, 6).frequencies for n in (10, 20, 40)])
     np.testing.assert_allclose(np.log2((f[0] - f[1]) / (f[1] - f[2])), CODE.order, atol=0.2)
 
 
