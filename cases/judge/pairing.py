@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, subspace_angles
+from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
 from ...core import gauss
@@ -34,6 +34,9 @@ DEGENERATE = 2e-3
 
 DOUBLE = 1e-7
 """Relative frequency gap below which any combination of two shapes is as good as another."""
+
+DEPENDENT = 1e12
+"""Condition number of shapes' products above which they are linearly dependent."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,19 @@ def weights(blade: Blade) -> Array:
 
 def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
     """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape has no modal mass."""
-    momenta = [(weight @ shapes[..., None])[..., 0] for shapes in (a, b)]
-    cross = np.tensordot(a.conj(), momenta[1], ((1, 2), (1, 2)))
+    momenta = [_momenta(shapes, weight) for shapes in (a, b)]
     norms = np.outer(*(_norm(shapes, momentum) for shapes, momentum in zip((a, b), momenta, strict=True)))
+    cross = _products(a, momenta[1])
     return np.divide(np.abs(cross) ** 2, norms, out=np.zeros_like(norms), where=norms > 0)
+
+
+def _momenta(shapes: NDArray[np.complex128], weight: Array) -> NDArray[np.complex128]:
+    return (weight @ shapes[..., None])[..., 0]
+
+
+def _products(shapes: NDArray[np.complex128], momenta: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """(m, k) of shapes (m, 21, 4) with momenta W b (k, 21, 4)."""
+    return np.tensordot(shapes.conj(), momenta, ((1, 2), (1, 2)))
 
 
 def _norm(shapes: NDArray[np.complex128], momenta: NDArray[np.complex128]) -> Array:
@@ -103,8 +115,8 @@ def aligned(modes: Modes, weight: Array, gap: float = DOUBLE) -> Modes:
     for group in groups(modes.frequencies, gap):
         if len(group) > 1:
             flap = np.einsum("ms,s,ks->mk", shapes[group, :, 2].conj(), weight[:, 2, 2], shapes[group, :, 2])
-            whole = np.einsum("msi,sij,ksj->mk", shapes[group].conj(), weight, shapes[group], optimize=True)
-            if np.linalg.cond(whole) < 1e12:
+            whole = _products(shapes[group], _momenta(shapes[group], weight))
+            if np.linalg.cond(whole) < DEPENDENT:
                 shapes[group] = np.einsum("mk,msi->ksi", eigh(flap, whole)[1], shapes[group])
     return replace(modes, shapes=shapes)
 
@@ -156,13 +168,12 @@ def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
 
 
 def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:
-    """cos² of the largest principal angle between two subspaces of equal dimension (Björck and Golub, 1973).
+    """cos² of the largest principal angle between two subspaces of equal dimension; 0 if shapes are linearly dependent.
 
-    0 if the shapes are linearly dependent.
+    The eigenvalues of ``(aᴴWa)⁻¹ aᴴWb (bᴴWb)⁻¹ bᴴWa`` are the cos² of all angles (Hotelling, 1936: canonical correlations).
     """
-    values, vectors = np.linalg.eigh(weight)
-    root = np.sqrt(values.clip(0.0))[:, :, None] * vectors.swapaxes(1, 2)  # rootᵀ root = W
-    flat = [np.einsum("sij,msj->msi", root, shapes).reshape(len(shapes), -1).T for shapes in (a, b)]
-    if any(np.linalg.matrix_rank(columns) < len(a) for columns in flat):
+    own_a, own_b, cross = (_products(x, _momenta(y, weight)) for x, y in ((a, a), (b, b), (a, b)))
+    if max(np.linalg.cond(own) for own in (own_a, own_b)) > DEPENDENT:
         return 0.0
-    return float(np.cos(subspace_angles(*flat).max()) ** 2)
+    squares = np.linalg.eigvals(np.linalg.solve(own_a, cross) @ np.linalg.solve(own_b, cross.conj().T)).real
+    return float(squares.min().clip(0.0, 1.0))
