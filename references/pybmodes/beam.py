@@ -70,7 +70,7 @@ class PyBModes:
     independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise", "torsion")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
-    levels = (SECTIONS, 2 * SECTIONS, 3 * SECTIONS)
+    levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
     hint = install.extra("codes")
     distribution = "pybmodes"
