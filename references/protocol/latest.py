@@ -17,7 +17,7 @@ def latest(function: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(function)
     def remembering(*args: P.args, **kwargs: P.kwargs) -> T:
-        given = (*args, *sorted(kwargs.items()))
+        given = (*args, *kwargs.values(), tuple(kwargs))
         if not kept or len(kept[0][0]) != len(given) or not all(map(_same, kept[0][0], given)):
             kept[:] = [(given, function(*args, **kwargs))]
         return kept[0][1]

@@ -27,11 +27,12 @@ largest error of the six lowest frequencies relative to the exact beam, at one s
 EQUAL = f"""At equal accuracy: each code with {ELEMENTS} elements, and core with the fewest elements whose error is no
 larger, at most {ELEMENTS}. *× core* is the code's time relative to core's with that number."""
 
-EXCLUDED = """The times include building each code's model, its steady state and its eigenproblem. In a sweep core and scikit-
-fem build their model once, and core starts each speed from the previous ones; the other codes start anew. Excluded: starting
-the process, importing libraries, compilation (each code has answered once before), reading the blade's file, and estimating the
-uncertainty: core is timed on one mesh, as the other codes are, while `southwell modes` refines the mesh and takes longer. The
-accuracy is that of frequencies at one speed, not of shapes. Codes that are not installed or fail are not compared."""
+EXCLUDED = """The times include building each code's model, its steady state and its eigenproblem. In a sweep core and
+scikit-fem build their model once, and core starts each speed from the previous ones; the other codes start anew. Excluded:
+starting the process, importing libraries, compilation (each code has answered once before), reading the blade's file, and
+estimating the uncertainty: core is timed on one mesh, as the other codes are, while `southwell modes` refines the mesh and
+takes longer. The accuracy is that of frequencies at one speed, not of shapes. Codes that are not installed or fail are not
+compared."""
 
 
 def command(*, out: Path = Path("southwell-report")) -> int:
