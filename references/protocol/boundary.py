@@ -11,16 +11,15 @@ from typing import Annotated, Any, Literal, TypeVar
 import msgspec
 import numpy as np
 from msgspec import Meta, Struct
+from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
 from .interface import Motion, Shares
 from .mechanism_interface import MechanismModes
 from .process import Failure, one_line
-from .wire import decode_modes
+from .wire import decode_complex, decode_modes
 
 T = TypeVar("T")
-Pair = tuple[float, float]
-"""Real and imaginary part."""
 
 PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
 
@@ -87,10 +86,15 @@ class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     page: str
 
 
+class _Complex(Struct, frozen=True, forbid_unknown_fields=True):
+    sizes: list[Annotated[int, Meta(ge=0, le=10**7)]]
+    base64: str
+
+
 class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
     omega: float
     frequencies: list[float]
-    shapes: list[list[list[Pair]]]
+    shapes: _Complex
     elements: Elements
     damping: list[float]
     uncertainty: list[float]
@@ -102,8 +106,8 @@ class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
     coordinates: list[Line]
     steady: list[float]
-    values: list[Pair]
-    shapes: list[list[Pair]]
+    values: _Complex
+    shapes: _Complex
     seconds: Seconds
 
 
@@ -143,15 +147,15 @@ def modes(data: Any, omega: float, count: int) -> Modes:
     found = convert(data, _Modes)
     m = len(found.frequencies)
     _keep(1 <= m <= count, f"frequencies: {m} returned, {count} requested")
-    _keep(len(found.shapes) == m, f"shapes: {len(found.shapes)} for {m} frequencies")
-    sizes = {(len(shape), *{len(station) for station in shape}) for shape in found.shapes}
-    _keep(sizes == {(len(STATIONS), 4)}, f"shapes: each must be {len(STATIONS)} stations by 4 columns")
+    shapes = _array("shapes", found.shapes, 3)
+    _keep(len(shapes) == m, f"shapes: {len(shapes)} for {m} frequencies")
+    _keep(shapes.shape[1:] == (len(STATIONS), 4), f"shapes: each must be {len(STATIONS)} stations by 4 columns")
     for name in ("damping", "uncertainty", "rounding"):
         values = getattr(found, name)
         _keep(len(values) in (0, m), f"{name}: {len(values)} values for {m} frequencies")
         _finite(name, values)
     _finite("frequencies", found.frequencies)
-    _finite("shapes", data["shapes"])
+    _finite("shapes", shapes.view(float))
     _keep(min(found.frequencies) >= 0.0, f"frequencies: {_quoted(found.frequencies)}: negative")
     _ascending("frequencies", found.frequencies)
     for name in ("uncertainty", "rounding"):
@@ -170,18 +174,17 @@ def mechanism_modes(data: Any) -> MechanismModes:
         NonsenseError: if the data are invalid.
     """
     found = convert(data, _MechanismModes)
-    m, k = len(found.values), len(found.coordinates)
+    values, shapes = _array("values", found.values, 1), _array("shapes", found.shapes, 2)
+    m, k = len(values), len(found.coordinates)
     _keep(m >= 1, "values: none")
     _keep(
         k >= 1 and len(set(found.coordinates)) == k,
         f"coordinates: {_quoted(found.coordinates)}: empty, or a duplicate name",
     )
     _keep(len(found.steady) == k, f"steady: {len(found.steady)} values for {k} coordinates")
-    fits = len(found.shapes) == m and all(len(shape) == k for shape in found.shapes)
-    _keep(fits, f"shapes: must be {m} shapes of {k} coordinates each")
-    for name in ("steady", "values", "shapes"):
-        _finite(name, getattr(found, name))
-    values, shapes = (_complex(pairs) for pairs in (found.values, found.shapes))
+    _keep(shapes.shape == (m, k), f"shapes: must be {m} shapes of {k} coordinates each")
+    for name, numbers in (("steady", found.steady), ("values", values.view(float)), ("shapes", shapes.view(float))):
+        _finite(name, numbers)
     _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
     return MechanismModes(tuple(found.coordinates), np.array(found.steady), values, shapes, found.seconds)
 
@@ -214,9 +217,13 @@ def convert(data: Any, kind: type[T]) -> T:
         raise NonsenseError(f"{about}{one_line(error)}") from None
 
 
-def _complex(pairs: Any) -> Any:
-    both = np.array(pairs, dtype=float)
-    return both[..., 0] + 1j * both[..., 1]
+def _array(name: str, found: _Complex, dimensions: int) -> NDArray[np.complex128]:
+    try:
+        out = decode_complex(found.sizes, found.base64)
+    except ValueError as error:
+        raise NonsenseError(f"{name}: not {found.sizes} complex numbers in base64: {one_line(error)}") from None
+    _keep(out.ndim == dimensions, f"{name}: {out.ndim} dimensions instead of {dimensions}")
+    return out
 
 
 def _finite(name: str, values: Any) -> None:
