@@ -134,12 +134,11 @@ def with_root_forces(solid: CurvedSolid, layers: int, across: tuple[int, int]) -
     return bricks, force.reshape(-1, 6)
 
 
-def loaded(solid: CurvedSolid, bricks: Bricks) -> Array:
+def loaded(solid: CurvedSolid, bricks: Bricks, body: hexahedra.Solid) -> Array:
     """(3n, 6) displacements of a block of the solid, fixed at its inner end, by six wrenches at its outer end.
 
     They are unit forces along, and moments about, the blade's axes at the root.
     """
-    body = hexahedra.solid(bricks, solid.material)
     K = hexahedra.tangent(body)
     last = layer(bricks, 2 * bricks.counts[0])
     n = len(body.nodes)
@@ -184,12 +183,11 @@ def inside(
     h = float(_linear(solid.chord, np.array(at / solid.length))) / per_chord
     n = int(np.ceil(stub * per_chord)) + 1
     bricks = solid.bricks(at + h * np.arange(-n, n + 1.0), across)
-    u = loaded(solid, bricks).reshape(3, -1, 6)
+    body = hexahedra.solid(bricks, solid.material)
+    u, middle = loaded(solid, bricks, body), layer(bricks, 2 * n)
     energy, force = np.zeros((6, 6)), np.zeros(0)
     for start in (n - 1, n):
-        part = hexahedra.solid(bricks.part(start, start + 1), solid.material)
-        first = layer(bricks, 2 * start)[0]
-        own = u[:, first : first + len(part.nodes)].reshape(-1, 6)
-        force = hexahedra.tangent(part) @ own
-        energy += own.T @ force
-    return Slice(2 * h, energy, -force.reshape(3, -1, 6)[:, : len(layer(bricks, 0))])
+        within = body.own.min(axis=1) // len(middle) == 2 * start
+        force = hexahedra.tangent(hexahedra.part(body, within)) @ u
+        energy += u.T @ force
+    return Slice(2 * h, energy, -force.reshape(3, -1, 6)[:, middle])

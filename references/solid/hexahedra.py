@@ -11,7 +11,7 @@ R. L. Taylor and J. M. Too, Int. J. Numer. Meth. Engng 3 (1971) 275). No motion 
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from itertools import pairwise
 from typing import Any
@@ -36,6 +36,9 @@ HINT = install.extra("codes")
 
 NEWTON = 12
 """Iterations of Newton's method."""
+
+SETTLED = 1e-6
+"""Size of a step, relative to the largest coordinate, after which the stiffness is that of the step before."""
 
 STEPS = ((1.0,), (0.1, 0.4, 1.0))
 """Shares of the centrifugal load, one after the other; the second way for blades that straighten much."""
@@ -120,7 +123,7 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
     F, S = _deformed(s, u)
     S = S if stress is None else stress
     count, points, size, _ = s.slopes.shape
-    out = np.empty((count, 3 * size, 3 * size))
+    out = np.empty((3, 3, count, size, size))
     for start in range(0, count, CHUNK):
         e = slice(start, start + CHUNK)
         A = np.einsum("eqiK,eqKIMJ,eqjM->eqIijJ", F[e], s.moduli[e], F[e], optimize=True)
@@ -130,12 +133,37 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
         right = A.reshape(n, points, 27, 3) @ s.slopes[e].swapaxes(2, 3)
         left = s.slopes[e].transpose(0, 2, 1, 3).reshape(n, size, 3 * points)
         whole = (left @ right.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
-        out[e] = whole.transpose(0, 2, 1, 3, 4).reshape(n, 3 * size, 3 * size)
-    total = len(s.nodes)
-    own = np.concatenate([s.own + d * total for d in range(3)], axis=1)
-    rows, columns = (np.broadcast_to(part, out.shape).ravel() for part in (own[:, :, None], own[:, None]))
-    K = ss.csr_array(ss.coo_array((out.ravel(), (rows, columns)), shape=(3 * total, 3 * total)))
-    return ss.csr_array(0.5 * (K + K.T))
+        out[:, :, e] = whole.transpose(2, 3, 0, 1, 4)
+    out = 0.5 * (out + out.transpose(1, 0, 2, 4, 3))  # equal but for rounding
+    entry, rows, columns, order = _pattern(s.own, len(s.nodes))
+    sums = np.array([np.bincount(entry, part.ravel()) for part in out.reshape(9, -1)])
+    return ss.csr_array((sums.ravel()[order], columns, rows), shape=(3 * len(s.nodes), 3 * len(s.nodes)))
+
+
+@latest
+def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
+    """Where the entries of matrices of all elements, for each pair of displacement components, are in the sparse matrix.
+
+    Returns:
+        entry (e 27 27,) of the matrix of one pair, row by row; then of the whole matrix: the first entry of each row
+        (3n+1,), the column of each entry, and its index in the concatenated entries of the nine pairs.
+    """
+    rows, columns = (np.broadcast_to(part, (*own.shape, own.shape[1])).ravel() for part in (own[:, :, None], own[:, None]))
+    pairs, entry = np.unique(rows * nodes + columns, return_inverse=True)
+    size = len(pairs)
+    numbers = ss.csr_array((np.arange(size), (pairs // nodes, pairs % nodes)), shape=(nodes, nodes))
+    blocks = [[_with(numbers, numbers.data + (3 * i + j) * size) for j in range(3)] for i in range(3)]
+    whole = ss.csr_array(ss.block_array(blocks, format="csr"))
+    return entry, whole.indptr, whole.indices, whole.data
+
+
+def _with(matrix: ss.csr_array, data: NDArray[np.intp]) -> ss.csr_array:
+    return ss.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def part(s: Solid, which: NDArray[np.bool_]) -> Solid:
+    """The solid with only some of its elements (e,); the nodes remain."""
+    return replace(s, moduli=s.moduli[which], own=s.own[which], slopes=s.slopes[which], volume=s.volume[which])
 
 
 def internal_force(s: Solid, u: Array) -> Array:
@@ -258,14 +286,14 @@ def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
     the rotations of that step, as spurious tension, make a slender solid straighten slowly (D. Magisano, L. Leonetti and
     G. Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017) 986). Both lead to the same state, whose stiffness is returned.
     """
-    place, stress = s.nodes.T.ravel(), None
+    place, stress, factor, size = s.nodes.T.ravel(), None, None, 1.0
     for _ in range(NEWTON):
-        K = ss.csc_array(tangent(s, u, stress) - across)
-        out_of_balance = free.T @ (across @ (place + u) - internal_force(s, u))
-        factor = factored(free.T @ K @ free)
-        step = free @ factor.solve(out_of_balance)
+        if factor is None or size > SETTLED:
+            factor = factored(free.T @ ss.csc_array(tangent(s, u, stress) - across) @ free)
+        step = free @ factor.solve(free.T @ (across @ (place + u) - internal_force(s, u)))
         stress, u = predicted(s, u, step), u + step
-        if np.abs(step).max() <= 1e-10 * np.abs(place).max():
+        size = np.abs(step).max() / np.abs(place).max()
+        if size <= 1e-10:
             return u, ss.csc_array(tangent(s, u) - across)
         if not np.abs(u).max() < np.abs(place).max():
             break
