@@ -19,7 +19,7 @@ from scipy.sparse import linalg as spla
 from .interface import CodeError
 
 Array = NDArray[np.float64]
-Matrix = Array | sp.spmatrix | sp.sparray
+Matrix = Array | sp.spmatrix | sp.sparray | spla.LinearOperator
 Solve = Callable[[Array], Array]
 Pairs = tuple[Array, NDArray[np.complex128]]
 
@@ -41,9 +41,10 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
     12, 1974, there with M⁻¹; the inverse form needs none).
 
     Args:
-        M: (n, n) symmetric, positive semi-definite; zero rows and columns are allowed.
-        C: (n, n) skew.
-        K: (n, n) symmetric, positive definite.
+        M: (n, n) symmetric, positive semi-definite; zero rows and columns are allowed. A linear operator, of a matrix that
+            would be full, is applied instead of formed.
+        C: (n, n) skew; also as an operator.
+        K: (n, n) symmetric, positive definite; not an operator.
         count: number of modes; fewer are returned if there are fewer.
 
     Returns:
@@ -58,19 +59,43 @@ def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
     iterate = 2 * count + 4 < size and (thin or size > DENSE)
     if thin:
         matrices = [sp.csc_array(matrix) if iterate else sp.csc_array(matrix).toarray() for matrix in matrices]
+    if not iterate:
+        matrices = [matrix @ np.eye(size) if _acts(matrix) else matrix for matrix in matrices]
     scale = _scale(matrices[2])
-    m, c, k = (matrix * scale[:, None] * scale[None, :] for matrix in matrices)
+    m, c, k = (_scaled(matrix, scale) for matrix in matrices)
     k = _symmetric("K", k, 1, 1.0)
     try:
         solve = _factor(k)
     except np.linalg.LinAlgError:
         raise _unstable(matrices[2]) from None
-    largest = abs(m).max()
+    largest = _largest(m)
     m = _symmetric("M", m, 1, largest)
     # C is also compared with the critical damping of the lowest modes: at zero speed it is only rounding
-    c = _symmetric("C", c, -1, max(abs(c).max(), largest**0.5))
+    c = _symmetric("C", c, -1, max(_largest(c), largest**0.5))
     inverse, q = _iterated(m, c, k, solve, count) if iterate else _direct(m, c, k, count)
     return _ordered(inverse, q * scale[:, None], count)
+
+
+def _acts(matrix: Any) -> bool:
+    return isinstance(matrix, spla.LinearOperator)
+
+
+def _scaled(matrix: Any, scale: Array) -> Any:
+    if _acts(matrix):
+        units = spla.aslinearoperator(sp.diags_array(scale))
+        return units @ matrix @ units
+    return matrix * scale[:, None] * scale[None, :]
+
+
+def _largest(matrix: Any) -> float:
+    """The largest entry; of an operator, the largest of its products with the columns of ``_probes``."""
+    return float(abs(matrix @ _probes(matrix) if _acts(matrix) else matrix).max())
+
+
+def _probes(matrix: Any) -> Array:
+    """(n, 4) unit vectors in random directions."""
+    out = np.random.default_rng(1).standard_normal((matrix.shape[0], 4))
+    return out / np.linalg.norm(out, axis=0)
 
 
 def _scale(K: Any) -> Array:
@@ -84,17 +109,23 @@ def _scale(K: Any) -> Array:
 def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
     """The symmetric (sign 1) or skew (sign -1) part; the rest must be rounding, relative to ``size``.
 
+    An operator is returned as it is, after a test with a few vectors.
+
     Raises:
         CodeError: it is not, or the matrix is not finite.
     """
-    difference = matrix - sign * matrix.T
+    if _acts(matrix):
+        products = _probes(matrix).T @ (matrix @ _probes(matrix))
+        difference = products - sign * products.T
+    else:
+        difference = matrix - sign * matrix.T
     wrong = max(difference.max(), -difference.min())
     if not np.isfinite(wrong):
         raise CodeError(f"{name}: not finite: the linearisation of the code is not usable")
     if wrong > ASYMMETRY * size:
         kind = "symmetric" if sign == 1 else "skew"
         raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
-    return matrix - difference / 2
+    return matrix if _acts(matrix) else matrix - difference / 2
 
 
 def _factor(K: Any) -> Solve:

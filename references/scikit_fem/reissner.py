@@ -11,6 +11,7 @@ Software 5 (2020) 2369.
 
 import time
 from importlib import metadata
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -37,6 +38,9 @@ COARSEST = 8
 
 MAX_ELEMENTS = 300
 """Largest number of elements: the matrices are dense, with up to 12 rows per element."""
+
+FORMED = 600
+"""Largest number of coordinates for which forming M and C is faster than applying their factors in each iteration."""
 
 RIGID_BODY = 1e-6
 """Departure from a rigid body's mass matrix attributed to rounding, relative to its masses and moments of inertia."""
@@ -90,10 +94,10 @@ class ScikitFemReissner:
         begun = time.perf_counter()
         beam = _beam(blade, elements)
         state = steady(beam, omega)
-        coordinates = _coordinates(beam, state)
-        M, C, K = _matrices(beam, state, omega, coordinates)
+        motions = _motions(beam, state)
+        M, C, K = _matrices(beam, state, omega, motions)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
-        shapes = _shapes(beam, coordinates @ vectors)
+        shapes = _shapes(beam, motions @ vectors.real + 1j * (motions @ vectors.imag))
         largest = float(np.linalg.norm(strain(beam, state)[..., :3], axis=-1).max())
         refinement = beam.elements - steps(blade)
         return Modes(omega, frequencies, shapes, refinement, strain=largest, seconds=time.perf_counter() - begun)
@@ -107,34 +111,59 @@ def _beam(blade: Blade, elements: int) -> Beam:
     return beam_of(blade, ends)
 
 
-def _coordinates(beam: Beam, state: State) -> Array:
+def _motions(beam: Beam, state: State) -> spla.LinearOperator:
     """(all, n) motion of each coordinate: the root's free motions without strain, then each strain that is not rigid.
 
     Given the motion of the root, the strains at the Gauss points determine the motion: B is square.
     """
     B = (strain_rate(beam, state) @ beam.to_free).tocsc()
-    roots = len(beam.springs) - B.shape[0]
-    soft = np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
-    wanted = np.hstack([-B[:, :roots].toarray(), beam.gram.tocsc()[:, soft].toarray()])
-    inner = spla.splu(B[:, roots:].tocsc()).solve(wanted)
-    first = np.hstack([np.eye(roots), np.zeros((roots, len(soft)))])
-    return beam.to_free @ np.vstack([first, inner])
+    roots, soft = B.shape[1] - B.shape[0], _soft(beam)
+    inner = spla.splu(B[:, roots:])
+    strained = sp.csc_array(sp.hstack([-B[:, :roots], beam.gram.tocsc()[:, soft]]))
+
+    def motion(q: Array) -> Array:
+        return beam.to_free @ np.concatenate([q[:roots], inner.solve(strained @ q)])
+
+    def work(force: Array) -> Array:
+        free = beam.to_free.T @ force
+        out = strained.T @ inner.solve(free[roots:], "T")
+        out[:roots] += free[:roots]
+        return out
+
+    shape = (beam.basis.N, roots + len(soft))
+    return spla.LinearOperator(shape, matvec=motion, rmatvec=work, matmat=motion, rmatmat=work, dtype=float)  # pyright: ignore[reportCallIssue]
 
 
-def _matrices(beam: Beam, state: State, omega: float, Z: Array) -> tuple[Array, Array, Array]:
-    """M, C, K of the coordinates, whose motions are the columns of ``Z``."""
+def _soft(beam: Beam) -> NDArray[np.intp]:
+    """Indices of the section forces whose strain is not rigid."""
+    return np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
+
+
+def _matrices(beam: Beam, state: State, omega: float, Z: spla.LinearOperator) -> tuple[Any, Any, Array]:
+    """M, C, K of the coordinates, whose motions are the columns of ``Z``. All are full; large M and C are operators."""
     M = C = sp.csr_array((beam.basis.N, beam.basis.N))
     for part, axes in zip(beam.parts, state.part_axes, strict=True):
         about = spatial(part, axes)
         M = M + bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.inertia(about), 2))
         C = C + omega * bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))
-    soft = np.flatnonzero(~beam.rigid[np.arange(beam.forces.N) % 6])
+    soft = _soft(beam)
     roots = Z.shape[1] - len(soft)
-    K = Z.T @ (stiffening(beam, state, omega) @ Z)
-    gram, compliance = (matrix.tocsc()[soft][:, soft] for matrix in (beam.gram, beam.compliance))
-    K[roots:, roots:] += gram @ spla.splu(compliance).solve(gram.toarray())
+    full = Z @ np.eye(Z.shape[1])
+    K = full.T @ (stiffening(beam, state, omega) @ full)
+    K[roots:, roots:] += _elastic(beam, soft)
     K[range(roots), range(roots)] += beam.springs[:roots]
-    return Z.T @ (M @ Z), Z.T @ (C @ Z), K
+    if len(K) <= FORMED:
+        return full.T @ (M @ full), full.T @ (C @ full), K
+    return Z.T @ spla.aslinearoperator(M) @ Z, Z.T @ spla.aslinearoperator(C) @ Z, K
+
+
+def _elastic(beam: Beam, soft: NDArray[np.intp]) -> Array:
+    """Stiffness of the strains ``soft``, ``G C⁻¹ G`` with the Gram matrix G of the section forces; each element has its own."""
+    size = len(soft) // beam.elements
+    G, C = (
+        sp.bsr_array(matrix.tocsr()[soft][:, soft], blocksize=(size, size)) for matrix in (beam.gram, beam.compliance)
+    )
+    return sp.bsr_array((G.data @ np.linalg.solve(C.data, G.data), G.indices, G.indptr)).toarray()
 
 
 def _shapes(beam: Beam, q: NDArray[np.complex128]) -> NDArray[np.complex128]:

@@ -148,17 +148,15 @@ def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
         entry (e 27 27,) of the matrix of one pair, row by row; then of the whole matrix: the first entry of each row
         (3n+1,), the column of each entry, and its index in the concatenated entries of the nine pairs.
     """
-    rows, columns = (np.broadcast_to(part, (*own.shape, own.shape[1])).ravel() for part in (own[:, :, None], own[:, None]))
+    rows, columns = (
+        np.broadcast_to(part, (*own.shape, own.shape[1])).ravel() for part in (own[:, :, None], own[:, None])
+    )
     pairs, entry = np.unique(rows * nodes + columns, return_inverse=True)
-    size = len(pairs)
-    numbers = ss.csr_array((np.arange(size), (pairs // nodes, pairs % nodes)), shape=(nodes, nodes))
-    blocks = [[_with(numbers, numbers.data + (3 * i + j) * size) for j in range(3)] for i in range(3)]
-    whole = ss.csr_array(ss.block_array(blocks, format="csr"))
-    return entry, whole.indptr, whole.indices, whole.data
-
-
-def _with(matrix: ss.csr_array, data: NDArray[np.intp]) -> ss.csr_array:
-    return ss.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+    size, places = len(pairs), (pairs // nodes, pairs % nodes)
+    numbers = (np.arange(9 * size) + 1).reshape(3, 3, size)  # an entry's number as its value, not zero
+    blocks = [[ss.csr_array((own, places), shape=(nodes, nodes)) for own in row] for row in numbers]
+    whole: Any = ss.csr_array(ss.block_array(blocks, format="csr"))
+    return entry, whole.indptr, whole.indices, whole.data - 1
 
 
 def part(s: Solid, which: NDArray[np.bool_]) -> Solid:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy import sparse
+from scipy.sparse.linalg import aslinearoperator
 
 from southwell.references.protocol.interface import CodeError
 from southwell.references.protocol.quadratic import DENSE, gyroscopic_modes
@@ -133,3 +134,30 @@ def test_non_finite_matrices_are_an_error(way):
 def test_negative_mass_is_an_error():
     with pytest.raises(CodeError, match="negative mass"):
         gyroscopic_modes(np.diag([1.0, -1.0]), np.zeros((2, 2)), np.eye(2), 1)
+
+
+@pytest.mark.parametrize("points", [30, DENSE])
+def test_operators_are_as_good_as_matrices(points):
+    M, C, K, exact = row(points, 0.05)
+    frequencies, shapes = gyroscopic_modes(aslinearoperator(M), aslinearoperator(C), K, 8)
+    np.testing.assert_allclose(frequencies, exact[:8], rtol=1e-11)
+    for w, q in zip(frequencies, shapes.T, strict=True):
+        force = K @ q
+        assert np.linalg.norm(force - w**2 * (M @ q) + 1j * w * (C @ q)) < 1e-8 * np.linalg.norm(force)
+
+
+@pytest.mark.parametrize(("wrong", "reported"), [(0, "M: .* from symmetric"), (1, "C: .* from skew")])
+def test_an_operator_without_its_symmetry_is_refused(wrong, reported):
+    matrices = list(row(DENSE, 0.05))[:3]
+    matrices[wrong] = matrices[wrong].copy()
+    matrices[wrong][0, 5] += 1e-2
+    M, C, K = matrices
+    with pytest.raises(CodeError, match=reported):
+        gyroscopic_modes(aslinearoperator(M), aslinearoperator(C), K, 8)
+
+
+def test_an_operator_that_is_not_finite_is_refused():
+    M, C, K, _ = row(DENSE, 0.05)
+    M[3, 3] = np.nan
+    with pytest.raises(CodeError, match="M: not finite"):
+        gyroscopic_modes(aslinearoperator(M), aslinearoperator(C), K, 8)
