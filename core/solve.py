@@ -172,15 +172,17 @@ def chain_modes(
 
 
 def rigid_strain_bias(
-    blade: Blade, omega: float, elements: tuple[int, int], count: int, effects: Effects = ALL_EFFECTS
-) -> tuple[Array, Array]:
-    """Factor (m,) that removes the bias of rigid strains from the frequencies, and its relative uncertainty (m,).
+    blade: Blade,
+    runs: Iterable[tuple[float, tuple[int, int]]],
+    count: int,
+    effects: Effects = ALL_EFFECTS,
+) -> list[tuple[Array, Array]]:
+    """Factor (m,) that removes the bias of rigid strains from the frequencies, and its relative uncertainty (m,), of each run.
 
     Rigid axial and torsional strains have a small compliance (``element.sections``), also in ``mesh_modes``. The bias is
-    computed on two meshes, the finer one last; without rigid strains there is none.
+    computed at a speed (rad/s) on two meshes, the finer one last; without rigid strains there is none.
     """
     meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
     if meshes.softer is None:
-        return np.ones(count), np.zeros(count)
-    coarse, fine = (meshes.bias(n, meshes.of(n).at(omega)) for n in elements)
-    return without_bias(coarse, fine)
+        return [(np.ones(count), np.zeros(count)) for _ in runs]
+    return [without_bias(*(meshes.bias(n, meshes.of(n).at(omega)) for n in elements)) for omega, elements in runs]

@@ -1,6 +1,6 @@
 """Alterations of core, each a function from what core has right to what is wrong."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -90,11 +90,11 @@ def valued(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
 
 
 def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
-    """Core uses a different rotor speed."""
+    """Core uses different rotor speeds."""
 
     def make(right: Any) -> Any:
-        def wrong(blade: Blade, omega: float, *args: Any, **kwargs: Any) -> Any:
-            return right(blade, alter(omega), *args, **kwargs)
+        def wrong(blade: Blade, omegas: Sequence[float], *args: Any, **kwargs: Any) -> Any:
+            return right(blade, list(map(alter, omegas)), *args, **kwargs)
 
         return wrong
 
@@ -170,4 +170,4 @@ def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any
 
 def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:
     """Where core's columns get their modes, with another blade."""
-    return core_solver, "mesh_modes", bladed(alter)
+    return core_solver, "mesh_sweep", bladed(alter)

@@ -210,7 +210,7 @@ FAULTS = (
     _core("torsional stiffness", "GJ one percent too large", "first torsion +0.5 %",
           (sections, "stiffness_at", valued(scaled_strain(TORSION, 1.01))), TORSIONAL),
     _core("speed in revolutions", "the speed in rad/s is read as revolutions per second", "flapwise by factors",
-          (core_solver, "mesh_modes", at_speed(lambda omega: 2 * np.pi * omega)), PARK),
+          (core_solver, "mesh_sweep", at_speed(lambda omega: 2 * np.pi * omega)), PARK),
     _core("transposed coupling", "torsion is coupled with the other bending: two indices exchanged", "shapes; percents",
           (sections, "stiffness_at", valued(swapped_coupling)), COUPLED),
     _core("coupling's sign", "the coupling of bending and torsion has the opposite sign", "lowest modes by several percent",

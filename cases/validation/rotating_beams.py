@@ -79,7 +79,7 @@ def solved(blade: Blade, rpm: float) -> dict[str, tuple[float, float]]:
     Raises:
         ValueError: if there is no steady state.
     """
-    found = converged(blade, rpm * RPM, Compare(modes=COUNT), ALL_EFFECTS)
+    (found,) = converged(blade, [rpm * RPM], Compare(modes=COUNT), ALL_EFFECTS)
     if isinstance(found, Failure):
         raise ValueError(f"{blade.name}: {rpm:g} rpm: {found.reason}")
     estimates = [s.estimate for s in found.modes]

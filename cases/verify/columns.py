@@ -221,7 +221,7 @@ def _other_method(head: Head, blade: Blade, core: References) -> Rows:
     for elements in ELEMENTS:
         run = (omega, elements, reference.core.count)
         (mine,) = core_solver.answers(blade, [run])
-        (theirs,) = core_solver.answers(blade, [run], by=velocity_transformation.modes)
+        (theirs,) = core_solver.answers(blade, [run], by=velocity_transformation.sweep)
         if not (isinstance(mine, Failure) and isinstance(theirs, Failure)):
             break
     return same(head, omega, reference, theirs, mine)

@@ -78,7 +78,8 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
     """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
-    wanted, names = qualifying(right, blade, compare), numbered(families(participation(right, blade)))
+    energies = participation(right, blade)
+    wanted, names = qualifying(energies, compare), numbered(families(energies))
     partners = [p.mode for p in pair(right, wrong, wanted, weight)]
     return tuple(
         Changed(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))

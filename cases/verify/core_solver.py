@@ -1,8 +1,9 @@
 """Core as a solver: answers in the same form as a foreign code's, refined until they can serve as reference."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.participation import FAMILIES, families, numbered, participation
-from ...core.solve import mesh_modes, rigid_strain_bias
+from ...core.solve import mesh_sweep, rigid_strain_bias
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE, CaseError
@@ -37,8 +38,8 @@ DEEPER = 3
 """Factor on the number of modes for the one retry when too few modes qualify."""
 
 
-Solver = Callable[..., Modes]
-"""A method of core: ``solve.modes`` or ``velocity_transformation.modes``."""
+Sweep = Callable[..., Iterator[Modes]]
+"""A method of core: ``solve.mesh_sweep`` or ``velocity_transformation.sweep``."""
 
 
 @dataclass(frozen=True)
@@ -70,17 +71,24 @@ def answers(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     effects: Effects = ALL_EFFECTS,
-    by: Solver | None = None,
+    by: Sweep | None = None,
 ) -> list[Answer]:
     """Core's answers to ``runs`` by one of its methods; a speed without a stable steady state gives a failure."""
     out: list[Answer] = []
-    for omega, elements, count in runs:
-        try:
-            out.append(
-                (by or mesh_modes)(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
+    for (elements, count), group in groupby(runs, key=lambda run: run[1:]):
+        speeds = [omega for omega, _, _ in group]
+        first = 0
+        while first < len(speeds):
+            swept = (by or mesh_sweep)(
+                blade, speeds[first:], elements, count, mass=mass, stiffness=stiffness, effects=effects
             )
-        except NO_STATE as error:
-            out.append(Failure("refused", str(error)))
+            try:
+                for modes in swept:
+                    out.append(modes)
+                    first += 1
+            except NO_STATE as error:
+                out.append(Failure("refused", str(error)))
+                first += 1
     return out
 
 
@@ -113,46 +121,65 @@ def as_given(source: Discretisation) -> Refining:
     return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
 
 
-def converged(blade: Blade, omega: float, compare: Compare, effects: Effects) -> Converged | Failure:
-    """Core's converged modes at one speed, with the given effects.
+def converged(blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects) -> list[Converged | Failure]:
+    """Core's converged modes at each speed (rad/s), with the given effects.
 
     Raises:
         CaseError: if the blade has fewer modes than the case compares.
     """
-    return _converged(blade, omega, compare, effects, weights(blade), 2 * compare.modes + MARGIN)
+    count, weight = 2 * compare.modes + MARGIN, weights(blade)
+    found = _converged(blade, speeds, compare, effects, weight, count)
+    if few := [omega for omega, one in found.items() if isinstance(one, int)]:
+        count *= DEEPER
+        found |= _converged(blade, few, compare, effects, weight, count)
+    for omega, one in found.items():
+        if isinstance(one, int):
+            raise CaseError(
+                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s only {one} of the lowest {count} modes "
+                "qualify; reduce it"
+            )
+    return [one for omega in speeds if not isinstance(one := found[omega], int)]
 
 
 def _converged(
-    blade: Blade, omega: float, compare: Compare, effects: Effects, weight: Array, count: int
-) -> Converged | Failure:
+    blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects, weight: Array, count: int
+) -> dict[float, Converged | Failure | int]:
+    """As ``converged``, by speed, from ``count`` modes; if too few of them qualify, their number."""
+    known: dict[tuple[float, int], tuple[Wanted, Array]] = {}
+
     def ask(runs: Sequence[Run]) -> list[Answer]:
         return answers(blade, runs, effects=effects)
 
-    def wanted(_: float, solved: Sequence[Modes]) -> Wanted:
-        finest = aligned(solved[-1], weight)
-        return Wanted(finest, qualifying(finest, blade, compare), weight)
+    def named(omega: float, solved: Sequence[Modes]) -> tuple[Wanted, Array]:
+        """The modes to compare, and the energy fractions of all, by the finest answer."""
+        if (omega, len(solved)) not in known:
+            finest = aligned(solved[-1], weight)
+            energies = participation(finest, blade)
+            known[omega, len(solved)] = Wanted(finest, qualifying(energies, compare), weight), energies
+        return known[omega, len(solved)]
 
     plan = refining(blade)
-    (refinements,) = solve(ask, [omega], plan, count, wanted)
-    if not refinements.answers:
-        return refinements.failure or Failure("refused", "no answer")
-    target = wanted(omega, refinements.answers)
-    if len(target.indices) < compare.modes:
-        if count > 2 * compare.modes + MARGIN:
-            raise CaseError(
-                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s only {len(target.indices)} of the lowest "
-                f"{len(refinements.answers[-1].frequencies)} modes qualify; reduce it"
-            )
-        return _converged(blade, omega, compare, effects, weight, DEEPER * count)
-    energies = participation(target.reference, blade)
-    meshes = [answer.elements for answer in refinements.answers]
-    factor, unsure = rigid_strain_bias(blade, omega, (meshes[-2:][0], meshes[-1]), count, effects)
-    refined_modes = tuple(
-        _corrected(one, float(factor[k]), float(unsure[k]))
-        for k, one in zip(target.indices, follow(refinements.answers, target, plan.order), strict=True)
-    )
-    motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
-    return Converged(target, refined_modes, numbered(families(energies)), motions)
+    refined = solve(ask, speeds, plan, count, lambda omega, solved: named(omega, solved)[0])
+    out: dict[float, Converged | Failure | int] = {}
+    enough: dict[float, tuple[Modes, ...]] = {}
+    for omega, one in zip(speeds, refined, strict=True):
+        if not one.answers:
+            out[omega] = one.failure or Failure("refused", "no answer")
+        elif (found := len(named(omega, one.answers)[0].indices)) < compare.modes:
+            out[omega] = found
+        else:
+            enough[omega] = one.answers
+    meshes = [(omega, (solved[-2:][0].elements, solved[-1].elements)) for omega, solved in enough.items()]
+    biases = rigid_strain_bias(blade, meshes, count, effects)
+    for (omega, solved), (factor, unsure) in zip(enough.items(), biases, strict=True):
+        target, energies = named(omega, solved)
+        modes = tuple(
+            _corrected(one, float(factor[k]), float(unsure[k]))
+            for k, one in zip(target.indices, follow(solved, target, plan.order), strict=True)
+        )
+        motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
+        out[omega] = Converged(target, modes, numbered(families(energies)), motions)
+    return out
 
 
 def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
@@ -163,7 +190,10 @@ def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
     return replace(one, estimate=replace(known, value=factor * known.value))
 
 
-def qualifying(modes: Modes, blade: Blade, compare: Compare) -> tuple[int, ...]:
-    """Indices of the lowest ``compare.modes`` modes with at least half their kinetic energy in ``compare.motions``."""
-    share = participation(modes, blade)[:, [FAMILIES.index(m) for m in compare.motions]].sum(1)
+def qualifying(energies: Array, compare: Compare) -> tuple[int, ...]:
+    """Indices of the lowest ``compare.modes`` modes with at least half their energy in ``compare.motions``.
+
+    ``energies`` are the fractions (m, 4) of ``participation``.
+    """
+    share = energies[:, [FAMILIES.index(m) for m in compare.motions]].sum(1)
     return tuple(np.flatnonzero(share >= 0.5)[: compare.modes].tolist())

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cache
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
@@ -38,6 +37,9 @@ MAJORITY = 0.5
 References = dict[Effects, list[Reference | Failure]]
 """Effects → references at each speed."""
 
+Solve = Callable[[Effects, Iterable[float]], dict[float, Converged | Failure]]
+"""Core with these effects, at these speeds at least: rad/s → modes."""
+
 
 def felt(effects: Effects, blade: Blade, omega: float = 1.0) -> Effects:
     """The effects without irrelevant omissions: an effect that cannot change this blade at this speed is not missing.
@@ -54,40 +56,51 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: It
     Raises:
         CaseError: if core with all effects has no stable steady state at one of the speeds, or too few modes.
     """
-    kept = set(kept) | {ALL_EFFECTS}
-    by_speed = [_at(blade, omega, compare, kept) for omega in speeds]
-    return {effects: [solved[effects] for solved in by_speed] for effects in kept}
+    solved: dict[Effects, dict[float, Converged | Failure]] = {}
+
+    def solve(effects: Effects, at: Iterable[float]) -> dict[float, Converged | Failure]:
+        """Core with these effects, at least at the speeds ``at``."""
+        known = solved.setdefault(effects, {})
+        if new := [omega for omega in at if omega not in known]:
+            known |= zip(new, converged(blade, new, compare, effects), strict=True)
+        return known
+
+    for omega, full in solve(ALL_EFFECTS, speeds).items():
+        if isinstance(full, Failure):
+            raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
+    return {effects: _references(blade, speeds, compare.target, effects, solve) for effects in {*kept, ALL_EFFECTS}}
 
 
-def _at(blade: Blade, omega: float, compare: Compare, kept: Iterable[Effects]) -> dict[Effects, Reference | Failure]:
-    @cache
-    def solve(effects: Effects) -> Converged | Failure:
-        return converged(blade, omega, compare, effects)
+def _references(
+    blade: Blade, speeds: Sequence[float], target: float, kept: Effects, solve: Solve
+) -> list[Reference | Failure]:
+    felt_at = {omega: felt(kept, blade, omega) for omega in speeds}
+    mine = {
+        omega: solve(effects, [o for o in speeds if felt_at[o] == effects])[omega] for omega, effects in felt_at.items()
+    }
+    full = solve(ALL_EFFECTS, ())
+    solved = {omega: one for omega, one in mine.items() if not isinstance(one, Failure)}
+    partners = {omega: _partners(one, full[omega]) for omega, one in solved.items()}
+    shifted = [omega for omega, one in solved.items() if _shifted(one, partners[omega][0], target)]
+    found: dict[float, list[list[Effect]]] = {omega: [[] for _ in one.modes] for omega, one in solved.items()}
+    for name in (f.name for f in fields(kept)):  # each effect alone
+        lacking = [omega for omega in shifted if not getattr(felt_at[omega], name)]
+        alone = solve(replace(ALL_EFFECTS, **{name: False}), lacking)
+        for omega in lacking:
+            without, _ = _partners(solved[omega], alone[omega])
+            for effects, f, whole in zip(found[omega], without, partners[omega][0], strict=True):
+                effects.append(Effect(name.replace("_", " "), _change(f, whole)))
+    return [
+        Reference(one, *partners[omega], tuple(map(tuple, found[omega]))) if not isinstance(one, Failure) else one
+        for omega, one in mine.items()
+    ]
 
-    full = solve(ALL_EFFECTS)
-    if isinstance(full, Failure):
-        raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
-    out: dict[Effects, Reference | Failure] = {}
-    for effects in kept:
-        keeps = felt(effects, blade, omega)
-        mine = solve(keeps)
-        out[effects] = mine if isinstance(mine, Failure) else _reference(mine, full, compare.target, keeps, solve)
-    return out
 
-
-def _reference(
-    mine: Converged, full: Converged, target: float, kept: Effects, solve: Callable[[Effects], Converged | Failure]
-) -> Reference:
-    whole, likeness = _partners(mine, full)
+def _shifted(mine: Converged, whole: Sequence[float | None], target: float) -> bool:
+    """Whether a mode changes by more than the target due to what is left out."""
     values = [s.estimate.value if s.estimate else None for s in mine.modes]
-    shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
-    effects: list[list[Effect]] = [[] for _ in values]
-    if any(shift is None or abs(shift) > target for shift in shifts):  # solve for each effect alone
-        for name in (f.name for f in fields(kept) if not getattr(kept, f.name)):
-            without, _ = _partners(mine, solve(replace(ALL_EFFECTS, **{name: False})))
-            for found, f, reference in zip(effects, without, whole, strict=True):
-                found.append(Effect(name.replace("_", " "), _change(f, reference)))
-    return Reference(mine, whole, likeness, tuple(map(tuple, effects)))
+    changes = [_change(value, f) for value, f in zip(values, whole, strict=True)]
+    return any(change is None or abs(change) > target for change in changes)
 
 
 def _change(without: float | None, whole: float | None) -> float | None:

@@ -17,7 +17,7 @@ def test_modes_keep_their_names_whatever_is_compared(motion: str) -> None:
     stiffness = np.repeat(section_stiffness(1e7, 1e3, 1e4, 2e4), 2, axis=0)
     mass = np.repeat(section_mass(1.2, 1e-3, 1e-3), 2, axis=0)
     blade = Blade("twisted", stations, stiffness, mass, stations * np.pi / 4)
-    found = converged(blade, 10.0, Compare(modes=3, motions=(motion,)), ALL_EFFECTS)  # type: ignore[arg-type]
+    (found,) = converged(blade, [10.0], Compare(modes=3, motions=(motion,)), ALL_EFFECTS)  # type: ignore[arg-type]
     assert isinstance(found, Converged)
     mixed = {"flapwise": "mixed 1", "edgewise": "mixed 2"}[motion]
     assert found.names == (f"{motion} 1", f"{motion} 2", mixed)
@@ -35,7 +35,7 @@ def test_a_soft_root_between_two_stations_is_within_the_stated_uncertainty(fract
         mass = np.repeat(section_mass(10.0, 0.1, 0.2), len(s), axis=0)
         return Blade("soft root", s, section_stiffness(1e9 * k, 1e6 * k, 1e6 * k, 2e6 * k), mass, np.zeros(len(s)))
 
-    found, dense = converged(blade(1), 0.0, Compare(modes=6), ALL_EFFECTS), modes(blade(400), 0.0, count=6)
+    (found,), dense = converged(blade(1), [0.0], Compare(modes=6), ALL_EFFECTS), modes(blade(400), 0.0, count=6)
     assert isinstance(found, Converged)
     assert found.wanted.indices == tuple(range(6))
     for mode, expected, sure in zip(found.modes, dense.frequencies, dense.uncertainty, strict=True):

@@ -124,7 +124,7 @@ def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
 def test_the_reference_of_a_comparison_is_rigid_too() -> None:
     """Core's converged column of ``verify``: the same frequencies as those of ``modes``."""
     stiff = uniform_blade("inextensible", 10.0, 1.0, EA=np.inf, GJ=1e4, EI_y=1e4, EI_z=2e4, mass=1.0)
-    found = core_solver.converged(stiff, 30.0, Compare(modes=2), ALL_EFFECTS)
+    (found,) = core_solver.converged(stiff, [30.0], Compare(modes=2), ALL_EFFECTS)
     assert isinstance(found, core_solver.Converged)
     frequencies = solve.modes(stiff, 30.0, count=2).frequencies
     for one, true in zip(found.modes, frequencies, strict=True):

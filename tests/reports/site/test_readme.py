@@ -99,7 +99,7 @@ def cores() -> list[float]:
 
 def test_cores_frequencies_in_the_table_are_those_that_core_gives_now() -> None:
     case = library.load(CASE)
-    found = core_solver.converged(case.variants[0].blade, OMEGA, case.text.compare, ALL_EFFECTS)
+    (found,) = core_solver.converged(case.variants[0].blade, [OMEGA], case.text.compare, ALL_EFFECTS)
     assert isinstance(found, core_solver.Converged)
     estimates = [s.estimate.value for s in found.modes if s.estimate]
     np.testing.assert_allclose(cores(), estimates, rtol=1e-9, err_msg="run `make verify` and `make readme`")
