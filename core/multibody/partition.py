@@ -81,7 +81,9 @@ def prescribed(tree: Tree) -> Index:
 
 def free_coordinates(tree: Tree) -> Index:
     """(f,) indices of the coordinates whose motion is not prescribed."""
-    return np.setdiff1d(np.arange(len(tree.coordinates)), prescribed(tree))
+    free = np.ones(len(tree.coordinates), bool)
+    free[prescribed(tree)] = False
+    return np.flatnonzero(free)
 
 
 def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = None) -> Partition:
