@@ -129,6 +129,7 @@ def command(
         raise UsageError(
             f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
         )
+    kept_before = _store(fresh)
     launch.prepare()  # for ``describe``, while the cases are read
     decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
     given = [parse(text) for text in changes]
@@ -138,60 +139,65 @@ def command(
         raise UsageError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
         )
-    names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-    blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
-    known = describe(names, [v.blade for v in blades])
-    pins = versions.pinned(against_version, known)
-    known += versions.described(pins, known, [v.blade for v in blades])
-    defaults = measured.defaults(data_uncertainty, input_uncertainty)
-    files = [measured.user_results(text, defaults) for text in add]
-    measured.check(files, data_uncertainty, input_uncertainty)
-    names_of.unique(chosen, known, files)
-    user_results.check(files, blades, [c.name for c in known])
-    options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
-    options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
-    options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
-    options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
-    options += ["--closed-forms"] if closed_forms else []
-    plain = not (rpm or omega or changes or decks.mount != Mount())
-    line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
-    about = Run(
-        cells=(),
-        versions=matrix.versions(known, files),
-        command=shlex.join(line),
-        settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
-    )
-    seeded = _shared_out(table.chosen(faults), count or SHARES)
-    for setting in about.settings:
-        if NOT_USED in setting.facts:
-            print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-    kept_before = _store(fresh)
-    limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30), "reuse": kept_before is not None}
-    software = Software(
-        tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
-    )
-    with writing(out), ExitStack() as started:
-        started.callback(shutil.rmtree, out / SCRATCH, ignore_errors=True)  # after the processes have ended
-        pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
-        with writable(f"--out {out}"):
-            opened = Journal(out)
-        page = _closed_forms(pool) if closed_forms else None
-        with opened as kept:
-            run, stopped = solve(
-                chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
-            )
-            try:
-                of_forms = page(out) if page and not stopped else PASSED
-                if run.cells:
-                    show(run, out, None if stopped or scheduler else pool)
-                    if junit:
-                        with writable(f"--junit {junit}", "file"):
-                            atomic.write(junit, xml.render(run))
-            except OSError as error:
-                stopped = stopped or Stopped(said(error), INCOMPLETE)
-            if not stopped:
-                kept.remove()
-                return max(summary.status(run), of_forms)
+    with ExitStack() as early:
+        if kept_before:
+            early.callback(kept_before.close)
+        # in a process of its own, which starts while the codes are asked about the blades
+        at_once = closed_forms and not scheduler and count != 1
+        first_page = _closed_forms(early.enter_context(executor())) if at_once else None
+        names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
+        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
+        known = describe(names, [v.blade for v in blades])
+        pins = versions.pinned(against_version, known)
+        known += versions.described(pins, known, [v.blade for v in blades])
+        defaults = measured.defaults(data_uncertainty, input_uncertainty)
+        files = [measured.user_results(text, defaults) for text in add]
+        measured.check(files, data_uncertainty, input_uncertainty)
+        names_of.unique(chosen, known, files)
+        user_results.check(files, blades, [c.name for c in known])
+        options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
+        options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
+        options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
+        options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
+        options += ["--closed-forms"] if closed_forms else []
+        plain = not (rpm or omega or changes or decks.mount != Mount())
+        line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
+        about = Run(
+            cells=(),
+            versions=matrix.versions(known, files),
+            command=shlex.join(line),
+            settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
+        )
+        seeded = _shared_out(table.chosen(faults), count or SHARES)
+        for setting in about.settings:
+            if NOT_USED in setting.facts:
+                print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
+        limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30), "reuse": kept_before is not None}
+        software = Software(
+            tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
+        )
+        with writing(out), ExitStack() as started:
+            started.callback(shutil.rmtree, out / SCRATCH, ignore_errors=True)  # after the processes have ended
+            pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
+            with writable(f"--out {out}"):
+                opened = Journal(out)
+            page = first_page or (_closed_forms(pool) if closed_forms else None)
+            with opened as kept:
+                run, stopped = solve(
+                    chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
+                )
+                try:
+                    of_forms = page(out) if page and not stopped else PASSED
+                    if run.cells:
+                        show(run, out, None if stopped or scheduler else pool)
+                        if junit:
+                            with writable(f"--junit {junit}", "file"):
+                                atomic.write(junit, xml.render(run))
+                except OSError as error:
+                    stopped = stopped or Stopped(said(error), INCOMPLETE)
+                if not stopped:
+                    kept.remove()
+                    return max(summary.status(run), of_forms)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status

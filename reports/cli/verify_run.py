@@ -105,8 +105,6 @@ def solve(
     finally:
         if not complete:
             stop()
-        if kept_before:
-            kept_before.close()
     return replace(journal.read(kept.path), unfinished=stopped.what), stopped
 
 
