@@ -22,10 +22,16 @@ Ask = Callable[[Sequence[Run]], list[Answer]]
 SURE = 2e-4
 """A code is refined until its relative uncertainty is at most this."""
 
+LEAST, MOST = 4 / 3, 2.0
+"""Ratio of a further refinement to the one before. Below 1.3, the observed order of convergence is uncertain (Celik et al.,
+J. Fluids Eng. 130 (2008) 078001)."""
+
 
 @dataclass(frozen=True)
 class Refining:
-    """Refinement of a solver: all ``levels`` first; then the last is doubled, up to ``cap``, until ``sure``.
+    """Refinement of a solver: all ``levels`` first; then finer ones, up to ``cap``, until its uncertainty is ``sure``.
+
+    Further ones are multiples of the first, as fine as the ``order`` of convergence requires, within ``LEAST`` and ``MOST``.
 
     ``bracket``: the solver gives an error bound, ``Modes.uncertainty``, so that no refinement is needed.
     """
@@ -87,8 +93,8 @@ def solve(
         count: number of modes to request.
         wanted: modes that must converge at a speed, from the answers at that speed so far (at least one).
     """
-    levels = list(refining.levels)
-    runs = [(omega, n, count) for n in levels for omega in speeds]
+    runs = [(omega, n, count) for n in refining.levels for omega in speeds]
+    finest = dict.fromkeys(speeds, refining.levels[-1])
     solved: dict[float, list[Modes]] = {omega: [] for omega in speeds}
     failed: dict[float, Failure] = {}
     while runs:
@@ -104,21 +110,29 @@ def solve(
                 solved[omega].append(answer)
                 if not wrong:
                     failed.pop(omega, None)
-        finer = 2 * levels[-1]
-        levels.append(finer)
-        open_ = [omega for omega in speeds if omega not in failed]
-        unsure = [omega for omega in open_ if not _sure(solved[omega], wanted(omega, solved[omega]), refining)]
-        runs = [(omega, finer, count) for omega in unsure] if finer <= refining.cap else []
+        unsure = {omega: _unsure(solved[omega], wanted, refining, omega) for omega in speeds if omega not in failed}
+        finer = {omega: _finer(finest[omega], u, refining) for omega, u in unsure.items() if u > refining.sure}
+        runs = sorted(
+            ((omega, n, count) for omega, n in finer.items() if n >= LEAST * finest[omega]), key=lambda r: r[1]
+        )
+        finest |= finer
     return [Refinements(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
 
 
-def _sure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> bool:
-    return all(
-        s.bracketed
-        or s.estimate is None
-        or (s.estimate.uncertainty is not None and s.estimate.uncertainty <= refining.sure)
-        for s in follow(answers, wanted, refining.order, refining.bracket)
-    )
+def _unsure(
+    answers: Sequence[Modes], wanted: Callable[[float, Sequence[Modes]], Wanted], refining: Refining, omega: float
+) -> float:
+    """The largest uncertainty of a wanted mode that refinement may reduce; infinite if one is not known."""
+    modes = follow(answers, wanted(omega, answers), refining.order, refining.bracket)
+    known = [m.estimate.uncertainty for m in modes if m.estimate and not m.bracketed]
+    return max((np.inf if u is None else u for u in known), default=0.0)
+
+
+def _finer(finest: int, uncertainty: float, refining: Refining) -> int:
+    """The number of elements after ``finest``; at the cap, it is not much larger."""
+    ratio = (uncertainty / refining.sure) ** (1.0 / refining.order) if refining.order else MOST
+    first = refining.levels[0]
+    return min(first * int(np.ceil(round(finest * min(max(ratio, LEAST), MOST) / first, 6))), refining.cap)
 
 
 def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[RefinedMode]:
