@@ -112,13 +112,13 @@ def refining(blade: Blade) -> Refining:
     intervals = np.diff(blade.stations) / blade.length
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))
     start = min(max(COARSEST, math.ceil(1.0 / shortest - 1e-9)), LARGEST_START)
-    return Refining((start, 2 * start, 3 * start), order=4, cap=FINEST, sure=SURE)
+    return Refining((start, 2 * start, 3 * start), order=4, cap=FINEST, sure=SURE, least=2.0)
 
 
 def as_given(source: Discretisation) -> Refining:
     """Refinement of the discretisation of a source: its number of elements first, then finer ones of the same kind."""
     n = source.elements
-    return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n)
+    return Refining((n, 2 * n, 4 * n), order=2, cap=8 * n, least=2.0)
 
 
 def converged(blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects) -> list[Converged | Failure]:

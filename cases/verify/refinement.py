@@ -26,14 +26,16 @@ LEAST, MOST = 4 / 3, 2.0
 """Ratio of a further refinement to the one before. Below 1.3, the observed order of convergence is uncertain (Celik et al.,
 J. Fluids Eng. 130 (2008) 078001)."""
 
+AIM = 0.5
+"""Uncertainty at which a further refinement aims, as a fraction of the largest allowed."""
+
 
 @dataclass(frozen=True)
 class Refining:
     """Refinement of a solver: all ``levels`` first; then finer ones, up to ``cap``, until its uncertainty is ``sure``.
 
-    Further ones are multiples of the first, as fine as the ``order`` of convergence requires, within ``LEAST`` and ``MOST``.
-
-    ``bracket``: the solver gives an error bound, ``Modes.uncertainty``, so that no refinement is needed.
+    Further ones are multiples of the first, as fine as the ``order`` of convergence requires: from ``least`` to ``MOST`` times
+    the one before. ``bracket``: the solver gives an error bound, ``Modes.uncertainty``, so that no refinement is needed.
     """
 
     levels: tuple[int, ...]
@@ -41,6 +43,7 @@ class Refining:
     cap: int
     sure: float = SURE
     bracket: bool = False
+    least: float = LEAST
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ def solve(
         unsure = {omega: _unsure(solved[omega], wanted, refining, omega) for omega in speeds if omega not in failed}
         finer = {omega: _finer(finest[omega], u, refining) for omega, u in unsure.items() if u > refining.sure}
         runs = sorted(
-            ((omega, n, count) for omega, n in finer.items() if n >= LEAST * finest[omega]), key=lambda r: r[1]
+            ((omega, n, count) for omega, n in finer.items() if n >= refining.least * finest[omega]), key=lambda r: r[1]
         )
         finest |= finer
     return [Refinements(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
@@ -130,9 +133,9 @@ def _unsure(
 
 def _finer(finest: int, uncertainty: float, refining: Refining) -> int:
     """The number of elements after ``finest``; at the cap, it is not much larger."""
-    ratio = (uncertainty / refining.sure) ** (1.0 / refining.order) if refining.order else MOST
+    ratio = (uncertainty / (AIM * refining.sure)) ** (1.0 / refining.order) if refining.order else MOST
     first = refining.levels[0]
-    return min(first * int(np.ceil(round(finest * min(max(ratio, LEAST), MOST) / first, 6))), refining.cap)
+    return min(first * int(np.ceil(round(finest * min(max(ratio, refining.least), MOST) / first, 6))), refining.cap)
 
 
 def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[RefinedMode]:

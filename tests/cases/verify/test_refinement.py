@@ -57,7 +57,7 @@ def test_refinement_ends_where_the_uncertainty_is_small_enough(coefficient: floa
 def test_a_further_refinement_is_no_finer_than_the_order_requires() -> None:
     near = next(c for c in np.geomspace(0.1, 1e3, 400) if 2e-4 < uncertainty(c, (10, 20, 30)) < 2.5e-4)
     far = next(c for c in np.geomspace(0.1, 1e3, 400) if uncertainty(c, (10, 20, 30)) > 2e-3)
-    assert refined(near)[3] == 40
+    assert refined(near)[3] == 50
     assert refined(far)[3] == 60
     for elements in (refined(near), refined(far)):
         ratios = [b / a for a, b in pairwise(elements[2:])]
