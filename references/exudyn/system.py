@@ -4,6 +4,9 @@ Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multib
 60 (2024) 533–561.
 """
 
+import io
+import sys
+from contextlib import redirect_stdout
 from importlib import metadata
 from typing import Any
 
@@ -30,8 +33,14 @@ def version() -> str | None:
 
 
 def system() -> tuple[Any, Any, Any]:
-    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive)."""
-    import exudyn
+    """The Exudyn module without printing, a container, and an empty system in it (keep the container alive).
+
+    Of its two compiled modules, the one without range checks is used if the processor supports it: it is a quarter faster.
+    """
+    if not hasattr(sys, "exudynFast"):  # read at its first import, which prints
+        setattr(sys, "exudynFast", True)  # noqa: B010 - a type checker does not know it
+    with redirect_stdout(io.StringIO()):
+        import exudyn
 
     exudyn.config.printToConsole = False
     container = exudyn.SystemContainer()
