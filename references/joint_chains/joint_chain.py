@@ -101,7 +101,7 @@ class JointChain:
     plant: Callable[[Chain], Plant]
     shares: Shares = "discretisation"
     effects: Effects = ALL_EFFECTS
-    levels: tuple[int, ...] = (10, 20, 40)
+    levels: tuple[int, ...] = (10, 20, 30)
     order: int = 2
 
     @property

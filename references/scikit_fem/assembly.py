@@ -5,6 +5,7 @@ calls take most of the time of a solution; the matrix is the same to rounding.
 """
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -36,6 +37,7 @@ def bilinear(form: Callable[..., Any], trial: Any, test: Any = None, **given: An
     return out
 
 
+@lru_cache(maxsize=16)  # a blade's bases, which serve at every speed
 def _functions(basis: Any, axis: int) -> list[Any]:
     """For each field of a basis, all its shape functions at once, with axes (…, functions, elements, points) and ``axis``."""
     from skfem.element import DiscreteField

@@ -47,6 +47,13 @@ MOVE_TWICE = np.zeros((6, 6, 3, 4))
 MOVE_TWICE[3:, 3:, :, :3] = 0.5 * (np.einsum("aij,bjk->abik", CROSS, CROSS) + np.einsum("bij,ajk->abik", CROSS, CROSS))
 """To second order: ½ φ × (φ × y) is half of ``φ_a φ_b MOVE_TWICE[a, b] @ (y, 1)``."""
 
+INERTIA = np.einsum("ail,bij->abjl", MOVE, MOVE)
+GYROSCOPIC = 2.0 * np.einsum("ail,ik,bkj->abjl", MOVE, SPIN, MOVE)
+CENTRIFUGAL = np.einsum("ail,ik,bkj->abjl", MOVE, OUT_OF_AXIS, MOVE)
+FORCE = np.einsum("il,alj->aij", OUT_OF_AXIS, MOVE)
+FORCE_TWICE = np.einsum("il,ablj->abij", OUT_OF_AXIS, MOVE_TWICE)
+"""Factors of the moments in the forms below, which are sums over the last two indices."""
+
 
 def skew(v: Array) -> Array:
     """(…, 3, 3) with ``skew(v) @ u = v × u``."""
@@ -82,25 +89,27 @@ def geometric(slope: Array, axes: Array, force: Array) -> Array:
 
 def inertia(moments: Array) -> Array:
     """(e, q, 6, 6) ``∫ δx · ẍ dm`` from ``moments`` (e, q, 4, 4), ∫ Y Yᵀ dm in the hub's axes."""
-    return np.einsum("ail,bij,...jl->...ab", MOVE, MOVE, moments, optimize=True)
+    return _sum(moments, INERTIA)
 
 
 def gyroscopic(moments: Array) -> Array:
     """(e, q, 6, 6) ``∫ δx · 2 Ω × ẋ dm`` per unit of speed: skew."""
-    return 2.0 * np.einsum("ail,ik,bkj,...jl->...ab", MOVE, SPIN, MOVE, moments, optimize=True)
+    return _sum(moments, GYROSCOPIC)
 
 
 def centrifugal_force(place: Array, moments: Array) -> Array:
     """(e, q, 6) ``−∫ δx · Ω × (Ω × x) dm`` per unit of speed squared."""
-    return np.einsum("...il,ik,akj,...jl->...a", _position(place), OUT_OF_AXIS, MOVE, moments, optimize=True)
+    return _sum(_position(place) @ moments, FORCE)
 
 
 def centrifugal(place: Array, moments: Array) -> Array:
     """(e, q, 6, 6) minus the derivative of ``centrifugal_force`` by the motion, from first and second order of δx;
     symmetric."""
-    first = np.einsum("ail,ik,bkj,...jl->...ab", MOVE, OUT_OF_AXIS, MOVE, moments, optimize=True)
-    second = np.einsum("...il,ik,abkj,...jl->...ab", _position(place), OUT_OF_AXIS, MOVE_TWICE, moments, optimize=True)
-    return -first - second
+    return -_sum(moments, CENTRIFUGAL) - _sum(_position(place) @ moments, FORCE_TWICE)
+
+
+def _sum(moments: Array, factors: Array) -> Array:
+    return np.tensordot(moments, factors, ((-2, -1), (-2, -1)))
 
 
 def _position(place: Array) -> Array:
