@@ -118,17 +118,28 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
         R2[following] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
         M, C = (part.among_free(a) for a in state.tangent[:2])
         by_independent = by_independent + C @ R1 + M @ R2
-    turns = tree.screw[part.free, 3:].any(1)
-    units = np.where(turns, 1.0, size_of(k.poses))
-    size = _sizes(tree, state)[part.free] + np.abs(K) @ np.maximum(units, np.abs(state.q[part.free]))
-    sizes = replace(part, R=np.abs(R))
-    rounding, unit = sizes.onto(size), units[np.isin(part.free, part.independent)]
-    least = (sizes.onto(_carried(state)[part.free]) + rounding) / unit
+    units, size = _scales(tree, here)
+    absolute = replace(part, R=np.abs(R))
+    rounding, unit = absolute.onto(size), units[np.isin(part.free, part.independent)]
+    least = (absolute.onto(_carried(state)[part.free]) + rounding) / unit
     reduced = part.onto(by_independent)
     scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = reduced / root[:, None] / root
     return Tangent(scaled, factored(scaled), root**2, rounding, units)
+
+
+def rounding_at(tree: Tree, here: Residual) -> Array:
+    """(i,) ``Tangent.rounding``, without the derivative."""
+    return replace(here.part, R=np.abs(here.part.R)).onto(_scales(tree, here)[1])
+
+
+def _scales(tree: Tree, here: Residual) -> tuple[Array, Array]:
+    """``Tangent.units`` (f,), and the size (f,) of the forces of which the unbalanced ones are the sum."""
+    state, free = here.state, here.part.free
+    units = np.where(tree.screw[free, 3:].any(1), 1.0, size_of(state.kinematics.poses))
+    stiffness = np.abs(here.part.among_free(state.tangent[2]))
+    return units, _sizes(tree, state)[free] + stiffness @ np.maximum(units, np.abs(state.q[free]))
 
 
 def _sizes(tree: Tree, state: State) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import partition
-from .balance import residual_at, tangent_at
+from .balance import residual_at, rounding_at, tangent_at
 from .continuation import followed
 from .loops import assemble, closed, size_of
 from .mechanism import MechanismError
@@ -103,7 +103,7 @@ def left_over(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...])
     if np.abs(gap).max(initial=0.0) > 1e-9 * length:
         raise MechanismError("loops: they do not close")
     here = residual_at(tree, q, independent=independent)
-    return here.state, here.reduced, tangent_at(tree, here).rounding
+    return here.state, here.reduced, rounding_at(tree, here)
 
 
 def again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:

@@ -46,9 +46,10 @@ def check(linear: Linearization) -> None:
 def _change(linear: Linearization, moving: list[Motion], time: float) -> tuple[float, str]:
     """The largest relative change after these motions alone have continued for ``time`` (s), and the name of what changes."""
     tree, here = linear.tree, linear.state
-    later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}
-    motions = tuple(later.get(m.coordinate, m) for m in tree.mechanism.motions)
-    tree = replace(tree, mechanism=replace(tree.mechanism, motions=motions))
+    if any(m.acceleration for m in moving):
+        later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}
+        motions = tuple(later.get(m.coordinate, m) for m in tree.mechanism.motions)
+        tree = replace(tree, mechanism=replace(tree.mechanism, motions=motions))
     q = here.q.copy()
     for m in moving:
         q[tree.coordinate(m.coordinate)] += m.rate * time + 0.5 * m.acceleration * time**2
