@@ -56,17 +56,17 @@ def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:
         mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, marker]))
 
 
-def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0) -> None:
+def settle(exu: Any, mbs: Any, omega: float, rounding: float = 0.0, full: bool = False) -> None:
     """Move an assembled system and its initial values to its static equilibrium.
 
     Exudyn linearises about the initial values. ``rounding`` (N or N m) is the rounding error of the stiffest forces:
-    Newton's method cannot reduce the residual below it and would not end.
+    Newton's method cannot reduce the residual below it and would not end. ``full``: the Jacobian is a full matrix.
 
     Raises:
         CodeError: Newton's method did not converge.
     """
     try:
-        settings = _settings(exu)
+        settings = _settings(exu, full)
         settings.staticSolver.newton.absoluteTolerance = max(settings.staticSolver.newton.absoluteTolerance, rounding)
         mbs.SolveStatic(settings, updateInitialValues=True, showCausingItems=False)
     except exu.ExudynError as error:
@@ -80,12 +80,12 @@ def sparse_matrix(exu: Any, matrix: Any) -> Any:
     return container
 
 
-def linearized(exu: Any, mbs: Any, still: bool = False) -> tuple[Array, Array, Array]:
+def linearized(exu: Any, mbs: Any, still: bool = False, full: bool = False) -> tuple[Array, Array, Array]:
     """Mass, damping and gyroscopic, and stiffness matrix (n, n) about the initial values; constraints are not applied.
 
-    ``still``: nothing moves or damps, and the second matrix, which takes half of the time, is zero.
+    ``still``: nothing moves or damps, and the second matrix, which takes half of the time, is zero. ``full``: they are full.
     """
-    settings = _settings(exu)
+    settings = _settings(exu, full)
     if not still:
         mass, stiffness, damping = mbs.ComputeLinearizedSystem(settings)[:3]
         return np.array(mass), np.array(damping), np.array(stiffness)
@@ -99,11 +99,12 @@ def linearized(exu: Any, mbs: Any, still: bool = False) -> tuple[Array, Array, A
     return mass, np.zeros_like(mass), stiffness
 
 
-def _settings(exu: Any) -> Any:
+def _settings(exu: Any, full: bool) -> Any:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.staticSolver.verboseMode = 0
-    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    solvers = exu.LinearSolverType
+    settings.linearSolver.solverType = solvers.EigenDense if full else solvers.EigenSparse
     settings.staticSolver.newton.useModifiedNewton = True  # a Jacobian takes far longer than an iteration
     # step of Exudyn's numerical differentiation: relativeEpsilon × max(|q|, this); 1e-7 rad or m instead of 1e-9
     # leaves a rounding error of 1e-10 in the matrices

@@ -119,7 +119,7 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
     mbs.Assemble()
     if omega:
         _steady_state(exu, mbs, omega, n)
-    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, still=not omega))
+    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, still=not omega, full=True))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 
@@ -138,7 +138,7 @@ def _steady_state(exu: Any, mbs: Any, omega: float, n: int) -> None:
             for k in range(1, increments + 1):
                 rate = omega * np.sqrt(k / increments)
                 data.SetODE2Coordinates_t(np.append(rate, np.zeros(n - 1)), configuration=initial)
-                ex.settle(exu, mbs, omega)
+                ex.settle(exu, mbs, omega, full=True)
             return
         except CodeError:
             if increments == RAMPS[-1]:

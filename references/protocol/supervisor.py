@@ -29,6 +29,9 @@ SET_PARENT_DEATH_SIGNAL, SET_CHILD_SUBREAPER = 1, 36
 REQUEST = 256
 """Bytes of a request: JSON ``[module, address space in bytes]``, filled up with blanks."""
 
+OBJECTS = 50_000
+"""New objects after which a process looks for cycles to free, instead of Python's 700."""
+
 
 def main() -> None:
     """Fork a supervisor for each request until the socket is closed."""
@@ -37,6 +40,7 @@ def main() -> None:
     for name in sys.argv[2:] if sys.platform == "linux" else ():
         with suppress(Exception):  # the child imports its module again and reports the error
             importlib.import_module(name)
+    gc.set_threshold(OBJECTS)
     gc.freeze()  # else the collections of each child would copy all pages of what is imported
     while True:
         request, streams, _, _ = socket.recv_fds(link, REQUEST, 4)

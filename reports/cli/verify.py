@@ -130,21 +130,21 @@ def command(
             f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
         )
     kept_before = _store(fresh)
-    launch.prepare()  # for ``describe``, while the cases are read
-    decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
-    given = [parse(text) for text in changes]
-    wanted = [case_of(name, decks) for name in dict.fromkeys(case)] if case else everything()
-    chosen = [changed(one, given) for one in wanted]
-    if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
-        raise UsageError(
-            "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
-        )
     with ExitStack() as early:
         if kept_before:
             early.callback(kept_before.close)
-        # in a process of its own, which starts while the codes are asked about the blades
+        # in a process of its own, while the cases are read and the codes asked about them
         at_once = closed_forms and not scheduler and count != 1
         first_page = _closed_forms(early.enter_context(executor())) if at_once else None
+        launch.prepare()  # for ``describe``, while the cases are read
+        decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
+        given = [parse(text) for text in changes]
+        wanted = [case_of(name, decks) for name in dict.fromkeys(case)] if case else everything()
+        chosen = [changed(one, given) for one in wanted]
+        if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
+            raise UsageError(
+                "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
+            )
         names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         known = describe(names, [v.blade for v in blades])
