@@ -120,7 +120,7 @@ def command(
         pitch. May be repeated.
     closed_forms
         Also compare core with mechanisms that have closed-form solutions, as `southwell closed-forms` does; the page is part of
-        the report. Status 1 if a difference is above its target.
+        the report. Status 1 if a difference is above its target. With several workers, they have one more process.
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.schema import Compare
-from southwell.cases.verify.core_solver import Converged, converged
-from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.cases.verify.core_solver import Converged, answers, converged
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
-from southwell.core.solve import modes
+from southwell.core.modes import Modes
+from southwell.core.solve import mesh_modes, modes
+from southwell.references.protocol.process import Failure
 
 
 @pytest.mark.parametrize("motion", ["flapwise", "edgewise"])
@@ -42,3 +44,18 @@ def test_a_soft_root_between_two_stations_is_within_the_stated_uncertainty(fract
         assert mode.estimate is not None
         assert mode.estimate.uncertainty is not None
         assert abs(mode.estimate.value / expected - 1.0) <= mode.estimate.uncertainty + sure
+
+
+def test_a_speed_without_a_steady_state_costs_no_other_speed() -> None:
+    soft = uniform_blade("soft", 6.0, 0.3, EA=1e4, GJ=1e3, EI_y=1e3, EI_z=2e3, mass=1.2)
+    runs = [(omega, n, 4) for n in (10, 20) for omega in (0.0, 2.0, 1e3, 4.0)]
+    found = answers(soft, runs)
+    for (omega, elements, count), answer in zip(runs, found, strict=True):
+        if omega == 1e3:
+            assert isinstance(answer, Failure)
+            assert answer.kind == "refused"
+        else:
+            assert isinstance(answer, Modes)
+            assert (answer.omega, answer.elements) == (omega, elements)
+            alone = mesh_modes(soft, omega, elements, count)
+            np.testing.assert_allclose(answer.frequencies, alone.frequencies, rtol=1e-10)
