@@ -13,6 +13,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade, section_stiffness, uniform_blade
 from southwell.core.element import sections
 from southwell.references.protocol.interface import CodeError
+from southwell.references.scikit_fem import reissner
 from southwell.references.scikit_fem import reissner_forms as forms
 from southwell.references.scikit_fem.reissner import CODE
 from southwell.references.theories.reference_line import line, moments
@@ -170,6 +171,17 @@ class TestFrequencies:
     def test_a_coned_blade_on_a_flap_hinge_rotates_to_its_equilibrium(self, precone: float) -> None:
         blade = replace(PARK, root=np.array([np.inf] * 4 + [0.0, np.inf]), precone=precone)
         np.testing.assert_allclose(frequencies(blade, 10.0, 64, 4), core(blade, 10.0, 4), rtol=1e-6)
+
+    @pytest.mark.parametrize("omega", [0.0, 20.0])
+    def test_factors_of_m_and_c_that_are_applied_give_what_formed_ones_do(
+        self, omega: float, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """On a root with motions of its own, which strains do not determine."""
+        blade = replace(PARK, root=np.array([3e4, 2e4, 1e4, 300.0, 40.0, 50.0]))
+        formed = CODE.solve(blade, omega, 24, 6)
+        monkeypatch.setattr(reissner, "FORMED", 0)
+        applied = CODE.solve(blade, omega, 24, 6)
+        np.testing.assert_allclose(applied.frequencies, formed.frequencies, rtol=1e-10)
 
     def test_a_sliding_root_on_a_spring(self) -> None:
         blade = replace(PARK, root=np.array([3e4, 2e4, 1e4, 300.0, np.inf, np.inf]), pitch=0.4)
