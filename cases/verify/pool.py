@@ -18,14 +18,12 @@ from types import FrameType
 from typing import Any, ParamSpec, TypeVar
 
 from ...references.protocol import launch
+from ...references.protocol.supervisor import OBJECTS
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 SAFE_PATH = "PYTHONSAFEPATH"
-
-OBJECTS = 100_000
-"""New objects after which a process looks for cycles to free; after 700, Python's default, it takes 5 % of a run."""
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 

@@ -4,6 +4,7 @@ The modes of every refinement are paired with the same reference modes, so that 
 mode.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -113,7 +114,8 @@ def solve(
                 solved[omega].append(answer)
                 if not wrong:
                     failed.pop(omega, None)
-        unsure = {omega: _unsure(solved[omega], wanted, refining, omega) for omega in speeds if omega not in failed}
+        open_ = [omega for omega in speeds if omega not in failed]
+        unsure = {omega: _unsure(solved[omega], wanted(omega, solved[omega]), refining) for omega in open_}
         finer = {omega: _finer(finest[omega], u, refining) for omega, u in unsure.items() if u > refining.sure}
         runs = sorted(
             ((omega, n, count) for omega, n in finer.items() if n >= refining.least * finest[omega]), key=lambda r: r[1]
@@ -122,20 +124,19 @@ def solve(
     return [Refinements(tuple(solved[omega]), failed.get(omega)) for omega in speeds]
 
 
-def _unsure(
-    answers: Sequence[Modes], wanted: Callable[[float, Sequence[Modes]], Wanted], refining: Refining, omega: float
-) -> float:
+def _unsure(answers: Sequence[Modes], wanted: Wanted, refining: Refining) -> float:
     """The largest uncertainty of a wanted mode that refinement may reduce; infinite if one is not known."""
-    modes = follow(answers, wanted(omega, answers), refining.order, refining.bracket)
+    modes = follow(answers, wanted, refining.order, refining.bracket)
     known = [m.estimate.uncertainty for m in modes if m.estimate and not m.bracketed]
     return max((np.inf if u is None else u for u in known), default=0.0)
 
 
 def _finer(finest: int, uncertainty: float, refining: Refining) -> int:
-    """The number of elements after ``finest``; at the cap, it is not much larger."""
+    """The number of elements after ``finest``, at most the cap."""
     ratio = (uncertainty / (AIM * refining.sure)) ** (1.0 / refining.order) if refining.order else MOST
     first = refining.levels[0]
-    return min(first * int(np.ceil(round(finest * min(max(ratio, refining.least), MOST) / first, 6))), refining.cap)
+    multiple = math.ceil(finest * min(max(ratio, refining.least), MOST) / first - 1e-9)
+    return min(first * multiple, refining.cap)
 
 
 def follow(answers: Sequence[Modes], wanted: Wanted, order: int, bracket: bool = False) -> list[RefinedMode]:

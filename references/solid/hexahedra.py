@@ -136,7 +136,7 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
         out[:, :, e] = whole.transpose(2, 3, 0, 1, 4)
     out = 0.5 * (out + out.transpose(1, 0, 2, 4, 3))  # equal but for rounding
     entry, rows, columns, order = _pattern(s.own, len(s.nodes))
-    sums = np.array([np.bincount(entry, part.ravel()) for part in out.reshape(9, -1)])
+    sums = np.array([np.bincount(entry, pair) for pair in out.reshape(9, -1)])
     return ss.csr_array((sums.ravel()[order], columns, rows), shape=(3 * len(s.nodes), 3 * len(s.nodes)))
 
 
@@ -149,14 +149,14 @@ def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
         (3n+1,), the column of each entry, and its index in the concatenated entries of the nine pairs.
     """
     rows, columns = (
-        np.broadcast_to(part, (*own.shape, own.shape[1])).ravel() for part in (own[:, :, None], own[:, None])
+        np.broadcast_to(nodes_of, (*own.shape, own.shape[1])).ravel() for nodes_of in (own[:, :, None], own[:, None])
     )
     pairs, entry = np.unique(rows * nodes + columns, return_inverse=True)
     size, places = len(pairs), (pairs // nodes, pairs % nodes)
-    numbers = (np.arange(9 * size) + 1).reshape(3, 3, size)  # an entry's number as its value, not zero
-    blocks = [[ss.csr_array((own, places), shape=(nodes, nodes)) for own in row] for row in numbers]
+    numbers = np.arange(9 * size).reshape(3, 3, size)
+    blocks = [[ss.csr_array((pair, places), shape=(nodes, nodes)) for pair in row] for row in numbers]
     whole: Any = ss.csr_array(ss.block_array(blocks, format="csr"))
-    return entry, whole.indptr, whole.indices, whole.data - 1
+    return entry, whole.indptr, whole.indices, whole.data
 
 
 def part(s: Solid, which: NDArray[np.bool_]) -> Solid:
@@ -284,9 +284,10 @@ def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
     the rotations of that step, as spurious tension, make a slender solid straighten slowly (D. Magisano, L. Leonetti and
     G. Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017) 986). Both lead to the same state, whose stiffness is returned.
     """
-    place, stress, factor, size = s.nodes.T.ravel(), None, None, 1.0
+    place, stress, size = s.nodes.T.ravel(), None, np.inf
+    factor: Any = None
     for _ in range(NEWTON):
-        if factor is None or size > SETTLED:
+        if size > SETTLED:
             factor = factored(free.T @ ss.csc_array(tangent(s, u, stress) - across) @ free)
         step = free @ factor.solve(free.T @ (across @ (place + u) - internal_force(s, u)))
         stress, u = predicted(s, u, step), u + step

@@ -120,7 +120,7 @@ def command(
         pitch. May be repeated.
     closed_forms
         Also compare core with mechanisms that have closed-form solutions, as `southwell closed-forms` does; the page is part of
-        the report. Status 1 if a difference is above its target. With several workers, they have one more process.
+        the report. Status 1 if a difference is above its target. They have one more process.
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
@@ -134,8 +134,7 @@ def command(
         if kept_before:
             early.callback(kept_before.close)
         # in a process of its own, while the cases are read and the codes asked about them
-        at_once = closed_forms and not scheduler and count != 1
-        first_page = _closed_forms(early.enter_context(executor())) if at_once else None
+        page = _closed_forms(early.enter_context(executor())) if closed_forms else None
         launch.prepare()  # for ``describe``, while the cases are read
         decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
         given = [parse(text) for text in changes]
@@ -181,7 +180,6 @@ def command(
             pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
             with writable(f"--out {out}"):
                 opened = Journal(out)
-            page = first_page or (_closed_forms(pool) if closed_forms else None)
             with opened as kept:
                 run, stopped = solve(
                     chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
