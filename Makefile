@@ -7,7 +7,7 @@ BIN := .venv/bin
 INSTALLED := .venv/installed
 # the root is the package; pyright finds it by this name (extraPaths in pyproject.toml)
 HERE := .venv/here
-LOOPS := $(shell find core -name '*.hpp' -o -name '*.cpp')
+KERNELS := $(shell find core -name '*.hpp' -o -name '*.cpp')
 
 # one thread a process: the runs are parallel already
 export OMP_NUM_THREADS := 1
@@ -30,7 +30,7 @@ test-slow: $(INSTALLED)
 lint: $(INSTALLED)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/clang-format --dry-run -Werror $(LOOPS)
+	$(BIN)/clang-format --dry-run -Werror $(KERNELS)
 	$(BIN)/pyright --threads --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
@@ -50,7 +50,7 @@ docs: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
-$(INSTALLED): pyproject.toml setup.py $(LOOPS)
+$(INSTALLED): pyproject.toml setup.py $(KERNELS)
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'

@@ -1,4 +1,4 @@
-"""The compiled loops of core; everything else is in pyproject.toml."""
+"""The compiled kernels of core; everything else is in pyproject.toml."""
 
 import os
 import platform
@@ -18,7 +18,7 @@ FOLDER = Path("core", "compiled")
 DIGEST = runpy.run_path(str(FOLDER / "sources.py"))["digest"]()
 
 
-def loops(name: str, flags: list[str]) -> Pybind11Extension:
+def kernels(name: str, flags: list[str]) -> Pybind11Extension:
     """The module ``southwell.core.compiled.NAME``, compiled with ``flags``."""
     return Pybind11Extension(
         f"southwell.core.compiled.{name}",
@@ -43,8 +43,8 @@ class Build(build_ext):
         super().build_extensions()
 
 
-modules = [loops("baseline", [])]
+modules = [kernels("baseline", [])]
 if platform.machine() == "x86_64" and not WINDOWS:  # MSVC has no way to ask the processor for AVX2
-    modules.append(loops("avx2", AVX2))
+    modules.append(kernels("avx2", AVX2))
 
 setup(ext_modules=modules, cmdclass={"build_ext": Build}, options={"build_ext": {"parallel": len(modules)}})

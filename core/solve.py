@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blade import Blade, without_rotary_inertia
-from .chain.refinement import Meshes, as_given, refined, without_bias
-from .chain.solution import MeshSolver
-from .chain.steady import LargeStrainError
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import LARGEST_STRAIN, Measure
 from .modes import Modes
+from .spectrum.mesh_solver import MeshSolver
+from .spectrum.refinement import Meshes, as_given, refined, without_bias
+from .steady.blade_state import LargeStrainError
 
 Array = NDArray[np.float64]
 

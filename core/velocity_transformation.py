@@ -12,27 +12,27 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from . import eigen
 from .blade import Blade, without_rotary_inertia
-from .chain import as_mechanism
-from .chain.mode_shapes import mode_shapes
-from .chain.pencil import Shape
-from .chain.steady import SteadyStateError
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Chain, Mass, discretize
 from .element.measures import Measure
+from .mechanism.description import MechanismError, at_rate
 from .modes import Modes
-from .multibody import equilibrium
-from .multibody.dynamics import unbalanced
-from .multibody.loops import size_of
-from .multibody.lowest import lowest
-from .multibody.mechanism import MechanismError, at_rate
-from .multibody.rotating import Rotating, rotating
-from .multibody.spanning import compile_tree
-from .multibody.state import State, state_at
-from .multibody.strained import out_of_range
-from .multibody.tree import Tree
 from .space import spatial as sp
+from .spectrum import eigen
+from .spectrum.lowest import lowest
+from .spectrum.rotating import Rotating, rotating
+from .steady import equilibrium
+from .steady.blade_state import SteadyStateError
+from .tree import as_mechanism
+from .tree.closure import size_of
+from .tree.dynamics import unbalanced
+from .tree.mode_shapes import mode_shapes
+from .tree.pencil import Shape
+from .tree.spanning import compile_tree
+from .tree.state import State, state_at
+from .tree.strained import out_of_range
+from .tree.topology import Tree
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from functools import cache
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.chain.refinement import AccuracyWarning
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
 from ...core.solve import NO_GRAVITY, sweep
+from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from ..judge.pairing import Array, weights
 from .encounters import Encounter, encounters

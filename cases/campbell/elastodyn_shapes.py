@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, section_mass, section_stiffness
-from ...core.chain.refinement import AccuracyWarning
 from ...core.element.sections import compliance
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered, participation
 from ...core.solve import modes
+from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import CaseError
 from ..judge.pairing import Array
 

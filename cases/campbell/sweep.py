@@ -9,9 +9,9 @@ import numpy as np
 
 from ...core import solve, velocity_transformation
 from ...core.blade import Blade
-from ...core.chain.refinement import AccuracyWarning
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
+from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import NO_STATE, rad_s, unsteady
 from ..judge.pairing import aligned, weights
 

@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 
 from ...core import multibody as mb
 from ...core.blade import Blade, section_mass, section_stiffness
-from ...core.chain.as_mechanism import one
 from ...core.element.discretize import discretize
 from ...core.space import spatial as sp
+from ...core.tree.as_mechanism import one
 
 Complex = NDArray[np.complex128]
 

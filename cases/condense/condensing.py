@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core.condense import condensation, ties
 from ...core.condense.segments import Segment, segment_from_matrix
 from ...core.condense.ties import CondensationError, FiniteElements, Tie
-from ...core.multibody.mechanism import inertia
+from ...core.mechanism.description import inertia
 from ...core.space import spatial as sp
 from ..input import files
 from ..input.errors import CaseError

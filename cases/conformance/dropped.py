@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...core import solve
 from ...core.effects import Effects
-from ...core.eigen import UnstableError
+from ...core.spectrum.eigen import UnstableError
 from ...references.protocol.interface import Code, CodeError
 from . import blades as known
 from .asking import NotForItError, keep, limit_of

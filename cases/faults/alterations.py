@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
-from ...core.chain.steady import Steady
 from ...core.effects import Effects
 from ...core.element.discretize import Chain
+from ...core.steady.blade_state import Steady
 from ..verify import core_faults, core_solver
 
 Balance = Callable[..., Steady]

@@ -1,4 +1,4 @@
-"""Faults in core, where Python passes geometry, sections, chains and pencils to the compiled loops."""
+"""Faults in core, where Python passes geometry, sections, chains and pencils to the compiled kernels."""
 
 from dataclasses import replace
 from typing import Any
@@ -7,8 +7,8 @@ import numpy as np
 
 from ...core import solve
 from ...core.blade import BEND_Z, TORSION
-from ...core.chain import solution
 from ...core.element import discretize, sections
+from ...core.spectrum import mesh_solver as solution
 from ..verify import core_faults, core_solver
 from .alterations import (
     at_speed,

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ...core.multibody import modal, periodic
-from ...core.multibody.linearization import Linearization
-from ...core.multibody.mechanism import Mechanism, inertia
+from ...core.mechanism.description import Mechanism, inertia
+from ...core.spectrum import modal
+from ...core.steady import periodic
+from ...core.tree.linearization import Linearization
 from ...references.protocol.mechanism_interface import MechanismModes
 from ...references.protocol.mechanism_worker import Answer
 from ...references.protocol.process import Failure

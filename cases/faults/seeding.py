@@ -20,7 +20,7 @@ import msgspec
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.multibody.mechanism import Mechanism
+from ...core.mechanism.description import Mechanism
 from ...references.protocol import registry
 from ...references.protocol.description import Description, describe
 from ..input import library

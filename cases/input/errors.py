@@ -5,10 +5,10 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from ...core.chain.completeness import MissedModesError
-from ...core.chain.lanczos import EigensolverError
-from ...core.chain.steady import LargeStrainError, SteadyStateError
-from ...core.eigen import UnstableError
+from ...core.spectrum.completeness import MissedModesError
+from ...core.spectrum.eigen import UnstableError
+from ...core.spectrum.lanczos import EigensolverError
+from ...core.steady.blade_state import LargeStrainError, SteadyStateError
 
 NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError, EigensolverError, MissedModesError)
 """Errors of the solver if there is no stable steady state or the eigensolver fails."""

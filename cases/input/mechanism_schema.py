@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct
 
-from ...core.multibody.joints import Kind
+from ...core.mechanism.joints import Kind
 from .names import Name, Typed
 from .schema import LOOSEST, Confirmations, Speeds
 

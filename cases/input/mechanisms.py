@@ -10,10 +10,10 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...core.eigen import EigenError
-from ...core.multibody.mechanism import at_time
-from ...core.multibody.spanning import compile_tree
+from ...core.mechanism.description import at_time
 from ...core.space import spatial as sp
+from ...core.spectrum.eigen import EigenError
+from ...core.tree.spanning import compile_tree
 from .errors import CaseError, nearest
 from .mechanism_schema import BodyData, CoordinateSpringData, Frame, JointData, MechanismFile, MotionData
 from .toml import OR_A_NAME, convert, document, finite

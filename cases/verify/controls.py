@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.chain.steady import SteadyStateError
 from ...core.effects import ALL_EFFECTS
-from ...core.eigen import UnstableError
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
+from ...core.spectrum.eigen import UnstableError
+from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, pair, weights
 from .core_faults import CORE_FAULTS, Solve

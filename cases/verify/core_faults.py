@@ -13,15 +13,16 @@ import numpy as np
 
 from ...core import solve
 from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
-from ...core.chain import pencil, solution
-from ...core.chain.lanczos import lanczos
-from ...core.chain.mode_shapes import mode_shapes
-from ...core.chain.pencil import ChainPencil, Shape
-from ...core.chain.steady import Steady
 from ...core.effects import Effects
 from ...core.element.discretize import Chain, Mass, discretize
 from ...core.element.measures import Measure
 from ...core.modes import Modes
+from ...core.spectrum import mesh_solver as solution
+from ...core.spectrum.lanczos import lanczos
+from ...core.steady.blade_state import Steady
+from ...core.tree import pencil
+from ...core.tree.mode_shapes import mode_shapes
+from ...core.tree.pencil import ChainPencil, Shape
 
 OFFSET = 0.25
 """Shift of the reference axis, as a fraction of the radius of gyration √(EI_z/EA) at midspan."""

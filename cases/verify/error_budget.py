@@ -20,13 +20,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...core.blade import AXIAL, SHEAR_Y, SHEAR_Z, Blade
-from ...core.chain.steady import SteadyStateError
 from ...core.effects import ALL_EFFECTS, Effects
-from ...core.eigen import UnstableError
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.solve import mesh_modes
+from ...core.spectrum.eigen import UnstableError
+from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell
 from .controls import changed

@@ -7,7 +7,7 @@ from msgspec import UNSET
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...core.multibody.mechanism import at_rate
+from ...core.mechanism.description import at_rate
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError, nearest
 from ..input.mechanisms import Described

@@ -16,9 +16,9 @@ from scipy.optimize import linear_sum_assignment
 
 from ...core import multibody as mb
 from ...core.effects import ALL_EFFECTS, Effects
-from ...core.eigen import EigenError
-from ...core.multibody.dynamics import reduced_mass
 from ...core.participation import numbered
+from ...core.spectrum.eigen import EigenError
+from ...core.tree.dynamics import reduced_mass
 from ...references.protocol.description import Description
 from ...references.protocol.interface import Independence
 from ...references.protocol.mechanism_interface import MechanismModes

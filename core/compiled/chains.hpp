@@ -1,13 +1,13 @@
-// Chains: what Python calls of core/chain.
+// Chains: what Python calls of core/tree.
 #pragma once
 
 #include <algorithm>
 
-#include "../chain/chain.hpp"
-#include "../chain/elimination.hpp"
-#include "../chain/energies.hpp"
-#include "../chain/extrapolation.hpp"
-#include "../chain/shapes.hpp"
+#include "../spectrum/energies.hpp"
+#include "../steady/extrapolation.hpp"
+#include "../tree/chain.hpp"
+#include "../tree/elimination.hpp"
+#include "../tree/shapes.hpp"
 #include "elements.hpp"
 
 namespace southwell {

@@ -1,7 +1,7 @@
 // The operator of lanczos.py, with the arrays it refers to.
 #pragma once
 
-#include "../chain/krylov.hpp"
+#include "../spectrum/krylov.hpp"
 #include "chains.hpp"
 
 namespace southwell {

@@ -1,4 +1,4 @@
-// The module that Python imports; setup.py sets MODULE, its name, and SOURCES, the digest of the sources. loops.pyi has the signatures.
+// The module that Python imports; setup.py sets MODULE, its name, and SOURCES, the digest of the sources. kernels.pyi has the signatures.
 #include "chains.hpp"
 #include "elements.hpp"
 #include "lanczos.hpp"

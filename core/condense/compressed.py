@@ -14,8 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import solve
-from ..chain import accuracy
-from ..chain.steady import LargeStrainError
 from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
@@ -24,6 +22,8 @@ from ..element.measures import LARGEST_STRAIN, even
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
 from ..space.inertia import about_centre, transformed
+from ..spectrum import accuracy
+from ..steady.blade_state import LargeStrainError
 from .joined import joined
 from .segments import Segment
 from .ties import CondensationError

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import loops
+from ..compiled import kernels
 from ..effects import ALL_EFFECTS, Effects
 from ..space import spatial as sp
 from . import measures
@@ -81,14 +81,14 @@ class Beams:
         return np.asarray(~self.law.shortening.any(axis=(1, 2)))
 
     @cached_property
-    def arrays(self) -> loops.Beams:
+    def arrays(self) -> kernels.Beams:
         """The elements for compiled loops; ``ValueError`` if the points are not sorted by element."""
         p = self.points
         if (np.diff(p.element) < 0).any():
             raise ValueError("points: not sorted by element")
         first = np.searchsorted(p.element, np.arange(len(self.stiffness) + 1))
         parts = (self.stiffness, self.preload, self.inner_preload, p.zeta0, p.shape, p.bubble, p.mass, p.force)
-        return loops.Beams(self.law.arrays, first, *(np.ascontiguousarray(a, dtype=float) for a in parts))
+        return kernels.Beams(self.law.arrays, first, *(np.ascontiguousarray(a, dtype=float) for a in parts))
 
     @property
     def inner(self) -> int:
@@ -196,7 +196,7 @@ def on_strain(
         raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
     turn = np.zeros((len(x), 3, 3)) if axes is None else axes
     x, beta, frame, gravity, turn = (np.ascontiguousarray(a) for a in (x, beta, frame, gravity, turn))
-    return OnStrain(*loops.on_strain(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
+    return OnStrain(*kernels.on_strain(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
 
 
 def pencil(found: OnStrain) -> Pencil:

@@ -25,7 +25,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import loops
+from ..compiled import kernels
 from ..space import spatial as sp
 
 Array = NDArray[np.float64]
@@ -62,10 +62,10 @@ class StrainLaw:
         object.__setattr__(self, "eta", sp.log(self.undeformed))
 
     @cached_property
-    def arrays(self) -> loops.StrainLaws:
+    def arrays(self) -> kernels.StrainLaws:
         """The law for compiled loops."""
         parts = (np.ascontiguousarray(getattr(self, name), dtype=float) for name in (*_ARRAYS, "eta"))
-        return loops.StrainLaws(self.measure == "body_fixed", *parts)
+        return kernels.StrainLaws(self.measure == "body_fixed", *parts)
 
 
 def even(measure: Measure, undeformed: Array) -> StrainLaw:
@@ -110,7 +110,7 @@ def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_e
     """
     none = np.zeros((len(x), 6))
     force, conjugate = (none if v is None else np.ascontiguousarray(v) for v in (s, on_eta))
-    return Response(*loops.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta), force, conjugate))
+    return Response(*kernels.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta), force, conjugate))
 
 
 def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
@@ -119,7 +119,7 @@ def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
     An element without length, such as a root joint, has none. Bending strains are not included: they need the sections'
     thickness, which a beam does not state.
     """
-    return loops.relative_strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
+    return kernels.relative_strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
 
 
 def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:

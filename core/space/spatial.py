@@ -8,14 +8,14 @@ frame's origin. (J. M. Selig, *Geometric Fundamentals of Robotics*, 2005, ch. 4 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import loops
+from ..compiled import kernels
 
 Array = NDArray[np.float64]
 
 
 def skew(a: Array) -> Array:
     """Cross-product matrices (..., 3, 3) of vectors (..., 3)."""
-    return loops.skew(a)
+    return kernels.skew(a)
 
 
 def pose(rotation: Array, position: Array) -> Array:
@@ -30,22 +30,22 @@ def pose(rotation: Array, position: Array) -> Array:
 
 def inverse(x: Array) -> Array:
     """Inverse poses (..., 4, 4)."""
-    return loops.inverse(x)
+    return kernels.inverse(x)
 
 
 def adjoint(x: Array) -> Array:
     """(..., 6, 6): transforms twists from the pose's frame to the frame it is given in; its transpose, wrenches back."""
-    return loops.adjoint(x)
+    return kernels.adjoint(x)
 
 
 def ad(twist: Array) -> Array:
     """(..., 6, 6) with ``ad(a) b = a × b`` for twists; ``a ×* f = −ad(a)ᵀ f`` for wrenches."""
-    return loops.ad(twist)
+    return kernels.ad(twist)
 
 
 def cross(wrench: Array) -> Array:
     """(..., 6, 6) with ``ad(a)ᵀ f = cross(f) a``."""
-    return loops.cross(wrench)
+    return kernels.cross(wrench)
 
 
 def rotation(axis: int, angle: Array) -> Array:
@@ -61,19 +61,19 @@ def rotation(axis: int, angle: Array) -> Array:
 
 def exp(twist: Array) -> Array:
     """Poses (..., 4, 4) reached by moving along constant twists (..., 6) for unit time."""
-    return loops.exp(twist)
+    return kernels.exp(twist)
 
 
 def log(x: Array) -> Array:
     """Twists (..., 6) whose exponentials are the poses (..., 4, 4); rotations of at most half a turn."""
-    return loops.log(x)
+    return kernels.log(x)
 
 
 def tangent(twist: Array) -> Array:
     """Left tangent (..., 6, 6): ``d exp(ζ) = (tangent(ζ) dζ)^ exp(ζ)``."""
-    return loops.tangent(twist)
+    return kernels.tangent(twist)
 
 
 def tangent_inverse(twist: Array) -> Array:
     """Inverse of the left tangent (..., 6, 6)."""
-    return loops.tangent_inverse(twist)
+    return kernels.tangent_inverse(twist)

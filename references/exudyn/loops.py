@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.multibody.joints import SCREWS
-from ...core.multibody.tree import Tree
+from ...core.mechanism.joints import SCREWS
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre
+from ...core.tree.topology import Tree
 from . import system as ex
 
 Array = NDArray[np.float64]

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
-from ...core.multibody.mechanism import Mechanism
-from ...core.multibody.spanning import compile_tree
-from ...core.multibody.tree import Tree
+from ...core.mechanism.description import Mechanism
 from ...core.rank import ranked
+from ...core.tree.spanning import compile_tree
+from ...core.tree.topology import Tree
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CORE, CodeError, Independence, Shares
 from ..protocol.mechanism_interface import MechanismModes

@@ -7,7 +7,7 @@ product also vanishes where axes are opposed instead of aligned, so check ``reve
 
 import numpy as np
 
-from ...core.multibody.joints import Joint
+from ...core.mechanism.joints import Joint
 from .points import Frame, Function, along, apart, between
 
 X, Y, Z = np.eye(3)

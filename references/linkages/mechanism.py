@@ -18,7 +18,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
-from ...core.multibody.mechanism import Mechanism
+from ...core.mechanism.description import Mechanism
 from ..protocol import install
 from ..protocol.damped import damped_modes
 from ..protocol.interface import CodeError, Independence, Shares

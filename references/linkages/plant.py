@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.multibody.mechanism import Mechanism
+from ...core.mechanism.description import Mechanism
 from .closure import equations, reversed_axes
 from .points import Function, by, distance, frames
 from .spanning import Spanning, spanning

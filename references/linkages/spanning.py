@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.multibody.joints import Joint
-from ...core.multibody.mechanism import Mechanism
+from ...core.mechanism.description import Mechanism
+from ...core.mechanism.joints import Joint
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from ...core.effects import Effects
 from .interface import Shares
 
 if TYPE_CHECKING:
-    from ...core.multibody.mechanism import Mechanism
+    from ...core.mechanism.description import Mechanism
 
 Complex = NDArray[np.complex128]
 

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ...core.multibody.mechanism import Mechanism
+from ...core.mechanism.description import Mechanism
 from . import boundary, registry, wire
 from .child import Reply, blunder, failed, serve
 from .interface import CodeError

@@ -8,7 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ...core.element.measures import LARGE_STRAIN
-from ...core.multibody.solution import Solution
+from ...core.multibody import Solution
 from ..shared.certain import certain, relative
 
 ROTATIONS = (".rx", ".ry", ".rz")

@@ -10,12 +10,12 @@ from ...cases.input.errors import CaseError
 from ...cases.judge.pairing import aligned, weights
 from ...cases.judge.results import Cell
 from ...core.blade import Blade
-from ...core.chain.steady import SteadyStateError
-from ...core.eigen import UnstableError
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, participation
 from ...core.solve import modes
+from ...core.spectrum.eigen import UnstableError
+from ...core.steady.blade_state import SteadyStateError
 from ..shared.units import Units
 
 ELEMENTS, COUNT = 40, 6

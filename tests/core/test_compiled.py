@@ -1,4 +1,4 @@
-"""The compiled loops: the versions for different processors agree, and arrays of a wrong kind are errors, not crashes."""
+"""The compiled kernels: the versions for different processors agree, and arrays of a wrong kind are errors, not crashes."""
 
 import importlib.resources
 import subprocess
@@ -10,18 +10,19 @@ import pytest
 
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
-from southwell.core.chain import pencil, steady
-from southwell.core.compiled import baseline, loops  # type: ignore[attr-defined]
+from southwell.core.compiled import baseline, kernels  # type: ignore[attr-defined]
 from southwell.core.element.discretize import discretize
+from southwell.core.steady import blade_state as steady
+from southwell.core.tree import pencil
 
 BLADE = uniform_blade("blade", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
 
 FREQUENCIES = """
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
-from southwell.core.compiled import loops
+from southwell.core.compiled import kernels
 blade = uniform_blade("blade", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
-print(loops.__name__, *map(repr, solve.mesh_modes(blade, 8.0, 40, 8).frequencies.tolist()))
+print(kernels.__name__, *map(repr, solve.mesh_modes(blade, 8.0, 40, 8).frequencies.tolist()))
 """
 
 
@@ -42,9 +43,9 @@ def test_the_version_is_that_for_this_processor(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_every_function_has_its_signature_and_every_signature_its_function() -> None:
-    stub = importlib.resources.files("southwell.core.compiled").joinpath("loops.pyi").read_text(encoding="utf-8")
+    stub = importlib.resources.files("southwell.core.compiled").joinpath("kernels.pyi").read_text(encoding="utf-8")
     stated = {line.split("(")[0].split(":")[0].split()[1] for line in stub.splitlines() if line[:4] in ("def ", "clas")}
-    assert stated == {name for name in dir(loops) if not name.startswith("_")}
+    assert stated == {name for name in dir(kernels) if not name.startswith("_")}
 
 
 BODY = discretize(BLADE, 4)
@@ -53,16 +54,16 @@ F = P.factor
 VECTOR = np.zeros((1, len(P.residual)))
 
 WRONG = [
-    (lambda: loops.product(P.K, 1.0, P.back, VECTOR.astype(int)), TypeError, "float64"),  # type: ignore[arg-type]
-    (lambda: loops.product(P.K, 1.0, P.back, VECTOR.repeat(2, axis=1)[:, ::2]), TypeError, "C-contiguous"),
-    (lambda: loops.product(P.K, 1.0, P.back, VECTOR[:, :-1].copy()), ValueError, "length"),
-    (lambda: loops.product(P.K[:, :9, :9].copy(), 1.0, P.back, VECTOR), ValueError, r"12, 12\) or \(n, 18, 18"),
-    (lambda: loops.product(P.K, 1.0, P.back[:-1], VECTOR), ValueError, "108 numbers, not 144"),
-    (lambda: loops.negative_pivots(P.K, P.C[:-1], P.M, P.back, P.clamped, 1.0), ValueError, "numbers"),
-    (lambda: loops.solve(F.flexibility, F.ride[:-1], F.reaction, F.back, VECTOR), ValueError, "numbers"),
-    (lambda: loops.displaced(BODY.nodes[:-1], BODY.between, np.zeros((4, 12))), ValueError, "numbers"),
-    (lambda: loops.exp(np.zeros(5)), ValueError, "numbers"),
-    (lambda: loops.exp(np.array(1.0)), ValueError, "dimensions"),
+    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR.astype(int)), TypeError, "float64"),  # type: ignore[arg-type]
+    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR.repeat(2, axis=1)[:, ::2]), TypeError, "C-contiguous"),
+    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR[:, :-1].copy()), ValueError, "length"),
+    (lambda: kernels.product(P.K[:, :9, :9].copy(), 1.0, P.back, VECTOR), ValueError, r"12, 12\) or \(n, 18, 18"),
+    (lambda: kernels.product(P.K, 1.0, P.back[:-1], VECTOR), ValueError, "108 numbers, not 144"),
+    (lambda: kernels.negative_pivots(P.K, P.C[:-1], P.M, P.back, P.clamped, 1.0), ValueError, "numbers"),
+    (lambda: kernels.solve(F.flexibility, F.ride[:-1], F.reaction, F.back, VECTOR), ValueError, "numbers"),
+    (lambda: kernels.displaced(BODY.nodes[:-1], BODY.between, np.zeros((4, 12))), ValueError, "numbers"),
+    (lambda: kernels.exp(np.zeros(5)), ValueError, "numbers"),
+    (lambda: kernels.exp(np.array(1.0)), ValueError, "dimensions"),
 ]
 
 
@@ -76,11 +77,11 @@ def test_results_are_not_written_to_arrays_that_are_read_only() -> None:
     fixed = VECTOR.copy()
     fixed.flags.writeable = False
     with pytest.raises(ValueError, match=r"writ|read-only"):
-        loops.solve(F.flexibility, F.ride, F.reaction, F.back, fixed)
+        kernels.solve(F.flexibility, F.ride, F.reaction, F.back, fixed)
 
 
 def test_a_block_has_one_or_two_vectors() -> None:
-    a = loops.Operator(P.M, P.C, P.K, P.back, F.flexibility, F.ride, F.reaction, *np.zeros((2, 0, 6, 6)))
+    a = kernels.Operator(P.M, P.C, P.K, P.back, F.flexibility, F.ride, F.reaction, *np.zeros((2, 0, 6, 6)))
     basis, projected = np.zeros((20, 2 * VECTOR.size)), np.zeros((20, 20))
     for w, size in ((np.ones((3, 2 * VECTOR.size)), 0), (np.ones((1, 2 * VECTOR.size)), 21)):
         with pytest.raises(ValueError, match="one or two vectors"):
@@ -90,7 +91,7 @@ def test_a_block_has_one_or_two_vectors() -> None:
 
 
 def test_empty_batches() -> None:
-    assert loops.exp(np.zeros((0, 6))).shape == (0, 4, 4)
+    assert kernels.exp(np.zeros((0, 6))).shape == (0, 4, 4)
     assert steady.coordinates(BODY, pencil.undeformed(BODY)).shape == (4, 12)
 
 
@@ -109,4 +110,4 @@ import southwell.core.compiled
 """
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert run.returncode == 1
-    assert "ImportError: southwell's compiled loops are not those of their sources: run make" in run.stderr
+    assert "ImportError: southwell's compiled kernels are not those of their sources: run make" in run.stderr

@@ -17,16 +17,17 @@ from southwell.cases.verify.reference import references
 from southwell.core import solve
 from southwell.core import velocity_transformation as vt
 from southwell.core.blade import Blade
-from southwell.core.chain import as_mechanism, steady
-from southwell.core.chain.steady import SteadyStateError
 from southwell.core.effects import Effects
-from southwell.core.eigen import UnstableError
 from southwell.core.element.discretize import Mass, discretize
+from southwell.core.mechanism.description import Body, Load, Mechanism, MechanismError, Motion, inertia
+from southwell.core.mechanism.joints import Joint
 from southwell.core.modes import Modes
-from southwell.core.multibody.joints import Joint
-from southwell.core.multibody.mechanism import Body, Load, Mechanism, MechanismError, Motion, inertia
-from southwell.core.multibody.modal import linearize
 from southwell.core.space import spatial as sp
+from southwell.core.spectrum.eigen import UnstableError
+from southwell.core.spectrum.modal import linearize
+from southwell.core.steady import blade_state as steady
+from southwell.core.steady.blade_state import SteadyStateError
+from southwell.core.tree import as_mechanism
 from southwell.references.protocol.process import Limits
 from southwell.reports.cli import app as cli
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from southwell.core.chain.pencil import ChainPencil
+from southwell.core.tree.pencil import ChainPencil
 
 
 def dense(p: ChainPencil, matrix: np.ndarray) -> np.ndarray:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from southwell.cases.closed_forms.linkages import bar
-from southwell.core.multibody.joints import Joint, at
-from southwell.core.multibody.mechanism import Body, CoordinateSpring, Mechanism, Motion
+from southwell.core.mechanism.description import Body, CoordinateSpring, Mechanism, Motion
+from southwell.core.mechanism.joints import Joint, at
 
 A_, B_, C_, D_ = 1.0, 3.0, 2.0, 3.0
 

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from southwell.core.multibody import equilibrium, modal, periodic
-from southwell.core.multibody.equilibrium import State
-from southwell.core.multibody.linearization import Linearization, about
-from southwell.core.multibody.mechanism import Mechanism, MechanismError, at_time
-from southwell.core.multibody.tree import Tree
+from southwell.core.mechanism.description import Mechanism, MechanismError, at_time
+from southwell.core.spectrum import modal
+from southwell.core.steady import equilibrium, periodic
+from southwell.core.steady.equilibrium import State
+from southwell.core.tree.linearization import Linearization, about
+from southwell.core.tree.topology import Tree
 
 GUESSES = 200
 """Of every night (SOUTHWELL_GUESSES=200); by default none but those of ``test_steady_mechanisms``."""

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from southwell import multibody as mb
-from southwell.core.multibody.joints import SCREWS, Kind
-from southwell.core.multibody.kinematics import kinematics
-from southwell.core.multibody.spanning import compile_tree
+from southwell.core.mechanism.joints import SCREWS, Kind
 from southwell.core.space import spatial as sp
+from southwell.core.tree.kinematics import kinematics
+from southwell.core.tree.spanning import compile_tree
 
 G = 9.81
 

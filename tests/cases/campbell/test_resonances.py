@@ -11,11 +11,11 @@ from scipy.optimize import brentq
 from southwell.cases.campbell.diagram import Campbell, Wanted, campbell
 from southwell.cases.input import library
 from southwell.core.blade import Blade
-from southwell.core.chain import as_mechanism
 from southwell.core.element.discretize import discretize
 from southwell.core.modes import STATIONS, Modes
-from southwell.core.multibody.modal import linearize
 from southwell.core.solve import mesh_modes
+from southwell.core.spectrum.modal import linearize
+from southwell.core.tree import as_mechanism
 from southwell.reports.campbell.tables import notes, sheets
 from southwell.reports.shared.units import RAD_S
 

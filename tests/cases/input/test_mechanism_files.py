@@ -11,7 +11,7 @@ import pytest
 from southwell import multibody as mb
 from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
-from southwell.core.multibody.mechanism import Beam
+from southwell.core.mechanism.description import Beam
 from southwell.reports.cli import app as cli
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

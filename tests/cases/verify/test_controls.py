@@ -52,8 +52,8 @@ def test_a_frozen_frame_reads_edgewise_as_flapwise() -> None:
 
 def test_softening_is_that_of_points() -> None:
     """For lumped masses −Ω² m along x and y, nothing along z, nothing between nodes."""
-    from southwell.core.chain import pencil
     from southwell.core.element.discretize import discretize
+    from southwell.core.tree import pencil
 
     blade = park()
     body = discretize(blade, 4, "half_end")

@@ -7,17 +7,17 @@ import pytest
 import scipy.sparse as ss
 
 from southwell.cases.condense.solid_blades import CHORD, THICK, cantilever_segment, st_venant, torsion
-from southwell.core.chain.as_mechanism import mechanism
 from southwell.core.condense import ties
 from southwell.core.condense.compressed import chain_from_segments, chain_modes
 from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.condensation import segments_in_place as in_place
 from southwell.core.condense.segments import segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
-from southwell.core.multibody import modal
-from southwell.core.multibody.mechanism import inertia
+from southwell.core.mechanism.description import inertia
 from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
+from southwell.core.spectrum import modal
+from southwell.core.tree.as_mechanism import mechanism
 from southwell.references.solid import hexahedra
 from southwell.tests.support.solids import (
     HUB,

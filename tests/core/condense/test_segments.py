@@ -14,7 +14,7 @@ from southwell.core.condense.joined import joined
 from southwell.core.condense.segments import Segment, between, segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.element import sections
-from southwell.core.multibody.mechanism import inertia
+from southwell.core.mechanism.description import inertia
 from southwell.core.solve import LargeStrainError, modes
 from southwell.core.space import spatial as sp
 from southwell.references.solid.mesh import blade

@@ -10,12 +10,12 @@ from southwell import multibody as mb
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import reading, southwell_toml
 from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness
-from southwell.core.chain.as_mechanism import mechanism, one
 from southwell.core.element.discretize import discretize, divide
 from southwell.core.element.sections import frames
 from southwell.core.participation import participation
 from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
+from southwell.core.tree.as_mechanism import mechanism, one
 from southwell.references.joint_chains import joint_chain
 from southwell.references.protocol import registry
 

@@ -11,7 +11,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import reading
 from southwell.core.blade import Blade, BladeError, section_mass, without_rotary_inertia
 from southwell.core.blade_checks import body_fault
-from southwell.core.multibody.mechanism import MechanismError, check, inertia
+from southwell.core.mechanism.description import MechanismError, check, inertia
 from southwell.core.solve import modes
 
 from ...support.beams import PARK, curved

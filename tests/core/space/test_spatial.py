@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from southwell.core.compiled import loops
+from southwell.core.compiled import kernels
 from southwell.core.space import spatial as sp
 
 
@@ -49,8 +49,8 @@ def test_tangent_is_its_defining_series_and_inverts(angle: float) -> None:
 @pytest.mark.parametrize(
     ("function", "derivative"),
     [
-        (sp.tangent, loops.tangent_transpose_derivative),
-        (sp.tangent_inverse, loops.tangent_inverse_transpose_derivative),
+        (sp.tangent, kernels.tangent_transpose_derivative),
+        (sp.tangent_inverse, kernels.tangent_inverse_transpose_derivative),
     ],
 )
 def test_transpose_derivatives_match_difference_quotients(angle: float, function, derivative) -> None:

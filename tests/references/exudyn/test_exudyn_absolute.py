@@ -9,9 +9,9 @@ import pytest
 import scipy.linalg
 
 from southwell import multibody as mb
-from southwell.core.multibody import modal
-from southwell.core.multibody.joints import SCREWS
+from southwell.core.mechanism.joints import SCREWS
 from southwell.core.space import spatial as sp
+from southwell.core.spectrum import modal
 from southwell.references.exudyn import system as ex
 from southwell.references.exudyn.loops import System
 from southwell.references.exudyn.mechanism import CODE

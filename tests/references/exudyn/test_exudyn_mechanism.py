@@ -15,9 +15,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from southwell import multibody as mb
-from southwell.core.multibody import dynamics, modal
-from southwell.core.multibody.joints import SCREWS, Kind
-from southwell.core.multibody.spanning import compile_tree
+from southwell.core.mechanism.joints import SCREWS, Kind
+from southwell.core.spectrum import modal
+from southwell.core.tree import dynamics
+from southwell.core.tree.spanning import compile_tree
 from southwell.references.exudyn import mechanism as em
 from southwell.references.exudyn.loops import system
 from southwell.references.protocol.interface import CodeError

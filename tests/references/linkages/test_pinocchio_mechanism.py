@@ -8,10 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from southwell import multibody as mb
-from southwell.core.multibody.joints import SCREWS, Kind
-from southwell.core.multibody.mechanism import Load
-from southwell.core.multibody.spanning import compile_tree
+from southwell.core.mechanism.description import Load
+from southwell.core.mechanism.joints import SCREWS, Kind
 from southwell.core.rank import ranked
+from southwell.core.tree.spanning import compile_tree
 from southwell.references.linkages import mechanism as lm
 from southwell.references.linkages.plant import Plant
 from southwell.references.linkages.spanning import AXES, spanning

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import newton_cotes, quad
 
 from southwell.core.blade import Blade, mass_at, section_stiffness
+from southwell.core.mechanism.description import inertia as body
 from southwell.core.modes import STATIONS
-from southwell.core.multibody.mechanism import inertia as body
 from southwell.references.protocol.interface import CodeError
 from southwell.references.theories import (
     assumed_modes,

@@ -1,0 +1,185 @@
+"""Signatures of the compiled kernels. Arrays are C-contiguous float64, unless stated otherwise: TypeError, ValueError."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+def sources() -> str:
+    """The digest of the sources that were compiled."""
+
+def processor_has_avx2() -> bool: ...
+
+# space: arrays of any layout and number of leading dimensions, see space/spatial.py
+
+def skew(a: Array) -> Array: ...
+def inverse(x: Array) -> Array: ...
+def adjoint(x: Array) -> Array: ...
+def ad(twist: Array) -> Array: ...
+def cross(wrench: Array) -> Array: ...
+def exp(twist: Array) -> Array: ...
+def log(x: Array) -> Array: ...
+def tangent(twist: Array) -> Array: ...
+def tangent_inverse(twist: Array) -> Array: ...
+def tangent_transpose_derivative(twist: Array, wrench: Array) -> Array:
+    """(..., 6, 6) derivatives of ``tangent(ζ)ᵀ f`` with respect to ζ (..., 6) at constant f (..., 6)."""
+
+def tangent_inverse_transpose_derivative(twist: Array, wrench: Array) -> Array:
+    """The same of ``tangent_inverse``."""
+
+# element
+
+class StrainLaws:
+    """``measures.StrainLaw`` for the kernels; it keeps the arrays."""
+
+    def __init__(
+        self, body_fixed: bool, undeformed: Array, shortening: Array, mean: Array, slope: Array, eta: Array
+    ) -> None: ...
+
+class Beams:
+    """``beams.Beams`` for the kernels; it keeps the arrays. The points of element k are ``first[k]`` … ``first[k + 1] − 1``."""
+
+    def __init__(
+        self,
+        laws: StrainLaws,
+        first: NDArray[np.int64],
+        stiffness: Array,
+        preload: Array,
+        inner_preload: Array,
+        zeta0: Array,
+        shape: Array,
+        bubble: Array,
+        mass: Array,
+        force: Array,
+    ) -> None: ...
+
+def on_strain(
+    beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, axes: Array, geometric: bool
+) -> tuple[Array, Array, Array, Array, Array]:
+    """``beams.on_strain``."""
+
+def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
+    """``measures.relative_strain``."""
+
+def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
+    """``measures.response``."""
+
+# chain
+
+def chain_parts(
+    beams: Beams,
+    nodes: Array,
+    relative: Array,
+    corner: Array,
+    beta: Array,
+    lumps: Array,
+    force: Array,
+    omega: float,
+    gravity: Array,
+    geometric: bool,
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]:
+    """``beams.OnStrain`` of the elements, Ad⁻¹ (n, 6, 6), and g (n+1, 6), C and K (n+1, 6, 6) of the nodes."""
+
+def chain_sum(
+    f: Array,
+    M: Array,
+    C: Array,
+    K: Array,
+    spring: Array,
+    back: Array,
+    lumps: Array,
+    g: Array,
+    of_C: Array,
+    of_K: Array,
+) -> Array:
+    """Add the springs and the nodes to the elements' M, C and K, in place; returns the residual (n, d) on (ρ, β)."""
+
+def displaced(nodes: Array, relative: Array, step: Array) -> tuple[Array, Array]:
+    """The poses (n+1, 4, 4) and (n, 4, 4) after the twists of the nodes 1 … n in ``step`` (n, 6 or more)."""
+
+def bent(first: Array, between: Array, coordinates: Array) -> tuple[Array, Array]:
+    """The poses (n+1, 4, 4) and (n, 4, 4) from the first node's, after the elements' twists ``coordinates`` (n, 6 or more)."""
+
+def degree(x: Array, values: Array) -> int:
+    """Degree of the polynomial with which to extrapolate values (k, …) at abscissae x (k,), the latest last, to x = 0.
+
+    The terms of Newton's interpolation decrease up to the degree at which rounding errors dominate. The polynomial ends before
+    the smallest term.
+    """
+
+def extrapolated(x: Array, values: Array, degree: int) -> Array:
+    """The value (…) at x = 0 of the polynomial fitted by least squares to values (k, …) at abscissae x (k,)."""
+
+def product(matrix: Array, sign: float, back: Array, x: Array) -> Array:
+    """``matrices.product``."""
+
+def quadratic_forms(K: Array, C: Array, M: Array, back: Array, x: Array) -> Array:
+    """(m, 3) x*Kx, ½i x*Cx and x*Mx of complex vectors x (m, 2, dn), by real and imaginary parts."""
+
+def twists(back: Array, x: Array) -> None:
+    """Replace ρ by ξ_b in vectors x (k, n, d), in place."""
+
+def sampled(
+    laws: StrainLaws,
+    nodes: Array,
+    corner: Array,
+    beta: Array,
+    element: NDArray[np.int64],
+    zeta0: Array,
+    shape: Array,
+    bubble: Array,
+    twists: Array,
+) -> Array:
+    """(m, q, 4, 2) real and imaginary parts of ``mode_shapes.mode_shapes`` at q points of the elements ``element`` (q,)."""
+
+def factor(K: Array, back: Array, clamped: Array) -> tuple[int, Array, Array, Array]:
+    """The parts of ``elimination.Factor``; before them 2 if all pivots are positive, 1 if not, 0 if K is singular."""
+
+def solve(flexibility: Array, ride: Array, reaction: Array, back: Array, x: Array) -> None:
+    """``elimination.solve``."""
+
+def negative_pivots(K: Array, C: Array, M: Array, back: Array, clamped: Array, omega: float) -> int:
+    """Negative pivots of K + iωC − ω²M; see ``completeness``."""
+
+class Operator:
+    """A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]]; it keeps the arrays.
+
+    ``massive`` (n, 6, 6) are projectors of the nodes' twists on directions with mass and ``lever`` (n, 6, 6) Ad; both (0, 6, 6)
+    for a consistent mass.
+    """
+
+    def __init__(
+        self,
+        M: Array,
+        C: Array,
+        K: Array,
+        back: Array,
+        flexibility: Array,
+        ride: Array,
+        reaction: Array,
+        massive: Array,
+        lever: Array,
+    ) -> None: ...
+    def keep_massive(self, y: Array) -> None:
+        """Remove the motion of nodes without inertia from vectors y (k, n), in place."""
+
+    def forward(self, v: Array) -> Array:
+        """A⁻¹S v for the rows of v (k, 2n)."""
+
+    def extend(
+        self, w: Array, basis: Array, projected: Array, size: int, before: int, look: int
+    ) -> tuple[Array, int, int, bool]:
+        """Take block Lanczos steps until the basis has ``look`` vectors or cannot grow.
+
+        Args:
+            w: (k, 2n) result of the last step, k = 1 or 2; at the end its first rows are that of the new last step,
+                orthogonal to the basis.
+            basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``before`` on; extended in place.
+            projected: (m, m) the operator on the basis, m at least ``look`` + 2 or ``limit``, zero beyond the filled part;
+                extended in place.
+            size, before: see ``basis``; both 0 at the start.
+            look: requested number of vectors.
+
+        Returns:
+            The Gram matrix of w, the new size and before, and whether the basis is exhausted.
+        """

@@ -1,0 +1,1 @@
+"""The description of a mechanism: bodies, joints, motions, springs and loads."""

@@ -1,0 +1,1 @@
+"""Frequencies and modes: eigenvalue solvers, completeness, refinement and uncertainty."""

@@ -1,0 +1,224 @@
+"""The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve per step.
+
+A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
+and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of two
+vectors find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric
+Eigenvalue Problem*, 1998, ch. 13.)
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.linalg import eigh
+from numpy.typing import NDArray
+
+from ..compiled import kernels
+from ..tree.elimination import solve
+from ..tree.matrices import product
+from ..tree.pencil import ChainPencil
+from . import completeness, eigen
+from .eigen import Eigen
+
+Array = NDArray[np.float64]
+
+_VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
+_MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
+_FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
+_FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
+_EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
+
+
+class EigensolverError(ArithmeticError):
+    """The eigensolver failed: whether the blade is stable is not known."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Start of the basis for a similar pencil.
+
+    Attributes:
+        vectors: (2, 2n) combinations of the lowest modes.
+        size: number of vectors of the basis at which convergence is first checked.
+    """
+
+    vectors: Array
+    size: int
+
+
+@dataclass(frozen=True)
+class Lowest(Eigen):
+    """The lowest modes, and the start for a similar pencil."""
+
+    start: Start
+
+
+def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
+    """The ``count`` lowest modes of a chain about a state where K is symmetric.
+
+    With ``near``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to all
+    of that pencil's is not found, and ``completeness`` reports it as missing.
+
+    The frequencies follow from the gyroscopic Rayleigh quotient of the vectors, ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is
+    the square of that of the vectors (Lancaster 2013).
+
+    Raises:
+        UnstableError: if K is not positive definite.
+        EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
+        MissedModesError: if a mode is missing; see ``completeness``.
+    """
+    a = _operator(p)
+    w = _start_vectors(p, a, near)
+    found = _converged(a, w, count, near.size if near else None)
+    z = found.vectors.T
+    x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ found.basis[:, : w.shape[1] // 2]
+    x = x.reshape(len(z), 2, -1)  # conjugate: i A⁻¹S has 1/ω at λ = −iω
+    frequencies, kappa = _quotients(p, x)
+    if not (np.abs(frequencies * found.values - 1.0) < 1e-2).all():
+        raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
+    order = np.argsort(frequencies)
+    completeness.check(p, frequencies[order], 1.0 / found.next_values)
+    x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
+    combined = (_phases(len(z)) @ z).real @ found.basis
+    start = Start(combined, len(found.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
+    return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
+
+
+def _operator(p: ChainPencil) -> kernels.Operator:
+    try:
+        factor = p.factor
+    except np.linalg.LinAlgError:
+        raise eigen.unstable() from None
+    return kernels.Operator(p.M, p.C, p.K, p.back, factor.flexibility, factor.ride, factor.reaction, *_massive(p))
+
+
+def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None) -> Array:
+    """The first block (2, 2n) of the basis.
+
+    Raises:
+        UnstableError: if K is not positive definite.
+        EigensolverError: if K is lost to rounding.
+    """
+    n = len(p.residual)
+    w = _start(2 * n).copy() if near is None else near.vectors.copy()
+    y = w[:, n:].copy()
+    if p.clamped.size:
+        y[:, :6] -= y[:, :6] @ p.clamped
+    a.keep_massive(y)
+    w[:, n:] = y
+    lost = solve_error(p, w)
+    if not lost < _MAX_SOLVE_ERROR:
+        unstable = "" if p.factor.positive else "not positive definite: the steady state is unstable; or it is "
+        raise EigensolverError(
+            f"the stiffness of {len(p.K)} elements is {unstable}lost to rounding (relative error of a solution {lost:.1e}): "
+            "use fewer elements, or check units"
+        )
+    if not p.factor.positive:
+        raise eigen.unstable()
+    return a.forward(w) if near is None else w
+
+
+@dataclass(frozen=True)
+class _Ritz:
+    """The largest eigenvalues of i A⁻¹S, 1/ω, and their vectors in a basis of s vectors.
+
+    Attributes:
+        basis: (s, 2n).
+        values: (m,) ascending, positive.
+        vectors: (s, m).
+        next_values: (k,) positive ones below ``values``.
+    """
+
+    basis: Array
+    values: Array
+    vectors: NDArray[np.complex128]
+    next_values: Array
+
+
+def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None) -> _Ritz:
+    """Extend the basis until ``count`` modes have converged; ``first_look``: see ``Start.size``.
+
+    Raises:
+        EigensolverError: if the basis is full before, or there is no mode.
+    """
+    limit = min(w.shape[1], max(200, 8 * count))
+    look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK, _LOOK_EVERY)
+    basis, projected = np.empty((limit + 2, w.shape[1])), np.zeros((look + 2, look + 2))
+    size, before = 0, 0
+    while True:
+        gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
+        w = w[: len(gram)]
+        if not size:
+            raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
+        wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
+        mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
+        mu, beyond, z = mu[size - wanted :], mu[size - more : size - wanted], z[:, size - wanted :]
+        last = z[before:]
+        error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
+        if exhausted or (error < _VECTOR_TOLERANCE).all():
+            break
+        look = size + every
+        projected = np.pad(projected, (0, look + 2 - len(projected)))
+    smallest = 1e-12 * mu.max(initial=0.0)
+    positive = mu > smallest
+    if not positive.any() or not np.isfinite(mu).all():
+        raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
+    if error[positive].max() > 1e-6:
+        raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: request fewer modes")
+    return _Ritz(basis[:size], mu[positive], z[:, positive], beyond[beyond > smallest])
+
+
+def _massive(p: ChainPencil) -> tuple[Array, Array]:
+    """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.hpp``."""
+    if p.M.shape[1] > 12:
+        return np.zeros((0, 6, 6)), np.zeros((0, 6, 6))
+    lever, joint = p.back.copy(), bool(p.clamped.size)
+    if joint:
+        lever[0] = np.eye(6)
+    lever = np.asarray(np.linalg.inv(lever), dtype=np.float64)
+    lumps = np.concatenate([p.M[1:, :6, :6], p.M[-1:, 6:, 6:]])  # the tip's also in the axes of the node before
+    lumps[-2:-1] -= lumps[-1]
+    lumps[-1] = lever[-1].T @ lumps[-1] @ lever[-1]
+    massive = np.linalg.pinv(lumps, hermitian=True) @ lumps
+    if joint:
+        massive[0] = np.eye(6)  # ``back`` leaves its free directions only
+    return massive, lever
+
+
+def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
+    """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
+    x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
+    return _quotients(p, x)[0]
+
+
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
+def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
+    """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
+    kappa, half, inertia = kernels.quadratic_forms(p.K, p.C, p.M, p.back, np.ascontiguousarray(x)).T
+    return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
+
+
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # as in ``_quotients``
+def solve_error(p: ChainPencil, v: Array) -> float:
+    """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
+    n = v.shape[1] // 2
+    force = product(p.M, 1.0, p.back, v[:1, :n])
+    x = force.copy()
+    solve(p.factor, x)
+    left = force - product(p.K, 1.0, p.back, x)
+    more = left.copy()
+    solve(p.factor, more)
+    return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
+
+
+@lru_cache(maxsize=4)
+def _start(size: int) -> Array:
+    """Two random start vectors (2, size), the same in every run."""
+    return np.random.default_rng(1921).normal(size=(2, size))
+
+
+@lru_cache(maxsize=16)
+def _phases(modes: int) -> NDArray[np.complex128]:
+    """Random coefficients (2, modes) of modes in start vectors, the same in every run."""
+    rng = np.random.default_rng(1950)
+    return rng.normal(size=(2, modes)) + 1j * rng.normal(size=(2, modes))

@@ -1,0 +1,107 @@
+"""Modes of one mesh: the blade's steady state at a speed, the pencil about it, and its lowest eigenpairs."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects import ALL_EFFECTS, Effects
+from ..element.discretize import Chain
+from ..modes import Modes
+from ..steady import blade_state as steady
+from ..steady.blade_state import Steady, SteadyStateError
+from ..tree import pencil
+from ..tree.mode_shapes import mode_shapes
+from ..tree.pencil import ChainPencil, Shape
+from . import accuracy
+from .completeness import MissedModesError
+from .eigen import UnstableError
+from .lanczos import EigensolverError, Lowest, Start, lanczos
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Modes of one mesh at one speed, with the steady state and the eigenvectors."""
+
+    modes: Modes
+    state: Steady
+    vectors: NDArray[np.complex128]
+
+
+@dataclass
+class MeshSolver:
+    """A chain, its ``steady.coordinates`` at the last values of Ω², and the start of a basis from the modes at the last speed.
+
+    ``restarts`` counts the speeds at which that basis missed a mode and the modes were computed again without it.
+    """
+
+    body: Chain
+    count: int
+    effects: Effects
+    gravity: Array
+    known: dict[float, Array] = field(default_factory=dict)
+    start: Start | None = None
+    restarts: int = 0
+
+    def at(self, omega: float, near: Shape | None = None) -> Solved:
+        """Solve at one speed (rad/s), starting from the shapes at previous speeds or else from the shape ``near``."""
+        begun, body = time.perf_counter(), self.body
+        guess = steady.extrapolate(body, self.known, omega)
+        try:
+            state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
+        except SteadyStateError as error:
+            if pencil.loose(pencil.linearize(body, pencil.undeformed(body), omega, self.gravity, self.effects)):
+                raise _free_hinge(omega) from error
+            raise
+        try:
+            found = self._lowest(state.pencil)
+        except (UnstableError, EigensolverError) as error:
+            if pencil.loose(state.pencil):
+                raise _free_hinge(omega) from error
+            raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
+        self.start = found.start
+        self.known.pop(omega**2, None)  # the latest is the last one
+        self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])
+        shapes = mode_shapes(body, state.shape, pencil.on_nodes(state.pencil, found.vectors))
+        strain = steady.largest_strain(body, state.shape)
+        seconds = time.perf_counter() - begun
+        modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
+        return Solved(modes, state, found.vectors)
+
+    def _lowest(self, p: ChainPencil) -> Lowest:
+        if self.start is not None:
+            try:
+                return lanczos(p, self.count, self.start)
+            except (MissedModesError, EigensolverError):
+                self.restarts += 1
+        return lanczos(p, self.count)
+
+    def rounding(self, solved: Solved) -> Array:
+        """(m,) relative error of the frequencies due to rounding."""
+        if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is exact
+            return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
+        state, omega = solved.state, solved.modes.omega
+        return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
+
+
+def _free_hinge(omega: float) -> UnstableError:
+    return UnstableError(
+        f"omega: {omega:.6g} rad/s: a free hinge has no stiffness (at rest, or lead–lag without offset): add a spring"
+    )
+
+
+def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
+    """The steady state with the given effects, and the pencil about it."""
+    if effects.geometric and effects.prestretch:
+        state = steady.steady(body, omega, gravity, guess)
+        return (
+            state
+            if effects == ALL_EFFECTS
+            else Steady(state.shape, pencil.linearize(body, state.shape, omega, gravity, effects))
+        )
+    still = pencil.undeformed(body)
+    loaded = steady.prestress_at_rest(body, omega, gravity) if effects.geometric else body
+    return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))

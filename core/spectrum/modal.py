@@ -1,0 +1,101 @@
+"""Linearisation of a mechanism about its steady state, and its modes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..mechanism.description import Mechanism, MechanismError, at_time
+from ..steady import periodic
+from ..steady.equilibrium import steady, unresisted
+from ..tree.closure import assemble
+from ..tree.kinematics import kinematics
+from ..tree.linearization import Linearization, about
+from ..tree.partition import freedom, partition
+from ..tree.spanning import compile_tree
+from ..tree.state import State, moving
+from ..tree.topology import Tree
+from . import eigen
+
+
+def linearize(
+    mechanism: Mechanism,
+    guess: Mapping[str, float] | None = None,
+    independent: tuple[str, ...] | None = None,
+    time: float = 0.0,
+) -> Linearization:
+    """Find the steady state and linearise about it.
+
+    If a motion follows a law of time, this is a frozen-time linearisation: the free coordinates are in equilibrium, and
+    vibrate, as if positions, rates and accelerations were constant at their values at ``time``. Its modes are meaningful if
+    the motion changes little within their periods; stability of a periodic motion requires Floquet theory. Motions given by
+    numbers must give a steady state: the mechanism is refused if M̂, Ĉ, K̂ or the balance change along them (``periodic``).
+
+    Args:
+        mechanism: the mechanism.
+        guess: coordinates to start from, by name.
+        independent: coordinates to use as q_I; chosen numerically if not given.
+        time: instant of the linearisation, s; used if motions follow laws.
+
+    Raises:
+        MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is not steady.
+    """
+    tree = compile_tree(at_time(mechanism, time))
+    state = steady(tree, guess)
+    _check_regular(tree, state)
+    linear = about(tree, state, independent)
+    if all(m.law is None for m in mechanism.motions):
+        periodic.check(linear)
+    return linear
+
+
+def _check_regular(tree: Tree, state: State) -> None:
+    """Check that the number of degrees of freedom is the same in a nearby assembled configuration."""
+    if not tree.welds:
+        return
+    here = partition(tree, state.kinematics)
+    nudge = here.R @ np.random.default_rng(1921).normal(size=here.R.shape[1])
+    q = state.q.copy()
+    q[here.free] += 1e-3 * nudge / max(float(np.abs(nudge).max(initial=0.0)), 1e-300)
+    near = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
+    nearby = freedom(tree, kinematics(tree, near, state.v, state.a).B)
+    if nearby < len(here.independent):
+        raise MechanismError(
+            f"joints {', '.join(tree.weld_names)}: singular configuration: {len(here.independent)} degrees of freedom here but "
+            f"{nearby} nearby, so no linear model is valid; start the assembly from another guess"
+        )
+
+
+def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eigen.Damped:
+    """Modes over the independent coordinates: gyroscopic where nothing damps and K̂ is positive definite, else damped.
+
+    Raises:
+        MechanismError: a coordinate without mass, damping and stiffness.
+        EigenError: if the eigenvalue solver fails.
+    """
+    M, C, K = 0.5 * (linear.M + linear.M.T), linear.C, linear.K
+    if not len(M):  # everything is prescribed
+        return eigen.Eigen(np.zeros(0), np.zeros((0, 0), np.complex128))
+    idle = ~(M.any(axis=1) | C.any(axis=1) | linear.K.any(axis=1))
+    if idle.any():
+        raise MechanismError(
+            f"coordinate {linear.names[int(idle.argmax())]!r}: it moves no mass, and no spring or damper acts on it: give its "
+            "body mass, or prescribe its motion"
+        )
+    rigid = unresisted(linear.tree, linear.state, linear.names)
+    if not _conservative(linear):
+        return eigen.damped(M, C, K, count, rigid)
+    C, K = 0.5 * (C - C.T), 0.5 * (K + K.T)
+    if not rigid[0].shape[1]:
+        try:
+            return eigen.gyroscopic(M, C, K, count)
+        except eigen.UnstableError:
+            pass  # stable by gyroscopic forces alone, or unstable: the general solver decides
+    return eigen.damped(M, C, K, count, rigid)
+
+
+def _conservative(linear: Linearization) -> bool:
+    """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
+    mechanism = linear.tree.mechanism
+    dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]
+    still = not linear.state.a.any() and not moving(linear.tree, linear.state).any()
+    return still and not any(np.any(d.damping) for d in dampers)

@@ -1,0 +1,1 @@
+"""Steady states of blades and mechanisms."""

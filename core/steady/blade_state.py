@@ -1,0 +1,200 @@
+"""Steady state of a rotating chain by Newton's method, and its extrapolation from earlier speeds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ..compiled import kernels
+from ..effects import Effects
+from ..element import beams as bm
+from ..element import measures
+from ..element.discretize import Chain
+from ..space import spatial as sp
+from ..tree import elimination, matrices, root_joint
+from ..tree.pencil import ChainPencil, Shape, linearize, undeformed
+
+Array = NDArray[np.float64]
+
+_MAX_STEPS = 40
+_EPS = float(np.finfo(float).eps)
+_STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a stalled step; of the next one
+_MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
+LATEST = 8  # number of speeds from which the next steady state is extrapolated
+_MIN_RAMP = 2.0**-8
+
+
+class SteadyStateError(ValueError):
+    """No steady rotating state was found at this speed."""
+
+
+class LargeStrainError(SteadyStateError):
+    """The strains of the steady state are too large for linear elastic sections."""
+
+
+@dataclass(frozen=True)
+class Steady:
+    """A steady state: its shape, and the pencil about it."""
+
+    shape: Shape
+    pencil: ChainPencil
+
+
+def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
+    """The steady state at ``omega`` (rad/s) under ``gravity`` (3,), m/s², in the hub's axes.
+
+    Newton's method starts from ``start``; if that fails, from the undeformed shape with the speed ramped up.
+
+    Raises:
+        SteadyStateError: if none is found near the undeformed blade.
+    """
+    if start is not None:
+        try:
+            return _newton(chain, start, omega, gravity)
+        except SteadyStateError:
+            pass  # start too far away: ramp the load instead
+    found = None
+    done, step = 0.0, 1.0
+    while found is None or done < 1.0:
+        load = min(1.0, done + step)
+        try:
+            shape = undeformed(chain) if found is None else found.shape
+            found = _newton(chain, shape, omega * load**0.5, gravity * load)
+            done, step = load, 2.0 * step
+        except SteadyStateError:
+            step *= 0.5
+            if step < _MIN_RAMP:
+                raise SteadyStateError(
+                    f"omega: no steady state at {omega:.6g} rad/s; the loads were raised up to {done:.0%} of Ω²: the "
+                    "centrifugal force exceeds the axial stiffness there, or the blade is far too soft; check units or "
+                    "lower the speed"
+                ) from None
+    return found
+
+
+def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
+    """Newton's method, converged to rounding.
+
+    The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
+    nodes' poses, below which a step is meaningless. The size of a step is not a criterion: the steps of an almost
+    inextensible blade are tiny.
+    """
+    size = np.repeat([chain.scale, 1.0], 3)
+    before = np.nan  # energy of the last step
+    for _ in range(_MAX_STEPS):
+        if chain.clamped.size:
+            nodes, first = root_joint.put(chain, shape.nodes, shape.relative[0])
+            shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
+        p = linearize(chain, shape, omega, gravity)
+        try:
+            relative = elimination.solution(p.factor, -p.residual)
+        except np.linalg.LinAlgError:
+            raise SteadyStateError("singular stiffness") from None
+        step = matrices.twists(p.back, relative[None])[0]
+        change = float(np.abs(step[:, :6] / size).max())
+        if not np.isfinite(change) or change > 10.0:
+            raise SteadyStateError("diverged")
+        energy = abs(float(relative @ p.residual))
+        if _converged(energy, before, rounding_energy(p, shape)):
+            if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
+                raise SteadyStateError("elements are deformed beyond the range of their strain measure")
+            return Steady(displaced(shape, step), p)
+        step *= min(1.0, 0.5 / max(change, 0.5))
+        shape, before = displaced(shape, step), energy
+    raise SteadyStateError("no convergence")
+
+
+def _converged(energy: float, before: float, rounding: float) -> bool:
+    """Whether a step is the last one.
+
+    It is if its energy is that of rounding errors, and it is the first step or hardly smaller than the last one, or if the next
+    one would be negligible by quadratic convergence: rounding may be much less than its bound.
+
+    Args:
+        energy: of the step.
+        before: of the last step; nan for the first one.
+        rounding: bound of the energy of rounding errors.
+    """
+    if np.isnan(before):
+        return energy <= rounding
+    ratio = energy / before
+    if ratio > _MIN_REDUCTION:
+        return energy <= _STALL_FACTOR * rounding
+    following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
+    return energy <= rounding and following <= _CONVERGED_FACTOR * rounding
+
+
+def rounding_energy(p: ChainPencil, shape: Shape) -> float:
+    """Energy Σ ρᵀ S ρ of rounding errors ρ in the relative poses, J: a step with less energy is rounding."""
+    stiffness = np.diagonal(p.K[:, 6:12, 6:12], axis1=1, axis2=2)
+    force, moment = stiffness[:, :3].sum(1), stiffness[:, 3:].sum(1)
+    squared_length = (shape.relative[:, :3, 3] ** 2).sum(1)
+    return _EPS**2 * abs(float(squared_length @ force + moment.sum()))
+
+
+def largest_strain(chain: Chain, shape: Shape) -> float:
+    """Largest steady strain of the reference curve (see ``measures.relative_strain``)."""
+    return float(measures.relative_strain(chain.beams.law, shape.relative @ chain.corner, shape.beta).max(initial=0.0))
+
+
+def displaced(shape: Shape, step: Array) -> Shape:
+    """The shape after a step (n, 6 or 12): twists of nodes 1 … n in their axes, and changes of β."""
+    parts = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, step))
+    nodes, relative = kernels.displaced(*parts)
+    return Shape(nodes, shape.beta + step[:, 6:], relative)
+
+
+def coordinates(chain: Chain, shape: Shape) -> Array:
+    """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, and β."""
+    return np.concatenate([sp.log(sp.inverse(chain.between) @ shape.relative), shape.beta], axis=1)
+
+
+def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Shape | None:
+    """Extrapolate the shape to ``omega`` (rad/s) from the ``coordinates`` at known values of Ω²; None if there are none.
+
+    The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
+    poses in the hub's axes, of which strains are small differences, these errors would be far larger.
+    """
+    if not known:
+        return None
+    found = known.get(omega**2)
+    if found is None:
+        at, values = np.array(list(known)) - omega**2, np.array(list(known.values()))
+        found = kernels.extrapolated(at, values, kernels.degree(at, values))
+    nodes, relative = kernels.bent(chain.nodes[0], chain.between, found)
+    return Shape(nodes, found[:, 6:], relative)
+
+
+def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
+    """An initial guess on a finer mesh of the same blade: the nodes' motions in the hub's axes, interpolated along the blade.
+
+    Args:
+        chain: the coarser mesh.
+        shape: its shape.
+        finer: the finer mesh.
+    """
+    first = 1 if chain.clamped.size else 0  # without the joint at the root, which has no length
+    twists = sp.log(shape.nodes[first:] @ sp.inverse(chain.nodes[first:]))
+    at = CubicSpline(_lengths(chain)[first:], twists)(_lengths(finer)[first:])
+    nodes = finer.nodes.copy()
+    nodes[first:] = sp.exp(at) @ finer.nodes[first:]
+    return Shape(nodes, np.zeros((len(nodes) - 1, finer.beams.inner)), sp.inverse(nodes[:-1]) @ nodes[1:])
+
+
+def _lengths(chain: Chain) -> Array:
+    """(n+1,) positions of the nodes along the chords between them, as fractions of the sum."""
+    steps = np.linalg.norm(chain.between[:, :3, 3], axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+
+
+def prestress_at_rest(chain: Chain, omega: float, gravity: Array) -> Chain:
+    """The undeformed chain with the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
+    still = Effects(geometric=False)
+    residual = linearize(chain, undeformed(chain), omega, gravity, still).residual.reshape(len(chain.nodes) - 1, -1)
+    bare = replace(chain, lumps=np.zeros_like(chain.lumps), beams=bm.massless(chain.beams))
+    elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
+    rho = elimination.solution(elastic, -residual[:, :6].ravel()).reshape(-1, 6)
+    loaded = replace(chain.beams, preload=bm.linear_force(chain.beams, rho))
+    return replace(chain, beams=replace(loaded, inner_preload=-residual[:, 6:]))

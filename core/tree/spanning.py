@@ -1,0 +1,215 @@
+"""From a mechanism to its spanning tree: which joints span it, which close loops, and the order of the coordinates."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..element.beams import Beams, Points
+from ..element.measures import joined
+from ..mechanism.description import GROUND, Mechanism, MechanismError, check
+from ..mechanism.joints import SCREWS, Joint, coordinate_names
+from ..space import spatial as sp
+from .topology import Batch, Groups, Tree
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+def compile_tree(mechanism: Mechanism) -> Tree:
+    """Choose a spanning tree from the ground outwards, in the order the joints are given; the others become cut joints.
+
+    Raises:
+        MechanismError: names used twice or unknown, a body that no joint reaches, an impossible inertia.
+    """
+    check(mechanism)
+    added = _Coordinates()
+    # Φ = [Φᴶ; Φᶜ; Φᴹ] = 0 (eq. 2): joints of the tree, ``cuts``, and the mechanism's motions
+    place, cuts = _spanned(mechanism, added)
+    names = [b.name for b in mechanism.bodies]
+    # each cut joint leads to a massless copy of its child, which is welded to the child
+    copies = [_hang(joint, True, place, added) for joint in cuts]
+    originals = [-1 if joint.child == GROUND else names.index(joint.child) for joint in cuts]
+    bodies = (*names, *(f"{joint.child} beyond {joint.name}" for joint in cuts))
+    inertia = [*(b.inertia for b in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]
+    links = [*(place[name] for name in names), *copies]
+    inner = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
+    n = len(added.names)
+    before, inside = np.array(added.before, dtype=np.intp), np.array([j for j in inner if j >= 0], dtype=np.intp)
+    above, link = _above(before), np.array([k for k, _ in links], dtype=np.intp)
+    carries = np.vstack([above, np.zeros((1, n), bool)])[link]
+    _check_axes(
+        mechanism,
+        {name: [added.names[j] for j in np.flatnonzero(moved)] for name, moved in zip(bodies, carries, strict=True)},
+    )
+    return Tree(
+        mechanism=mechanism,
+        coordinates=tuple(added.names),
+        before=before,
+        fixed=np.array(added.fixed).reshape(n, 4, 4),
+        screw=np.array(added.screw).reshape(n, 6),
+        bodies=bodies,
+        link=link,
+        on_link=np.array([pose for _, pose in links]),
+        inertia=np.array(inertia),
+        welds=tuple(zip(originals, range(len(names), len(bodies)), strict=True)),
+        weld_names=tuple(j.name for j in cuts),
+        inner=inside,
+        batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
+        above=above,
+        beyond=above.astype(float) - np.eye(n),
+        carries=carries,
+        groups=_groups(before, np.append(link, inside + 5), inside),
+    )
+
+
+@dataclass
+class _Coordinates:
+    """Coordinates while a tree is built; fields as in ``Tree``."""
+
+    names: list[str] = field(default_factory=list)
+    before: list[int] = field(default_factory=list)
+    fixed: list[Array] = field(default_factory=list)
+    screw: list[Array] = field(default_factory=list)
+
+    def add(self, name: str, before: int, fixed: Array, screw: Array) -> int:
+        """Add a coordinate; return the number of the link that it moves."""
+        self.names.append(name)
+        self.before.append(before)
+        self.fixed.append(fixed)
+        self.screw.append(screw)
+        return len(self.names) - 1
+
+
+Place = tuple[int, Array]
+"""A link, −1 for the ground, and a pose on it."""
+
+
+def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Place], list[Joint]]:
+    """The place of every body and the cut joints; the tree's coordinates are added."""
+    place: dict[str, Place] = {GROUND: (-1, np.eye(4))}
+    waiting = [j for j in mechanism.joints if not j.cut]
+    cuts = [j for j in mechanism.joints if j.cut]
+    while ready := next((j for j in waiting if j.parent in place or j.child in place), None):
+        waiting.remove(ready)
+        if ready.parent in place and ready.child in place:
+            cuts.append(ready)
+        elif ready.parent in place:
+            place[ready.child] = _hang(ready, True, place, added)
+        else:
+            place[ready.parent] = _hang(ready, False, place, added)
+    for body in mechanism.bodies:
+        if body.name not in place:
+            raise MechanismError(
+                f"body {body.name!r}: no joint connects it to the ground; add one (a free joint if it floats)"
+            )
+    return place, cuts
+
+
+def _hang(joint: Joint, forward: bool, place: Mapping[str, Place], added: _Coordinates) -> Place:
+    """Add the joint's coordinates, from the end that is already placed; return the place of the other end."""
+    near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
+    link, pose = place[joint.parent if forward else joint.child]
+    pose = pose @ near
+    steps = list(zip(coordinate_names(joint), SCREWS[joint.kind], strict=True))
+    for name, (_, screw) in steps if forward else reversed(steps):
+        link, pose = added.add(name, link, pose, screw if forward else -screw), np.eye(4)
+    return link, pose @ sp.inverse(far)
+
+
+def _inner(added: _Coordinates, beam: int, count: int) -> int:
+    """Add the internal coordinates of a beam; return the first, or −1 without any."""
+    names = [f"beam {beam + 1}.{j + 1}" for j in range(count)]
+    return min((added.add(name, -1, np.eye(4), np.zeros(6)) for name in names), default=-1)
+
+
+def _above(before: Index) -> NDArray[np.bool_]:
+    """(n, n): whether the coordinate of the column moves the link of the row."""
+    above = np.eye(len(before), dtype=bool)
+    for j, k in enumerate(before):
+        if k >= 0:
+            above[j] |= above[k]
+    return above
+
+
+def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.intp]) -> Groups:
+    """Groups from each link's parent, the link that carries each row of B, and the first link of each beam's internal six."""
+    n = len(before)
+    on = before.copy()
+    for j in inner:  # the internal coordinates of a beam move its one row together
+        on[j + 1 : j + 6] = np.arange(j, j + 5)
+    alone = np.bincount(on[on >= 0], minlength=n) == 1
+    alone[link[link >= 0]] = False  # links that carry only one other link
+    group, first, members = np.empty(n, np.intp), [], []
+    for j in range(n):
+        if on[j] >= 0 and alone[on[j]]:
+            group[j] = group[on[j]]
+            members[group[j]].append(j)
+        else:
+            group[j] = len(first)
+            first.append(group[on[j]] if on[j] >= 0 else -1)
+            members.append([j])
+    most = max(map(len, members), default=0)
+    padded = np.array([m + [-1] * (most - len(m)) for m in members], np.intp).reshape(len(first), most)
+    place = np.empty(n, np.intp)
+    place[padded[padded >= 0]] = np.flatnonzero(padded >= 0)
+    return Groups(np.array(first, np.intp), padded, np.append(group, -1)[link], place, group)
+
+
+def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
+    """Check that loads turn with axes of prescribed motion: those of a vibrating body would make them follower forces."""
+    given = {m.coordinate for m in mechanism.motions if m.prescribed}
+    axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
+    for name in sorted(axes):
+        free = [c for c in moved_by.get(name, []) if c not in given]
+        if free:
+            raise MechanismError(
+                f"load in the axes of {name!r}: coordinate {free[0]!r} moves that body freely: prescribe it, or give the "
+                "load in the axes of the ground or of a body whose motion is prescribed"
+            )
+
+
+def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
+    """Beams in batches of one kind; ``inner``: the first internal coordinate of each beam, or −1."""
+    rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
+    by_kind: dict[tuple[str, int], list[int]] = {}
+    for k, beam in enumerate(mechanism.beams):
+        by_kind.setdefault((beam.beams.law.measure, beam.beams.inner), []).append(k)
+    out = []
+    for index in by_kind.values():
+        some = [mechanism.beams[k] for k in index]
+        ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in some]
+        out.append(
+            Batch(
+                index=np.array(index, dtype=np.intp),
+                ends=np.array(ends, dtype=np.intp),
+                inner=np.array([inner[k] for k in index], dtype=np.intp),
+                inside=rows[index],
+                beams=_together([b.beams for b in some]),
+                at_a=np.array([b.at_a for b in some]),
+                at_b=np.array([b.at_b for b in some]),
+                axes=np.array([bodies.get(b.axes_of, -1) for b in some], dtype=np.intp),
+                damping=np.array([b.damping for b in some]),
+            )
+        )
+    return tuple(out)
+
+
+def _together(some: list[Beams]) -> Beams:
+    """Single elements as one batch."""
+
+    def each(name: str) -> Array:
+        return np.concatenate([getattr(b, name) for b in some])
+
+    parts = [b.points for b in some]
+    points = Points(
+        element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
+        zeta0=np.concatenate([p.zeta0 for p in parts]),
+        shape=np.concatenate([p.shape for p in parts]),
+        bubble=np.concatenate([p.bubble for p in parts]),
+        mass=np.concatenate([p.mass for p in parts]),
+        force=np.concatenate([p.force for p in parts]),
+    )
+    names = ("stiffness", "preload", "inner_preload")
+    return Beams(joined([b.law for b in some]), points=points, **{name: each(name) for name in names})

@@ -1,0 +1,174 @@
+"""Sweeps start from the previous speeds: the same frequencies with less work, and no mode is missed."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.core import solve
+from southwell.core.blade import uniform_blade
+from southwell.core.compiled import kernels
+from southwell.core.effects import ALL_EFFECTS
+from southwell.core.element.discretize import discretize
+from southwell.core.spectrum import completeness, lanczos
+from southwell.core.spectrum import mesh_solver as solution
+from southwell.core.spectrum.completeness import MissedModesError
+from southwell.core.spectrum.lanczos import Start
+from southwell.core.spectrum.mesh_solver import MeshSolver
+from southwell.core.steady import blade_state as steady
+from southwell.core.steady.blade_state import Steady
+
+FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
+ROUND = uniform_blade("round", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=1e6, mass=10.0)
+
+
+@pytest.fixture
+def linearised(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The speed (rad/s) of every linearisation of Newton's method, as they come."""
+    speeds, linearize = [], steady.linearize
+
+    def noted(chain, shape, omega, gravity):
+        speeds.append(omega)
+        return linearize(chain, shape, omega, gravity)
+
+    monkeypatch.setattr(steady, "linearize", noted)
+    return speeds
+
+
+def solver(blade=FLAT, count: int = 6) -> MeshSolver:
+    return MeshSolver(discretize(blade, 20), count, ALL_EFFECTS, np.zeros(3))
+
+
+@pytest.mark.numerical
+@pytest.mark.parametrize("blade", [FLAT, ROUND], ids=["flat", "round"])
+def test_a_sweep_agrees_with_single_speeds(blade) -> None:
+    speeds = [0.0, 3.0, 6.0, 7.0, 30.0, 7.0, 7.0]  # also far apart, back, and the same again
+    swept = solve.mesh_sweep(blade, speeds, 20, 6)
+    for omega, found in zip(speeds, swept, strict=True):
+        alone = solve.chain_modes(discretize(blade, 20), omega, 6)
+        assert (np.abs(found.frequencies / alone.frequencies - 1.0) <= alone.rounding).all()
+
+
+@pytest.mark.numerical
+def test_the_basis_of_a_sweep_is_smaller(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = []
+    eigh = lanczos.eigh
+
+    def recorded(matrix, triangle):
+        sizes.append(len(matrix))
+        return eigh(matrix, triangle)
+
+    monkeypatch.setattr(lanczos, "eigh", recorded)
+    one = solver(count=10)
+    one.at(3.0)
+    first = max(sizes)
+    sizes.clear()
+    for omega in (4.0, 5.0, 6.0):
+        one.at(omega)
+    assert max(sizes) < first
+    assert one.restarts == 0
+
+
+@pytest.fixture
+def lumped(monkeypatch: pytest.MonkeyPatch) -> MeshSolver:
+    """A straight blade with lumped masses. Flap is decoupled exactly, not only to rounding, which depends on the processor."""
+    balance = solution.balance
+
+    def decoupled(*arguments: Any) -> Steady:
+        state = balance(*arguments)
+        p = state.pencil
+        flap = np.isin(np.arange(12) % 6, [2, 4])  # z and the rotation about y
+        apart = flap[:, None] != flap
+        assert max(np.abs(m[:, apart]).max() / np.abs(m).max() for m in (p.M, p.K)) < 1e-15
+        M, C, K = (np.where(apart, 0.0, m) for m in (p.M, p.C, p.K))
+        return replace(state, pencil=replace(p, M=M, C=C, K=K, back=np.where(apart[:6, :6], 0.0, p.back)))
+
+    monkeypatch.setattr(solution, "balance", decoupled)
+    return MeshSolver(discretize(FLAT, 40, "half_end", "body_fixed"), 6, ALL_EFFECTS, np.zeros(3))
+
+
+def only_flap(one: MeshSolver) -> Start:
+    """A start without any motion out of the plane of flap, which is decoupled at rest."""
+    mask = np.zeros((len(one.body.nodes) - 1, 6))
+    mask[:, [2, 4]] = 1.0
+    vectors = np.random.default_rng(7).normal(size=(2, 2 * mask.size))
+    return Start(vectors * np.tile(mask.ravel(), 2), 26)
+
+
+@pytest.mark.numerical
+def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped: MeshSolver) -> None:
+    right = lumped.at(0.0).modes.frequencies
+    lumped.start = only_flap(lumped)
+    state = solution.balance(lumped.body, 0.0, np.zeros(3), ALL_EFFECTS)
+    with pytest.raises(MissedModesError):
+        lanczos.lanczos(state.pencil, 6, lumped.start)
+    np.testing.assert_allclose(lumped.at(0.0).modes.frequencies, right, rtol=1e-12)
+    assert lumped.restarts == 1
+
+
+@pytest.mark.numerical
+def test_the_count_alone_reports_them(lumped: MeshSolver, monkeypatch: pytest.MonkeyPatch) -> None:
+    right = lumped.at(0.0).modes.frequencies
+    lumped.start = only_flap(lumped)
+    monkeypatch.setattr(completeness, "check", lambda *_: None)
+    assert np.abs(lumped.at(0.0).modes.frequencies / right - 1.0).max() > 0.1
+
+
+@pytest.mark.numerical
+@pytest.mark.parametrize("gravity", [0.0, -9.81])
+def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
+    gravity: float, linearised: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In both cases within the rounding error that is stated; the settled one takes fewer linearisations."""
+    body, fall, speeds = discretize(FLAT, 100), np.array([0.0, 0.0, gravity]), np.linspace(5.0, 8.0, 13)
+    counts, found = [], []
+
+    def stalled(energy: float, before: float, rounding: float) -> bool:
+        return energy <= 10.0 * rounding and energy > 1e-2 * before
+
+    for settled in (steady._converged, stalled):
+        monkeypatch.setattr(steady, "_converged", settled)
+        linearised.clear()
+        one = MeshSolver(body, 6, ALL_EFFECTS, fall)
+        solved = [one.at(omega) for omega in speeds]
+        counts.append(len(linearised))
+        found.append((np.array([s.modes.frequencies for s in solved]), np.array([one.rounding(s) for s in solved])))
+    (settled, rounding), (stalled_, _) = found
+    assert (np.abs(settled / stalled_ - 1.0) <= rounding).all()
+    assert counts[0] <= counts[1] - 10
+
+
+@pytest.mark.numerical
+def test_a_fine_sweep_takes_one_linearisation_a_speed(linearised: list[float]) -> None:
+    """The strains are extrapolated to rounding, which the poses in the hub's axes have lost."""
+    speeds = np.linspace(5.0, 6.0, 25)
+    for _ in solve.mesh_sweep(FLAT, speeds, 100, 6):
+        pass
+    assert len(linearised) <= len(speeds) + 12
+
+
+@pytest.mark.parametrize("true", [1, 2, 3, 5])
+def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> None:
+    rng = np.random.default_rng(true)
+    at = np.linspace(-8.0, -1.0, 8)
+    exact = np.polynomial.polynomial.polyval(at, rng.normal(size=(true + 1, 20))).T
+    assert kernels.degree(at, exact * (1.0 + 1e-14 * rng.normal(size=exact.shape))) == true
+
+
+def test_a_known_speed_is_not_extrapolated() -> None:
+    one = solver(replace(FLAT, precone=0.2))  # its shape is no polynomial in Ω²
+    for omega in (1.0, 20.0, 30.0, 5.0, 9.0):
+        solved = one.at(omega)
+    again = steady.extrapolate(one.body, one.known, -9.0)
+    assert again is not None
+    np.testing.assert_allclose(again.relative, solved.state.shape.relative, rtol=0, atol=1e-14)
+
+
+@pytest.mark.numerical
+def test_a_coned_blade_takes_hardly_more_than_two_linearisations_a_speed(linearised: list[float]) -> None:
+    """With a cubic polynomial it would take nearly three."""
+    speeds = np.linspace(0.0, 6.0, 31)
+    for _ in solve.mesh_sweep(replace(FLAT, precone=0.2), speeds, 20, 6):
+        pass
+    assert len(linearised) <= 2.2 * len(speeds)
