@@ -18,7 +18,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: verify test test-slow lint bench condense readme docs clean
 
 verify: $(INSTALLED)
-	$(BIN)/southwell verify --closed-forms --out reports/out
+	$(BIN)/southwell verify --out reports/out
 
 # a few minutes; what takes longer is in test-slow; a file in one process, since its tests share fixtures
 test: $(INSTALLED)

@@ -70,11 +70,6 @@ class Cached(Executor):
             self.store.put(key, _label(fn), msgspec.json.encode(stored.encode(value)))
 
 
-def remembered(fn: Callable[..., Any], *args: Any) -> Any:
-    """``fn(*args)``, taken from the store if it is there, computed and stored otherwise."""
-    return remembering(Serial()).submit(fn, *args).result()
-
-
 def remembering(executor: Executor) -> Executor:
     """The executor, with the store of answers if there is one."""
     kept = opened()

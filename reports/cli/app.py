@@ -55,12 +55,6 @@ COMMANDS = (
     (ONE_BLADE, "study", "cli.study:command", "Solve sampled variants of blades at many speeds."),
     (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
     (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),
-    (
-        OTHER,
-        "closed-forms",
-        "verification.closed_forms_page:command",
-        "Compare core with mechanisms that have closed-form solutions.",
-    ),
     (CI, "gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
     (CI, "history", "cli.history:app", "Record the results of runs by commit."),
     (CI, "dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),

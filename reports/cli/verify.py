@@ -4,8 +4,7 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +18,6 @@ from ...cases.input.schema import Case
 from ...cases.judge.results import Run, Setting
 from ...cases.verify import matrix, user_results
 from ...cases.verify import names as names_of
-from ...cases.verify.cached import remembering
 from ...cases.verify.executors import executor
 from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
@@ -30,9 +28,8 @@ from ...references.protocol.process import Limits
 from ...references.protocol.store import Store
 from ..ci import junit as xml
 from ..shared import summary
-from ..shared.statuses import INCOMPLETE, PASSED
+from ..shared.statuses import INCOMPLETE
 from ..shared.writing import writable
-from ..verification import closed_forms_page
 from . import campbell_options, measured, versions
 from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
@@ -63,7 +60,6 @@ def command(
     rpm: str | None = None,
     omega: str | None = None,
     changes: Changes = (),
-    closed_forms: bool = False,
     fresh: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
@@ -118,9 +114,6 @@ def command(
     changes
         Change a property of every blade: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone,
         pitch. May be repeated.
-    closed_forms
-        Also compare core with mechanisms that have closed-form solutions, as `southwell closed-forms` does; the page is part of
-        the report. Status 1 if a difference is above its target. They have one more process.
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
@@ -133,8 +126,6 @@ def command(
     with ExitStack() as early:
         if kept_before:
             early.callback(kept_before.close)
-        # in a process of its own, while the cases are read and the codes asked about them
-        page = _closed_forms(early.enter_context(executor())) if closed_forms else None
         launch.prepare()  # for ``describe``, while the cases are read
         decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
         given = [parse(text) for text in changes]
@@ -158,7 +149,6 @@ def command(
         options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
         options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
         options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
-        options += ["--closed-forms"] if closed_forms else []
         plain = not (rpm or omega or changes or decks.mount != Mount())
         line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
         about = Run(
@@ -185,7 +175,6 @@ def command(
                     chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
                 )
                 try:
-                    of_forms = page(out) if page and not stopped else PASSED
                     if run.cells:
                         show(run, out, None if stopped or scheduler else pool)
                         if junit:
@@ -195,16 +184,10 @@ def command(
                     stopped = stopped or Stopped(said(error), INCOMPLETE)
                 if not stopped:
                     kept.remove()
-                    return max(summary.status(run), of_forms)
+                    return summary.status(run)
     what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
     print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
     return stopped.status
-
-
-def _closed_forms(pool: Executor) -> Callable[[Path], int]:
-    """Start the comparison with closed forms; the function writes the page to a folder and returns the exit status."""
-    page = remembering(pool).submit(closed_forms_page.computed)
-    return lambda out: closed_forms_page.write(page.result(), out)
 
 
 def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:

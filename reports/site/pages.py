@@ -1,4 +1,4 @@
-"""Generated pages of the documentation: cases, codes, command line, API, closed forms, a run's report.
+"""Generated pages of the documentation: cases, codes, command line, API, a run's report.
 
 The text is taken from case files, adapters, docstrings and options.
 """
@@ -18,7 +18,7 @@ from ...cases.verify.settings import settings
 from ...references.protocol import registry as registry
 from ..cli import app, arguments
 from ..shared.markdown import plain, table
-from ..verification import closed_forms_page, code_pages
+from ..verification import code_pages
 from . import readme
 
 Pages = dict[str, str]
@@ -49,7 +49,6 @@ def pages(folder: Path) -> Pages:
         "results.md": readme.results_page(),
         "cli.md": command_line(),
         **api(),
-        **closed_forms_page.pages(),
         **report(folder),
     }
 

@@ -18,7 +18,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import bench, case_tables, closed_forms_page, controls, error_budget, evidence, lumped, releases, witnesses
+from . import bench, case_tables, controls, error_budget, evidence, lumped, releases, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -61,7 +61,6 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
     beside = {
         "cost": bench.beside(folder),
         "condensed": page.beside(folder),
-        "known": closed_forms_page.beside(folder),
     }
     atomic.write(path, render(run, drawn, **beside))
     return path
@@ -90,7 +89,7 @@ def units(run: Run, case: str) -> Units:
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
-def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "", known: str = "") -> str:
+def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "") -> str:
     """The text of the report.
 
     Args:
@@ -98,7 +97,6 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         figures: paths of each case's figures, relative to the report.
         cost: the tables of ``bench``.
         condensed: the page of ``condense``.
-        known: the page of ``closed-forms``.
     """
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
@@ -132,7 +130,6 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         command=" ".join(run.command.split()).replace("`", "'"),
         cost=cost,
         condensed=condensed,
-        known=known,
     )
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from southwell.cases.closed_forms.linkages import bar
 from southwell.core.mechanism.description import Body, CoordinateSpring, Mechanism, Motion
 from southwell.core.mechanism.joints import Joint, at
+from southwell.tests.support.closed_forms.linkages import bar
 
 A_, B_, C_, D_ = 1.0, 3.0, 2.0, 3.0
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 
 from southwell import multibody as mb
-from southwell.cases.closed_forms import linkages, pendulums
 from southwell.cases.input import library
 from southwell.cases.verify import mechanism_case
 from southwell.tests.support import five_bar, four_bar
 from southwell.tests.support import linkages as loops
+from southwell.tests.support.closed_forms import linkages, pendulums
 
 Case = tuple[mb.Mechanism, dict[str, float]]
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from southwell import multibody as mb
-from southwell.cases.closed_forms import linkages, pendulums
 from southwell.core.mechanism.description import MechanismError
 from southwell.core.spectrum import eigen, rounding
 from southwell.reports.cli.app import main
+from southwell.tests.support.closed_forms import linkages, pendulums
 
 pytestmark = pytest.mark.numerical
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from southwell import multibody as mb
-from southwell.cases.closed_forms.linkages import ring
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree import dynamics, partition
 from southwell.core.tree.kinematics import kinematics, poses
 from southwell.core.tree.spanning import compile_tree
+from southwell.tests.support.closed_forms.linkages import ring
 from southwell.tests.support.five_bar import GUESS, bar, five_bar, undamped
 
 pytestmark = pytest.mark.numerical

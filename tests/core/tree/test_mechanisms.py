@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from southwell.cases.closed_forms.linkages import bar, ring, slider_crank
-from southwell.cases.closed_forms.pendulums import turntable
 from southwell.core.blade import uniform_blade
 from southwell.core.element import beams as bm
 from southwell.core.element.discretize import discretize
@@ -27,6 +25,8 @@ from southwell.core.tree.as_mechanism import mechanism, one
 from southwell.core.tree.kinematics import kinematics
 from southwell.core.tree.spanning import compile_tree
 from southwell.tests.support.beams import PARK
+from southwell.tests.support.closed_forms.linkages import bar, ring, slider_crank
+from southwell.tests.support.closed_forms.pendulums import turntable
 from southwell.tests.support.four_bar import A_, B_, C_, D_, four_bar, guess, pose_of
 
 G = 9.81

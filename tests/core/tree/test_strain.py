@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from southwell import multibody as mb
-from southwell.cases.closed_forms.linkages import ring
 from southwell.core.element import measures
 from southwell.core.space import spatial as sp
 from southwell.core.steady import equilibrium
 from southwell.core.tree.spanning import compile_tree
+from southwell.tests.support.closed_forms.linkages import ring
 
 ARC = ring(0.0, 12).beams[0].beams
 """One element of a thin ring."""

@@ -1,12 +1,12 @@
 """Pendulums, a top and a turntable: mechanisms without loops whose eigenvalues are known.
 
-For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
+For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``forms``.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core import multibody as mb
+from southwell.core import multibody as mb
 
 Complex = NDArray[np.complex128]
 

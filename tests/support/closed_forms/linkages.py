@@ -1,17 +1,17 @@
 """Closed loops whose eigenvalues are known: plane linkages on a turntable and a spinning ring.
 
-For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``closed_forms``.
+For each, the mechanism at speed Ω (rad/s) and its eigenvalues λ (1/s), one of each pair; see ``forms``.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from ...core import multibody as mb
-from ...core.blade import Blade, section_mass, section_stiffness
-from ...core.element.discretize import discretize
-from ...core.space import spatial as sp
-from ...core.tree.as_mechanism import one
+from southwell.core import multibody as mb
+from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.core.element.discretize import discretize
+from southwell.core.space import spatial as sp
+from southwell.core.tree.as_mechanism import one
 
 Complex = NDArray[np.complex128]
 

@@ -1,1 +1,0 @@
-"""Mechanisms whose eigenvalues are known in closed form, compared with core."""
