@@ -34,13 +34,14 @@ lint: $(INSTALLED)
 	$(BIN)/pyright --threads --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
+# writes docs/run-time.md
 bench: $(INSTALLED)
-	$(BIN)/southwell bench --out reports/out
+	$(BIN)/python -m southwell.benchmarks.run_time
 
 condense: $(INSTALLED)
 	$(BIN)/southwell condense --example --out reports/out
 
-# from the results of the last make verify and make bench
+# from the results of the last make verify
 readme: $(INSTALLED)
 	$(BIN)/python -m southwell.reports.site.readme reports/out/results.jsonl
 

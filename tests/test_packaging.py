@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
-NOT_PACKAGED = {"tests", "examples", "docs"}
+NOT_PACKAGED = {"tests", "benchmarks", "examples", "docs"}
 """Folders with modules that are not installed."""
 
 
@@ -61,7 +61,6 @@ def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
     }
     assert beside - data_files() == {
         "reports/site/readme.jsonl",
-        "reports/site/readme-bench.json",
     }  # for the README and the site alone
 
 

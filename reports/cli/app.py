@@ -51,7 +51,6 @@ COMMANDS = (
         "Compare models of measured rotors with their measurements.",
     ),
     (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
-    (VERIFY, "bench", "verification.bench:command", "Measure the run time of core and of the other codes."),
     (ONE_BLADE, "study", "cli.study:command", "Solve sampled variants of blades at many speeds."),
     (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
     (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),

@@ -1,8 +1,7 @@
 """The generated parts of the README and of the site's page of results.
 
 ``python -m southwell.reports.site.readme [results.jsonl]`` writes the README and its figure.
-The rows of the tables and the measured run times are stored next to this module, so that the tables can be checked
-without a run.
+The rows of the tables are stored next to this module, so that the tables can be checked without a run.
 """
 
 import shlex
@@ -13,7 +12,6 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ...cases.bench import cost as measure
 from ...cases.input import atomic
 from ...cases.judge import results
 from ...cases.judge.results import Cell, Run
@@ -21,7 +19,6 @@ from ...cases.verify.lumping import CASE, OMEGA
 from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import broad, columns
-from ..verification import bench
 from ..verification.case_tables import comparison
 from ..verification.report import LEGEND, heat, unasked, units
 
@@ -29,8 +26,6 @@ ROWS = Path(__file__).with_name("readme.jsonl")
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 FIGURE = ROOT / "docs" / "figures" / "campbell.svg"
-
-COST = Path(__file__).with_name("readme-bench.json")
 
 COMMAND = (
     "southwell campbell examples/nrel-5mw-blade.dat --length 61.5 --hub-radius 1.5 "
@@ -130,18 +125,14 @@ Written by `{run.command}` with {made}.
 
 
 def results_page() -> str:
-    """The site's page of results, from the stored rows and run times."""
+    """The site's page of results, from the stored rows."""
     return f"""# Results
 
 Results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
 verdict](reading-a-verdict.md) explains the signs. The column *core, velocity transformation* checks core's fast solver against
 the method of Park et al. (2010).
 
-{block(results.read(ROWS))}
-## Run time
-
-{bench.render(measure.read(COST))}
-"""
+{block(results.read(ROWS))}"""
 
 
 def example(folder: Path) -> str:
@@ -176,15 +167,13 @@ def written(text: str) -> str:
 
 
 def main() -> None:
-    """Update the stored rows and run times from a results file, if one is given; write the README and its figure."""
+    """Update the stored rows from a results file, if one is given; write the README and its figure."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
         run = results.read(path)
         if run.unfinished:
             sys.exit(f"{path}: {run.unfinished}: the tables are those of a complete run")
         results.write(ROWS, condense(run))
-        if (measured := path.with_name(bench.FILE)).exists():
-            shutil.copyfile(measured, COST)
     with TemporaryDirectory() as folder:
         output = example(Path(folder))
         FIGURE.parent.mkdir(exist_ok=True)

@@ -18,7 +18,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import bench, case_tables, controls, error_budget, evidence, lumped, releases, witnesses
+from . import case_tables, controls, error_budget, evidence, lumped, releases, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -58,11 +58,7 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
     if found := lumped.taken(run):
         atomic.write(figures / "lumped-mass.svg", drawing.submit(_lumping, found).result())
     path = folder / "report.md"
-    beside = {
-        "cost": bench.beside(folder),
-        "condensed": page.beside(folder),
-    }
-    atomic.write(path, render(run, drawn, **beside))
+    atomic.write(path, render(run, drawn, condensed=page.beside(folder)))
     return path
 
 
@@ -89,13 +85,12 @@ def units(run: Run, case: str) -> Units:
     return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
 
 
-def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: str = "") -> str:
+def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
     """The text of the report.
 
     Args:
         run: the results.
         figures: paths of each case's figures, relative to the report.
-        cost: the tables of ``bench``.
         condensed: the page of ``condense``.
     """
     environment = Environment(
@@ -128,7 +123,6 @@ def render(run: Run, figures: dict[str, list[str]], cost: str = "", condensed: s
         if run.versions
         else "",
         command=" ".join(run.command.split()).replace("`", "'"),
-        cost=cost,
         condensed=condensed,
     )
 

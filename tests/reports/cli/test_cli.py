@@ -414,7 +414,6 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
         ("modes park-cantilever --rpm 0:1e9:1e8", "implausibly fast"),
         ("cases all", "all: unexpected argument"),
         ("verify park-cantilever --codes :CODE", "no module is named"),
-        ("bench --out {file}", "cannot be written (File exists)"),
         ("report {file}", "cannot be read (Not a directory)"),
         ("campbell park-cantilever --rpm 0:30:10 -o {file}/x", "is a file"),
         ("modes {folder}/a.toml", "no such file"),

@@ -72,10 +72,9 @@ def test_one_screen_comes_before_what_may_be_skipped() -> None:
         assert (readme.ROOT / path).is_file(), path
 
 
-def test_the_page_of_results_has_every_case_and_the_run_times() -> None:
+def test_the_page_of_results_has_every_case() -> None:
     page = readme.results_page()
     assert all(f"| {case} |" in page for case in summary.cases(results.read(readme.ROWS)))
-    assert "| 5000 " in page
 
 
 def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.MonkeyPatch) -> None:

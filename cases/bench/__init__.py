@@ -1,1 +1,0 @@
-"""Cost of a frequency: core compared with the other codes."""
