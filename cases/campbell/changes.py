@@ -9,7 +9,7 @@ from ...core.blade import Blade
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
 from ..judge.pairing import aligned, pair, weights
-from .diagram import Wanted, solver
+from .diagram import CampbellRequest, solver
 
 
 @dataclass(frozen=True)
@@ -43,24 +43,24 @@ def changes(
 ) -> tuple[Changed, ...]:
     """Pair the lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s) with those of ``against``.
 
-    Both have ``elements`` equal elements, or as many as the accuracy of ``Wanted`` requires. Shapes are compared by MAC
-    with the mass of ``blade``.
+    Both have ``elements`` equal elements, or as many as the accuracy of ``CampbellRequest`` requires. Shapes are compared by
+    MAC with the mass of ``blade``.
 
     Raises:
         CaseError: if one of the blades has no stable steady state at a speed.
     """
     weight = weights(blade)
-    asked = Wanted(tuple(speeds), modes=modes, elements=elements)
+    asked = CampbellRequest(tuple(speeds), modes=modes, elements=elements)
     first, second = (solver(b, asked) for b in (blade, against))
     return tuple(row for omega in speeds for row in _at(blade, first(omega), second(omega), modes, weight))
 
 
 def _at(blade: Blade, found: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
     found, other = aligned(found, weight), aligned(other, weight)
-    wanted = range(min(modes, len(found.frequencies)))
+    indices = range(min(modes, len(found.frequencies)))
     names = numbered(families(participation(found, blade)))
     out = []
-    for k, partner in zip(wanted, pair(found, other, wanted, weight), strict=True):
+    for k, partner in zip(indices, pair(found, other, indices, weight), strict=True):
         theirs = float(other.frequencies[partner.mode]) if partner.mode is not None else np.nan
         out.append(Changed(found.omega, names[k], float(found.frequencies[k]), theirs, partner.mac, partner.note))
     return out

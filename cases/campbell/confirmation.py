@@ -39,8 +39,8 @@ def speeds(diagram: Campbell) -> tuple[float, ...]:
 
     These are the requested speeds nearest the ends of the operating range, or the first and the last without a range.
     """
-    asked = np.array(diagram.wanted.speeds)
-    ends = diagram.wanted.operating or (asked[0], asked[-1])
+    asked = np.array(diagram.request.speeds)
+    ends = diagram.request.operating or (asked[0], asked[-1])
     return tuple(sorted({float(asked[np.abs(asked - end).argmin()]) for end in ends}))
 
 

@@ -10,15 +10,15 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ...core.participation import families, numbered, participation
 from ...core.solve import NO_GRAVITY, sweep
 from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from ..judge.pairing import Array, weights
 from .encounters import Encounter, encounters
+from .labels import Labels, labels
 from .lines import line_of
 from .margins import Margin, Southwell, margins, southwell
-from .resonances import Range, Resonance, Unlisted, dips, resonances, unlisted
+from .resonances import Range, Resonance, Unlisted, near_crossings, resonances, unlisted
 from .tracking import Solver, Tracks, track
 
 SPARE = 4
@@ -29,7 +29,7 @@ _ROUNDS = 8  # of inserting speeds between which a mode may meet n per revolutio
 
 
 @dataclass(frozen=True)
-class Wanted:
+class CampbellRequest:
     """Settings of a diagram.
 
     Attributes:
@@ -63,12 +63,10 @@ class Campbell:
 
     Attributes:
         blade: the blade.
-        wanted: the settings.
+        request: the settings.
         tracks: the modes over speed.
         energy_fractions: (n, t, 4) fractions of kinetic energy in the order of ``FAMILIES``; NaN where there is no mode.
-        names: name of each track at its first speed, ``flapwise 2``.
-        last: name of each track at its last speed, which differs if the dominant motion has changed.
-        local: (n, t) names at each speed; empty where there is no mode.
+        labels: labels of the tracks.
         southwell: fit of each track; None with fewer than three speeds.
         encounters: crossings and veerings.
         resonances: all resonances within the speeds, by speed.
@@ -77,56 +75,44 @@ class Campbell:
     """
 
     blade: Blade
-    wanted: Wanted
+    request: CampbellRequest
     tracks: Tracks
     energy_fractions: Array
-    names: tuple[str, ...]
-    last: tuple[str, ...]
-    local: tuple[tuple[str, ...], ...]
+    labels: Labels
     southwell: tuple[Southwell | None, ...]
     encounters: tuple[Encounter, ...]
     resonances: tuple[Resonance, ...]
     unlisted: tuple[Unlisted, ...]
     margins: tuple[Margin, ...]
 
-    def label(self, t: int) -> str:
-        """Name of a track at its first and, if different, last speed: ``flapwise 2 → edgewise 1``."""
-        return self.names[t] if self.names[t] == self.last[t] else f"{self.names[t]} → {self.last[t]}"
-
-    def label_at(self, t: int, omega: float) -> str:
-        """Name of a track at the solved speed nearest to ``omega`` (rad/s)."""
-        there = np.flatnonzero(self.tracks.place[:, t] >= 0)
-        return self.local[there[np.abs(self.tracks.omega[there] - omega).argmin()]][t]
-
-    def label_over(self, t: int, low: float, high: float) -> str:
-        """Name of a track between two speeds (rad/s): ``flapwise 2``, or ``flapwise 2 → edgewise 1``."""
-        return " → ".join(dict.fromkeys((self.label_at(t, low), self.label_at(t, high))))
-
 
 def solver(
     blade: Blade,
-    wanted: Wanted,
+    request: CampbellRequest,
     on_speed: Callable[[float], None] = lambda omega: None,
     at: Callable[[float], str] = rad_s,
+    spare: int = SPARE,
 ) -> Solver:
-    """Core as a function of speed; ``on_speed`` is called with each solved speed, ``at`` formats a speed in an error.
+    """Core as a function of speed, which returns ``spare`` modes above those requested.
+
+    ``on_speed`` is called with each solved speed, ``at`` formats a speed in an error.
 
     Raises (the solver):
         CaseError: if there is no stable steady state at a speed, or its strain is large.
     """
-    gravity = np.array(wanted.gravity) if any(wanted.gravity) else NO_GRAVITY
-    load = np.array(wanted.load) if wanted.load else None
+    gravity = np.array(request.gravity) if any(request.gravity) else NO_GRAVITY
+    load = np.array(request.load) if request.load else None
     waiting: deque[float] = deque()
     speeds = iter(waiting.popleft, None)
     stream = sweep(
         blade,
         speeds,
-        wanted.elements,
-        wanted.modes + SPARE,
-        accuracy=wanted.accuracy,
+        request.elements,
+        request.modes + spare,
+        accuracy=request.accuracy,
         gravity=gravity,
         load=load,
-        allow_large_strain=wanted.allow_large_strain,
+        allow_large_strain=request.allow_large_strain,
     )
 
     def solve(omega: float) -> Modes:
@@ -143,52 +129,42 @@ def solver(
     return solve
 
 
-def campbell(blade: Blade, wanted: Wanted, solve: Solver | None = None) -> Campbell:
+def campbell(blade: Blade, request: CampbellRequest, solve: Solver | None = None) -> Campbell:
     """Compute the diagram; ``solve`` replaces core as the source of the modes.
 
     Raises:
         CaseError: if there are fewer than two speeds, the operating range lies outside them, or a speed has no stable
             steady state.
     """
-    _check(wanted)
+    _check(request)
     weight = weights(blade)
-    solve = cache(solve or solver(blade, wanted))
-    tracks = _tracks(solve, wanted, weight)
-    energy_fractions = np.full((*tracks.place.shape, 4), np.nan)
-    local: list[tuple[str, ...]] = []
-    for k, found in enumerate(tracks.solved):
-        there = np.flatnonzero(tracks.place[k] >= 0)
-        whole = participation(found, blade)
-        energy_fractions[k, there] = whole[tracks.place[k, there]]
-        named = numbered(families(whole))
-        local.append(tuple(named[p] if p >= 0 else "" for p in tracks.place[k]))
-    exists = [np.flatnonzero(tracks.place[:, t] >= 0) for t in range(tracks.count)]
+    solve = cache(solve or solver(blade, request))
+    tracks = _tracks(solve, request, weight)
+    named, energy_fractions = labels(tracks, blade)
     lines = [line_of(tracks, t) for t in range(tracks.count)]
-    met = resonances(solve, tracks, lines, weight, wanted.per_rev, wanted.operating)
+    met = resonances(solve, tracks, lines, weight, request.per_rev, request.operating)
     return Campbell(
         blade=blade,
-        wanted=wanted,
+        request=request,
         tracks=tracks,
         energy_fractions=energy_fractions,
-        names=_distinct([local[k[0]][t] for t, k in enumerate(exists)]),
-        last=_distinct([local[k[-1]][t] for t, k in enumerate(exists)]),
-        local=tuple(local),
+        labels=named,
         southwell=tuple(southwell(tracks, t) for t in range(tracks.count)),
         encounters=encounters(tracks, energy_fractions, weight),
         resonances=met,
-        unlisted=unlisted(tracks, wanted.per_rev),
-        margins=margins(lines, met, wanted.per_rev, wanted.operating, wanted.margin),
+        unlisted=unlisted(tracks, request.per_rev),
+        margins=margins(lines, met, request.per_rev, request.operating, request.margin),
     )
 
 
-def _tracks(solve: Solver, wanted: Wanted, weight: Array) -> Tracks:
+def _tracks(solve: Solver, request: CampbellRequest, weight: Array) -> Tracks:
     """The tracks, with speeds inserted where a mode may meet n per revolution twice between two solved speeds."""
-    tracks = track(solve, wanted.speeds, weight, wanted.modes)
+    tracks = track(solve, request.speeds, weight, request.modes)
     for _ in range(_ROUNDS):
-        more = dips([line_of(tracks, t) for t in range(tracks.count)], wanted.per_rev)
+        more = near_crossings([line_of(tracks, t) for t in range(tracks.count)], request.per_rev)
         if not more:
             break
-        tracks = track(solve, wanted.speeds, weight, wanted.modes, (*tracks.omega.tolist(), *more))
+        tracks = track(solve, request.speeds, weight, request.modes, (*tracks.omega.tolist(), *more))
     return tracks
 
 
@@ -202,24 +178,14 @@ def rises(diagram: Campbell, omega: float) -> Array:
     return out
 
 
-def _check(wanted: Wanted) -> None:
-    speeds = wanted.speeds
+def _check(request: CampbellRequest) -> None:
+    speeds = request.speeds
     if len(speeds) < 2:
         raise CaseError(f"speeds: {len(speeds)} given: a diagram needs two at least; give a range first:last:step")
-    if wanted.operating:
-        low, high = wanted.operating
+    if request.operating:
+        low, high = request.operating
         if not (speeds[0] <= low * (1 + 1e-9) and low <= high <= speeds[-1] * (1 + 1e-9)):
             raise CaseError(
                 f"operating range: {low:g} to {high:g} rad/s is not within the speeds, {speeds[0]:g} to {speeds[-1]:g} rad/s: "
                 "widen the speeds, or correct the range"
             )
-
-
-def _distinct(names: Sequence[str]) -> tuple[str, ...]:
-    """Make names unique: tracks that begin at different speeds can have the same name; later ones get a prime."""
-    out: list[str] = []
-    for name in names:
-        while name in out:
-            name += "′"
-        out.append(name)
-    return tuple(out)

@@ -26,7 +26,7 @@ from ..judge.pairing import Array
 
 POWERS = (2, 3, 4, 5, 6)
 
-WANTED = {"flapwise 1": "BldFl1Sh", "flapwise 2": "BldFl2Sh", "edgewise 1": "BldEdgSh"}
+ELASTODYN_NAMES = {"flapwise 1": "BldFl1Sh", "flapwise 2": "BldFl2Sh", "edgewise 1": "BldEdgSh"}
 """Modes, and the names of their coefficients in ElastoDyn."""
 
 DIGITS = 6
@@ -71,17 +71,17 @@ def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polyn
     """
     if abs(shape[-1]) < 1e-6 * np.abs(shape).max(initial=0.0) or not shape[-1]:
         raise CaseError(f"{mode}: its tip does not move, so no polynomial that is 1 at the tip describes it")
-    wanted = shape / shape[-1]
+    scaled = shape / shape[-1]
     basis = np.stack([x**k - x**6 for k in POWERS[:-1]], axis=1)
-    some, *_ = np.linalg.lstsq(basis, wanted - x**6, rcond=None)
+    some, *_ = np.linalg.lstsq(basis, scaled - x**6, rcond=None)
     some = np.round(some, DIGITS)
     coefficients = np.append(some, round(1.0 - some.sum(), DIGITS))
-    deviation = np.power.outer(x, POWERS) @ coefficients - wanted
+    deviation = np.power.outer(x, POWERS) @ coefficients - scaled
     return Polynomial(
         mode=mode,
         frequency=frequency,
         coefficients=coefficients,
-        shape=wanted,
+        shape=scaled,
         largest=float(np.abs(deviation).max()),
         rms=float(np.sqrt(np.mean(deviation**2))),
         condition=float(np.linalg.cond(basis)),
@@ -121,13 +121,13 @@ def polynomials(blade: Blade, omega: float, elements: int | None = None) -> tupl
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the answer
         solved = modes(plain, omega, elements, 8)
-    return tuple(_of(solved, plain, name) for name in WANTED)
+    return tuple(_of(solved, plain, name) for name in ELASTODYN_NAMES)
 
 
 def as_it_is(blade: Blade, solved: Modes) -> tuple[Polynomial, ...]:
     """The same fits for the full blade: the out-of-plane or in-plane part of the modes with these names, if present."""
     named = numbered(families(participation(solved, blade)))
-    return tuple(_of(solved, blade, name) for name in WANTED if name in named)
+    return tuple(_of(solved, blade, name) for name in ELASTODYN_NAMES if name in named)
 
 
 def _of(solved: Modes, blade: Blade, name: str) -> Polynomial:

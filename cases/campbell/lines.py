@@ -4,7 +4,7 @@ With K = K₀ + Ω² K₂ and C = Ω C₁ (exact for a straight blade), the spee
 eigenvalues of one Hermitian problem, ``(n² M − K₂ − i n C₁) x = Ω⁻² K₀ x`` with K₀ positive definite. By Sylvester's law of
 inertia the number of modes below n Ω then never decreases with speed: each mode meets each n at most once, from above, so the
 signs at the solved speeds show every crossing. Only by its steady deformation can a blade's mode meet n twice between two
-solved speeds, or touch it; ``Line.dips`` looks for that.
+solved speeds, or touch it; ``Line.near_crossings`` looks for that.
 """
 
 from collections.abc import Iterator
@@ -94,7 +94,7 @@ class Line:
                     found[at] = width / (2.0 * m.square)
         return found
 
-    def dips(self, n: int) -> list[float]:
+    def near_crossings(self, n: int) -> list[float]:
         """Speeds, rad/s, at which to solve: the frequency may reach n per revolution there, but not at the solved speeds."""
         return [float(np.sqrt(m.square)) for m in self._minima(n) if not m.near and m.least <= 0.5 * m.solved]
 

@@ -75,9 +75,9 @@ def margins(
     met: Sequence[Resonance],
     per_rev: Sequence[int],
     operating: Range | None,
-    wanted: float,
+    required: float,
 ) -> tuple[Margin, ...]:
-    """Margins of each line that spans the operating range, for each n; ``met``: resonances; ``wanted``: required margin."""
+    """Margins of each line that spans the operating range, for each n; ``met``: resonances; ``required``: required margin."""
     if operating is None:
         return ()
     low, high = operating
@@ -92,6 +92,6 @@ def margins(
             k = int(np.abs(values).argmin())
             least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
             sure = 0.0 if inside else (1.0 + least) * line.uncertainty(min(max(where, line.first), line.last))
-            kept = bool(abs(least) - sure >= wanted)
+            kept = bool(abs(least) - sure >= required)
             out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, sure, kept))
     return tuple(out)

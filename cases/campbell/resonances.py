@@ -83,9 +83,9 @@ def resonances(
     return tuple(sorted(found, key=lambda r: (r.omega, r.per_rev)))
 
 
-def dips(lines: Sequence[Line | None], per_rev: Sequence[int]) -> list[float]:
+def near_crossings(lines: Sequence[Line | None], per_rev: Sequence[int]) -> list[float]:
     """Speeds, rad/s, at which to solve so that two crossings between solved speeds are not missed."""
-    return [omega for line in lines if line is not None for n in per_rev for omega in line.dips(n)]
+    return [omega for line in lines if line is not None for n in per_rev for omega in line.near_crossings(n)]
 
 
 def unlisted(tracks: Tracks, per_rev: Sequence[int]) -> tuple[Unlisted, ...]:

@@ -1,4 +1,4 @@
-"""Named frequencies of a blade over rotor speed, computed by core."""
+"""Named frequencies of a blade at each rotor speed, computed by core; ``tracked`` follows modes from speed to speed."""
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -14,6 +14,7 @@ from ...core.participation import families, numbered, participation
 from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import NO_STATE, rad_s, unsteady
 from ..judge.pairing import aligned, weights
+from .tracking import Solver
 
 Method = Literal["chain", "velocity-transformation"]
 """Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
@@ -50,7 +51,6 @@ def sweep(
     count: int,
     accuracy: float = 1e-6,
     allow_large_strain: bool = False,
-    method: Method = "chain",
     at: Callable[[float], str] = rad_s,
 ) -> Iterator[list[Named]]:
     """Yield the ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
@@ -61,30 +61,31 @@ def sweep(
         CaseError: if a speed has no stable steady state, or one of large strain.
     """
     weight = weights(blade)
-    if method == "velocity-transformation":
-        found = _by_velocity_transformation(blade, speeds, elements or ELEMENTS, count, allow_large_strain)
-    else:
-        found = solve.sweep(blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain)
+    answers = solve.sweep(blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain)
     for omega in speeds:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
-                one = aligned(next(found), weight)
+                modes = aligned(next(answers), weight)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error, at) from error
-        known = zip(numbered(families(participation(one, blade))), one.frequencies, one.uncertainty, strict=True)
+        rows = zip(numbered(families(participation(modes, blade))), modes.frequencies, modes.uncertainty, strict=True)
         yield [
-            Named(float(omega), mode, name, float(frequency), float(sure), one.strain)
-            for mode, (name, frequency, sure) in enumerate(known, 1)
+            Named(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)
+            for mode, (name, frequency, uncertainty) in enumerate(rows, 1)
         ]
 
 
-def _by_velocity_transformation(
-    blade: Blade, speeds: Sequence[float], elements: int, count: int, allow_large_strain: bool
-) -> Iterator[Modes]:
-    """The uncertainty is that of the chain solver on the same mesh, and the difference between both methods."""
-    chain = solve.sweep(blade, speeds, elements, count, allow_large_strain=allow_large_strain)
-    ours = velocity_transformation.sweep(blade, speeds, elements, count)
-    for same, found in zip(chain, ours, strict=True):
-        apart = np.abs(found.frequencies / same.frequencies - 1.0)
-        yield replace(found, uncertainty=same.uncertainty + apart, strain=same.strain)
+def by_velocity_transformation(blade: Blade, elements: int, count: int, allow_large_strain: bool) -> Solver:
+    """Core's other method as a function of speed.
+
+    The uncertainty is that of the chain solver on the same mesh, and the difference between both methods.
+    """
+
+    def modes(omega: float) -> Modes:
+        (same,) = solve.sweep(blade, [omega], elements, count, allow_large_strain=allow_large_strain)
+        (other,) = velocity_transformation.sweep(blade, [omega], elements, count)
+        apart = np.abs(other.frequencies / same.frequencies - 1.0)
+        return replace(other, uncertainty=same.uncertainty + apart, strain=same.strain)
+
+    return modes

@@ -90,6 +90,11 @@ class Tracks:
         """Number of tracks."""
         return self.frequencies.shape[1]
 
+    @property
+    def certain(self) -> bool:
+        """Whether every link is certain and no two modes swap places."""
+        return not self.doubts and not np.isfinite(self.bound).any()
+
 
 @dataclass(frozen=True)
 class _Link:
@@ -102,19 +107,25 @@ class _Link:
 
 
 def track(
-    solve: Solver, speeds: Sequence[float] | Array, weight: Array, count: int, more: Sequence[float] = ()
+    solve: Solver,
+    speeds: Sequence[float] | Array,
+    weight: Array,
+    count: int,
+    more: Sequence[float] = (),
+    smallest_step: float = SMALLEST,
 ) -> Tracks:
     """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending) and ``more`` speeds between them.
 
     A mode that is among the ``count`` lowest at any speed is tracked over all speeds, as far as ``solve`` returns it;
-    ``solve`` should therefore return a few more modes.
+    ``solve`` should therefore return a few more modes. ``smallest_step`` is a fraction of the largest step of ``speeds``; with
+    1 no step is halved.
 
     Raises:
         ValueError: if ``speeds`` are not ascending.
     """
     if not len(speeds) or (np.diff(speeds) <= 0).any():
         raise ValueError(f"speeds: {list(speeds)}: not ascending: sort them and drop duplicates")
-    smallest = SMALLEST * float(np.diff(speeds).max(initial=0.0))
+    smallest = smallest_step * float(np.diff(speeds).max(initial=0.0))
     points, links = [_solved(solve, speeds[0], weight)], []
     for omega in sorted({float(v) for v in (*speeds, *more)})[1:]:
         for link, modes in _between(solve, points[-1], _solved(solve, omega, weight), weight, count, smallest):

@@ -10,7 +10,7 @@ import numpy as np
 from ...core.solve import mesh_modes
 from ..input import library
 from ..judge.pairing import Array
-from .diagram import Campbell, Wanted, campbell, rises
+from .diagram import Campbell, CampbellRequest, campbell, rises
 
 PRINTED = {20.0: 0.08, 30.0: 0.165}
 """Rotor speed, rpm → largest variation given in the paper."""
@@ -39,14 +39,16 @@ def variations(case: str = "park-blade", elements: int | None = None) -> tuple[V
     known = library.load(case)
     lumping = known.text.discretisation
     assert lumping is not None
-    wanted = Wanted(tuple(np.arange(0.0, 30.1, 2.5) * np.pi / 30), modes=LOWEST, per_rev=(), elements=elements)
+    request = CampbellRequest(
+        tuple(np.arange(0.0, 30.1, 2.5) * np.pi / 30), modes=LOWEST, per_rev=(), elements=elements
+    )
     out = []
     for variant in known.variants:
         blade = variant.blade
-        whole = campbell(blade, wanted)
+        whole = campbell(blade, request)
         crude = campbell(
             blade,
-            wanted,
+            request,
             lambda omega, blade=blade: mesh_modes(
                 blade,
                 omega,

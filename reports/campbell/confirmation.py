@@ -15,7 +15,7 @@ def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
     """The table: one row per mode and speed with the frequency ± u and the codes that confirm it."""
     rows = tuple(
         (
-            diagram.label_at(row.track, row.omega),
+            diagram.labels.at(row.track, row.omega),
             f"{row.omega * units.speeds:.6g}",
             _with_uncertainty(row, units),
             ", ".join(row.codes) or f"{TOO_NEAR} none",
@@ -24,7 +24,7 @@ def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
         for row in found
     )
     rest = dict.fromkeys(
-        f"{diagram.label_at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}" for r in found if r.others
+        f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}" for r in found if r.others
     )
     note = (
         "± is the numerical uncertainty of the in-house solver; codes are those that share nothing with it and agree within "

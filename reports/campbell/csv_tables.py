@@ -28,7 +28,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             f"{tracks.omega[k] * 30 / np.pi:.9g}",
             int(tracks.asked[k]),
             t + 1,
-            diagram.label(t),
+            diagram.labels[t],
             int(tracks.place[k, t]) + 1,
             repr(float(tracks.frequencies[k, t])),
             f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
@@ -46,7 +46,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
     columns += ["relative_uncertainty", "steady_strain", *FAMILIES, "mac_with_speed_before"]
     resonances = [
         (
-            diagram.label_at(r.track, r.omega),
+            diagram.labels.at(r.track, r.omega),
             r.per_rev,
             r.omega,
             r.frequency,
@@ -57,7 +57,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         for r in diagram.resonances
     ]
     margins = [
-        (diagram.label(m.track), m.per_rev, m.low, m.high, m.least, m.omega, f"{m.uncertainty:.6g}", int(m.kept))
+        (diagram.labels[m.track], m.per_rev, m.low, m.high, m.least, m.omega, f"{m.uncertainty:.6g}", int(m.kept))
         for m in diagram.margins
     ]
     met = [
@@ -68,7 +68,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             e.gap,
             f"{e.uncertainty:.6g}",
             f"{e.gap_uncertainty:.6g}",
-            *[diagram.label(t) for t in e.tracks],
+            *[diagram.labels[t] for t in e.tracks],
             e.exchanged,
             *e.window,
             int(e.whole),

@@ -92,7 +92,7 @@ def _panel(axes: Axes, diagram: Campbell, e: Encounter, units: Units) -> None:
 
 def _window(diagram: Campbell, e: Encounter) -> tuple[float, float]:
     """The range of speeds shown (rad/s): the width of a veering, or one step of the speeds around a crossing."""
-    speeds = diagram.wanted.speeds
+    speeds = diagram.request.speeds
     past = max(e.window[1] - e.omega, e.omega - e.window[0])
     half = 0.75 * past if e.kind == "veering" else float(np.diff(speeds).max())
     return max(speeds[0], e.omega - half), min(speeds[-1], e.omega + half)
@@ -103,5 +103,5 @@ def _named(e: Encounter, units: Units) -> str:
 
 
 def _words(diagram: Campbell, e: Encounter, units: Units) -> str:
-    names = " and ".join(diagram.label_at(t, e.window[0]) for t in e.tracks)
+    names = " and ".join(diagram.labels.at(t, e.window[0]) for t in e.tracks)
     return f"{names}, gap {gap(e, units, 2)} {units.frequency}" if e.kind == "veering" else names

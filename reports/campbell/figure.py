@@ -60,7 +60,7 @@ def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[U
         rays(lowest, diagram, units)
         band_label(highest, diagram, units)
         highest.annotate(
-            f"{units.frequency} at {diagram.wanted.speeds[-1] * units.speeds:.4g} {units.speed}",
+            f"{units.frequency} at {diagram.request.speeds[-1] * units.speeds:.4g} {units.speed}",
             (1.0, 1.0),
             (6, 6),
             "axes fraction",
@@ -92,9 +92,9 @@ def lines(axes: Axes, diagram: Campbell, units: Units) -> Axes:
 
 def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
     """The ranges of frequency, from below: two if the rays stay in the lower part of the frequencies, else one."""
-    tracks, wanted = diagram.tracks, diagram.wanted
+    tracks, request = diagram.tracks, diagram.request
     top = 1.06 * float(np.nanmax(tracks.frequencies))
-    ray = max(wanted.per_rev, default=0) * wanted.speeds[-1]
+    ray = max(request.per_rev, default=0) * request.speeds[-1]
     highest = np.nanmax(tracks.frequencies, axis=0)
     reached = highest[np.nanmin(tracks.frequencies, axis=0) < 1.1 * ray]
     split = 1.1 * max(ray, float(reached.max(initial=0.0)))
@@ -107,7 +107,7 @@ def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
 
 def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, float]) -> None:
     """Draw the modes within the given limits of frequency, labelled at their right ends."""
-    speeds = np.array(diagram.wanted.speeds) * units.speeds
+    speeds = np.array(diagram.request.speeds) * units.speeds
     axes.set_xlim(speeds[0], speeds[-1])
     axes.set_ylim(*limits)
     band(axes, diagram, units)
@@ -117,17 +117,17 @@ def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, flo
 
 
 def _below(diagram: Campbell, units: Units) -> str:
-    wanted = diagram.wanted
-    mesh = f"accuracy {wanted.accuracy:g}" if wanted.elements is None else f"{wanted.elements} elements"
-    words = [f"{len(wanted.speeds)} speeds, {mesh}"]
-    if len(diagram.tracks.omega) > len(wanted.speeds):
-        words[0] += f", {len(diagram.tracks.omega) - len(wanted.speeds)} intermediate speeds where modes come close"
-    if wanted.operating:
-        low, high = (o * units.speeds for o in wanted.operating)
-        words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * wanted.margin:.3g} %")
-    if any(wanted.gravity):
+    request = diagram.request
+    mesh = f"accuracy {request.accuracy:g}" if request.elements is None else f"{request.elements} elements"
+    words = [f"{len(request.speeds)} speeds, {mesh}"]
+    if len(diagram.tracks.omega) > len(request.speeds):
+        words[0] += f", {len(diagram.tracks.omega) - len(request.speeds)} intermediate speeds where modes come close"
+    if request.operating:
+        low, high = (o * units.speeds for o in request.operating)
+        words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * request.margin:.3g} %")
+    if any(request.gravity):
         words.append("under gravity")
-    if wanted.load:
+    if request.load:
         words.append("under the load given")
     return "; ".join(words)
 
@@ -158,7 +158,7 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
 
 def _label(diagram: Campbell, t: int, units: Units) -> str:
     frequency, sure = diagram.tracks.frequencies[-1, t], diagram.tracks.uncertainty[-1, t]
-    return f"{diagram.label(t)}  {certain(float(frequency * units.frequencies), float(sure), 4)}"
+    return f"{diagram.labels[t]}  {certain(float(frequency * units.frequencies), float(sure), 4)}"
 
 
 def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -43,15 +43,15 @@ def blend(share: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
 
 def band(axes: Axes, diagram: Campbell, units: Units) -> None:
     """Shade the operating range."""
-    if diagram.wanted.operating:
-        low, high = (o * units.speeds for o in diagram.wanted.operating)
+    if diagram.request.operating:
+        low, high = (o * units.speeds for o in diagram.request.operating)
         axes.axvspan(low, high, color=BAND, lw=0, zorder=0)
 
 
 def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
     """Label the operating range at the top."""
-    if diagram.wanted.operating:
-        low, high = (o * units.speeds for o in diagram.wanted.operating)
+    if diagram.request.operating:
+        low, high = (o * units.speeds for o in diagram.request.operating)
         box = {"facecolor": BAND, "edgecolor": "none", "pad": 1.0}
         axes.annotate(
             "operating",
@@ -72,7 +72,7 @@ def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
     """Draw rays of n per revolution, labelled at the top edge or, if they do not reach it, away from the modes."""
     (left, right), top = axes.get_xlim(), axes.get_ylim()[1]
     slope = units.frequencies / units.speeds
-    for n in diagram.wanted.per_rev:
+    for n in diagram.request.per_rev:
         end = min(right, top / (n * slope))
         if end <= left:
             continue
@@ -96,8 +96,8 @@ def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, units: Units) -> float:
     """The highest speed at which a label on a ray is clear of the modes and outside the operating range."""
-    tracks, wanted = diagram.tracks, diagram.wanted
-    high = wanted.operating[1] * units.speeds if wanted.operating else left
+    tracks, request = diagram.tracks, diagram.request
+    high = request.operating[1] * units.speeds if request.operating else left
     places = left + (right - left) * np.arange(0.97, 0.4, -0.02)
     outside = places[places > high + 0.03 * (right - left)]
     places = outside if len(outside) else places
@@ -114,14 +114,14 @@ def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, uni
 
 def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:
     """Underlay the stretches within the operating range that are nearer to n per revolution than the margin."""
-    wanted = diagram.wanted
-    if not wanted.operating:
+    request = diagram.request
+    if not request.operating:
         return
-    low, high = wanted.operating
+    low, high = request.operating
     grid = np.unique(np.concatenate([x[(x > low) & (x < high)], np.linspace(low, high, 401)]))
     line = np.interp(grid, x, y)
-    rays = np.outer(wanted.per_rev, grid)
-    close = (np.abs(line - rays) < wanted.margin * rays).any(0)
+    rays = np.outer(request.per_rev, grid)
+    close = (np.abs(line - rays) < request.margin * rays).any(0)
     shown = np.where(close, line, np.nan)
     axes.plot(
         grid * units.speeds, shown * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
@@ -130,9 +130,9 @@ def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Uni
 
 def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
     """Draw resonances (filled circles within the operating range), crossings, veerings and unclear tracks."""
-    wanted = diagram.wanted
+    request = diagram.request
     for r in diagram.resonances:
-        inside = wanted.operating is not None and r.apart == 0.0
+        inside = request.operating is not None and r.apart == 0.0
         axes.plot(
             r.omega * units.speeds,
             r.frequency * units.frequencies,
@@ -170,8 +170,7 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
 
 def legend(diagram: Campbell) -> list[Line2D]:
     """The legend's entries for what is in the diagram."""
-    present = {diagram.names[t].split()[0] for t in range(diagram.tracks.count)}
-    present |= {diagram.last[t].split()[0] for t in range(diagram.tracks.count)}
+    present = {family for ends in (0, -1) for family in diagram.labels.families[ends]}
     out: list[Line2D] = [
         Line2D([], [], color=FAMILY_COLOURS[f], lw=1.8, ls=DASHES[f], label=f) for f in FAMILIES if f in present
     ]
@@ -185,7 +184,7 @@ def legend(diagram: Campbell) -> list[Line2D]:
     if any(not m.kept for m in diagram.margins):
         out.append(
             Line2D(
-                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.wanted.margin:.3g} % of n per rev"
+                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.request.margin:.3g} % of n per rev"
             )
         )
     for kind, marker, size in (("veering", "D", 6.5), ("crossing", "x", 5)):

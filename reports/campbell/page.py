@@ -71,8 +71,8 @@ def shapes_at(diagram: Campbell) -> int:
 
     It is the requested speed nearest to the upper end of the operating range, or otherwise to the highest speed.
     """
-    wanted, omega = diagram.wanted, diagram.tracks.omega
-    target = wanted.operating[1] if wanted.operating else omega[-1]
+    request, omega = diagram.request, diagram.tracks.omega
+    target = request.operating[1] if request.operating else omega[-1]
     asked = np.flatnonzero(diagram.tracks.asked)
     return int(asked[np.abs(omega[asked] - target).argmin()])
 
@@ -110,7 +110,7 @@ def _page(diagram: Campbell, k: int, units: Units, command: str, origin: Origin,
 def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
     omega = float(diagram.tracks.omega[k])
     try:
-        found = polynomials(diagram.blade, omega, diagram.wanted.elements)
+        found = polynomials(diagram.blade, omega, diagram.request.elements)
     except CaseError as error:
         return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
     other = as_it_is(diagram.blade, diagram.tracks.solved[k])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.campbell.elastodyn_shapes import POWERS, WANTED, Polynomial
+from ...cases.campbell.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomial
 from ...cases.input import atomic
 from ...core.modes import STATIONS
 from ...core.participation import gyration, in_blade_axes, spoken
@@ -70,7 +70,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
             axes = figure.add_axes((left, bottom, 0.218, (panel - 0.72) / height))
             _panel(axes, shapes[place], arm)
             hertz = diagram.tracks.frequencies[k, t] * units.frequencies
-            name = diagram.local[k][t]
+            name = diagram.labels.at(t, float(diagram.tracks.omega[k]))
             shown = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
             axes.set_title(f"{name}   {shown} {units.frequency}", size=9.5, pad=17)
             axes.annotate(
@@ -138,7 +138,9 @@ def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units
         for p in group:
             numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
             frequency = certain(p.frequency * units.frequencies, p.uncertainty)
-            rows.append((WANTED[p.mode], kind, frequency, *numbers, f"{100 * p.largest:.2f} %", f"{p.condition:.0f}"))
+            rows.append(
+                (ELASTODYN_NAMES[p.mode], kind, frequency, *numbers, f"{100 * p.largest:.2f} %", f"{p.condition:.0f}")
+            )
     head = ("shape", "which", units.frequency, *[f"x{'⁰¹²³⁴⁵⁶'[n]}" for n in POWERS], "fit error", "condition")
     note = (
         f"φ(x) = Σ c xᵏ over the fraction x of the flexible blade, {units.at(omega)}. φ(1) = 1: the printed coefficients add "
@@ -167,7 +169,8 @@ def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
     writer.writerow(["name", "frequency_rad_s", "relative_uncertainty", "omega_rad_s", "fraction", "span_m", *parts])
     for t, shape in zip(order, shapes, strict=True):
         sure = f"{diagram.tracks.uncertainty[k, t]:.6g}"
-        about = (diagram.local[k][t], float(diagram.tracks.frequencies[k, t]), sure, float(diagram.tracks.omega[k]))
+        omega = float(diagram.tracks.omega[k])
+        about = (diagram.labels.at(t, omega), float(diagram.tracks.frequencies[k, t]), sure, omega)
         for x, motion in zip(STATIONS, shape, strict=True):
             numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
             writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])

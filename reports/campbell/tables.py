@@ -49,13 +49,13 @@ def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
 
 
 def _modes(diagram: Campbell, units: Units) -> Sheet:
-    tracks, wanted = diagram.tracks, diagram.wanted
-    first, last = wanted.speeds[0], wanted.speeds[-1]
+    tracks, request = diagram.tracks, diagram.request
+    first, last = request.speeds[0], request.speeds[-1]
     rows = []
     for t in range(tracks.count):
         k = np.flatnonzero(tracks.place[:, t] >= 0)
         fit = diagram.southwell[t]
-        row = [diagram.label(t), spoken(diagram.energy_fractions[k[0], t])]
+        row = [diagram.labels[t], spoken(diagram.energy_fractions[k[0], t])]
         for end in (0, -1):
             f, sure = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
             row.append(certain(float(f), float(sure)) if np.isfinite(f) else "–")
@@ -99,20 +99,20 @@ def _southwell(fit: Southwell, sure: float) -> tuple[str, str]:
 
 
 def _margins(diagram: Campbell, units: Units) -> Sheet:
-    wanted = diagram.wanted
-    if wanted.operating is None:
+    request = diagram.request
+    if request.operating is None:
         return Sheet("Margins", (), ())
-    low, high = wanted.operating
+    low, high = request.operating
     rows = []
     for t in range(diagram.tracks.count):
         mine = {m.per_rev: m for m in diagram.margins if m.track == t}
-        fields = [_margin(mine[n]) if mine else "not tracked to here" for n in wanted.per_rev]
-        rows.append((diagram.label_over(t, low, high), *fields))
+        fields = [_margin(mine[n]) if mine else "not tracked to here" for n in request.per_rev]
+        rows.append((diagram.labels.over(t, low, high), *fields))
     note = (
         f"Distance of each mode above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
-        f"(far: 1000 % or more). {TOO_NEAR}: less than {100 * wanted.margin:.3g} % at some speed; a change of sign: a crossing."
+        f"(far: 1000 % or more). {TOO_NEAR}: below {100 * request.margin:.3g} % at some speed; a change of sign: a crossing."
     )
-    return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in wanted.per_rev]), tuple(rows), note)
+    return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in request.per_rev]), tuple(rows), note)
 
 
 def _margin(m: Margin) -> str:
@@ -128,7 +128,7 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for r in diagram.resonances:
         row = [
-            diagram.label_at(r.track, r.omega),
+            diagram.labels.at(r.track, r.omega),
             f"{r.per_rev}P{' (may only touch it)' if r.touches else ''}",
             certain(r.omega * units.speeds, r.uncertainty),
             certain(r.frequency * units.frequencies, r.uncertainty),
@@ -139,7 +139,7 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
         rows.append(tuple(row))
     head = ["mode", "crosses", units.speed_label, units.frequency_label, "± relative"]
     note = "± relative: uncertainty of the speed and of the frequency; modes are solved at each crossing."
-    if diagram.wanted.operating:
+    if diagram.request.operating:
         head.append("from the operating range")
         note += " Last column: distance of the speed from the nearer end of the operating range, relative to that end."
     return Sheet("Crossings of n per revolution", tuple(head), tuple(rows), note)
@@ -148,7 +148,7 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
 def _encounters(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for e in diagram.encounters:
-        lower, upper = (diagram.label_at(t, e.window[0]) for t in e.tracks)
+        lower, upper = (diagram.labels.at(t, e.window[0]) for t in e.tracks)
         rows.append(
             (
                 e.kind,
@@ -193,7 +193,7 @@ def _narrower(e: Encounter, units: Units) -> str:
 def _doubts(diagram: Campbell, units: Units) -> Sheet:
     rows = tuple(
         (
-            diagram.label(d.track),
+            diagram.labels[d.track],
             f"{d.omega[0] * units.speeds:.4f} – {d.omega[1] * units.speeds:.4f}",
             f"{d.frequency * units.frequencies:.4g}",
             f"{d.mac:.2f}" if d.mac else "none",
@@ -244,12 +244,12 @@ def markdown(sheet: Sheet) -> str:
 
 def notes(diagram: Campbell, units: Units) -> list[str]:
     """Remarks on large steady strains, an accuracy that was not reached, and crossings that may be missing."""
-    tracks, wanted = diagram.tracks, diagram.wanted
+    tracks, request = diagram.tracks, diagram.request
     rows = [
         Named(
             omega,
             int(tracks.place[k, t]) + 1,
-            diagram.local[k][t],
+            diagram.labels.at(t, omega),
             float(tracks.frequencies[k, t]),
             float(tracks.uncertainty[k, t]),
             tracks.solved[k].strain,
@@ -263,7 +263,7 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
         f"{u.number:+d} more than by the crossings listed: a crossing may be missing; give closer speeds or more modes"
         for u in diagram.unlisted
     ]
-    return [*remarks(rows, wanted.accuracy if wanted.elements is None else None, units), *missing]
+    return [*remarks(rows, request.accuracy if request.elements is None else None, units), *missing]
 
 
 def margins_kept(diagram: Campbell) -> bool:
@@ -274,23 +274,26 @@ def margins_kept(diagram: Campbell) -> bool:
 
 def verdict(diagram: Campbell, units: Units) -> str:
     """The verdict on the margins in one line."""
-    wanted = diagram.wanted
-    if wanted.operating is None:
+    request = diagram.request
+    if request.operating is None:
         return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so no margin is judged."
-    low, high = wanted.operating
+    low, high = request.operating
     over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
     broken = [m for m in diagram.margins if not m.kept]
     judged = {m.track for m in diagram.margins}
-    rest = [diagram.label_over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
+    rest = [diagram.labels.over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
     but = f" Not judged, because not tracked over the whole range: {', '.join(rest)}." if rest else ""
     if not broken:
         every = "Every other mode" if rest else "Every mode"
-        return f"{every} stays at least {100 * wanted.margin:.3g} % away from every n per revolution at {over}.{but}"
+        return f"{every} stays at least {100 * request.margin:.3g} % away from every n per revolution at {over}.{but}"
     said = []
     for t in dict.fromkeys(m.track for m in broken):
         mine = [m for m in broken if m.track == t]
         met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
         near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
-        words = [f"crosses {met}" if met else "", f"comes within {100 * wanted.margin:.3g} % of {near}" if near else ""]
-        said.append(f"{diagram.label_over(t, low, high)} {' and '.join(w for w in words if w)}")
+        words = [
+            f"crosses {met}" if met else "",
+            f"comes within {100 * request.margin:.3g} % of {near}" if near else "",
+        ]
+        said.append(f"{diagram.labels.over(t, low, high)} {' and '.join(w for w in words if w)}")
     return f"{TOO_NEAR} At {over}, {'; '.join(said)}.{but}"

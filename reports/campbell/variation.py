@@ -44,7 +44,7 @@ def figure(variations: Sequence[Variation]) -> Figure:
             speeds, interpolate = fine * RPM.speeds, partial(PchipInterpolator, diagram.tracks.omega**2)
             ends: tuple[list[tuple[float, str, str]], list[tuple[float, str, str]]] = ([], [])
             for t in range(diagram.tracks.count):
-                family = diagram.names[t].split()[0]
+                family = diagram.labels.names[t].split()[0]
                 look = {"color": FAMILY_COLOURS[family], "ls": DASHES[family], "lw": 1.7}
                 hertz = np.sqrt(interpolate(diagram.tracks.frequencies[:, t] ** 2)(fine**2)) * RPM.frequencies
                 change = 100 * (hertz / hertz[0] - 1.0)
@@ -53,11 +53,11 @@ def figure(variations: Sequence[Variation]) -> Figure:
                 ends[0].append(
                     (
                         float(hertz[-1]),
-                        f"{diagram.label(t)}  {certain(float(hertz[-1]), float(diagram.tracks.uncertainty[-1, t]), 4)}",
+                        f"{diagram.labels[t]}  {certain(float(hertz[-1]), float(diagram.tracks.uncertainty[-1, t]), 4)}",
                         FAMILY_COLOURS[family],
                     )
                 )
-                ends[1].append((float(change[-1]), f"{diagram.label(t)}  {change[-1]:.1f} %", FAMILY_COLOURS[family]))
+                ends[1].append((float(change[-1]), f"{diagram.labels[t]}  {change[-1]:.1f} %", FAMILY_COLOURS[family]))
             for rpm, largest in PRINTED.items():
                 right.plot(rpm, 100 * largest, marker="x", ms=7, mew=1.6, color=INK, zorder=5, clip_on=False)
             for axes, labels, what in ((left, ends[0], RPM.frequency_label), (right, ends[1], "change from rest, %")):
@@ -77,7 +77,7 @@ def sheet(variations: Sequence[Variation]) -> Sheet:
     """The table of changes at the paper's speeds: converged, and in brackets with the paper's 20 lumped elements."""
     rows = []
     for v in variations:
-        names = [v.diagram.label(t) for t in range(v.diagram.tracks.count)]
+        names = [v.diagram.labels[t] for t in range(v.diagram.tracks.count)]
         for t, name in enumerate(names):
             changes = [f"{_percent(v.rises[k, t])} ({_percent(v.lumped[k, t])})" for k in range(len(PRINTED))]
             rows.append((label(v) if t == 0 else "", name, *changes))

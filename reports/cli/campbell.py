@@ -16,7 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 
 from ...cases.campbell import confirmation
 from ...cases.campbell.changes import changes as blade_changes
-from ...cases.campbell.diagram import Campbell, Wanted, campbell, solver
+from ...cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
 from ...cases.campbell.tracking import Solver
 from ...cases.input.changes import parse
 from ...cases.input.default_case import default_case
@@ -151,7 +151,7 @@ def command(
         if not (given or subject.speeds):
             raise CaseError(f"--rpm: missing: {blade} does not define rotor speeds: give them, as in 0:15:0.5")
         speeds, units = given or (subject.speeds, subject.units)
-        wanted = Wanted(
+        request = CampbellRequest(
             speeds=tuple(speeds),
             modes=modes,
             per_rev=options.per_rev(per_rev),
@@ -165,7 +165,7 @@ def command(
         )
         folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
         _check(out)
-        diagram = solve(subject.blade, wanted, units, workers)
+        diagram = solve(subject.blade, request, units, workers)
         extra = []
         if verify:
             extra.append(confirmed_by(diagram, subject, units))
@@ -197,7 +197,7 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
         confirmation.speeds(diagram),
         rpm=units is RPM,
         source="; ".join(subject.about),
-        modes=diagram.wanted.modes,
+        modes=diagram.request.modes,
     )
     pool, watch = Pool(os.cpu_count() or 1), Watch()
     try:
@@ -222,21 +222,21 @@ def _check(out: Path) -> None:
             raise OSError(errno.EACCES, f"no permission in {there}")
 
 
-def solve(blade: Blade, wanted: Wanted, units: Units, workers: int = 1) -> Campbell:
+def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1) -> Campbell:
     """Compute the diagram and show progress; ``workers`` processes share the requested speeds.
 
     Raises:
         CaseError: as ``campbell``.
     """
-    progress = SpeedProgress(blade.name, wanted.speeds, units)
+    progress = SpeedProgress(blade.name, request.speeds, units)
     with ExitStack() as stack:
         stack.enter_context(progress.bar)
-        here = solver(blade, wanted, progress, units.at)
+        here = solver(blade, request, progress, units.at)
         if workers == 1:
-            return campbell(blade, wanted, here)
-        pool = Pool(min(workers, len(wanted.speeds)))
+            return campbell(blade, request, here)
+        pool = Pool(min(workers, len(request.speeds)))
         stack.callback(pool.stop)
-        return campbell(blade, wanted, _shared(blade, wanted, pool, here, progress, units))
+        return campbell(blade, request, _shared(blade, request, pool, here, progress, units))
 
 
 class SpeedProgress:
@@ -267,10 +267,10 @@ class SpeedProgress:
 
 
 def _shared(
-    blade: Blade, wanted: Wanted, executor: Executor, here: Solver, progress: SpeedProgress, units: Units
+    blade: Blade, request: CampbellRequest, executor: Executor, here: Solver, progress: SpeedProgress, units: Units
 ) -> Solver:
     """A solver: ``executor`` starts on the requested speeds at once; ``here`` solves other speeds on demand."""
-    ahead = {omega: executor.submit(_one, blade, wanted, omega, units) for omega in wanted.speeds}
+    ahead = {omega: executor.submit(_one, blade, request, omega, units) for omega in request.speeds}
 
     def answer(omega: float) -> Modes:
         if omega not in ahead:
@@ -282,8 +282,8 @@ def _shared(
     return answer
 
 
-def _one(blade: Blade, wanted: Wanted, omega: float, units: Units) -> Modes:
-    return solver(blade, wanted, at=units.at)(omega)
+def _one(blade: Blade, request: CampbellRequest, omega: float, units: Units) -> Modes:
+    return solver(blade, request, at=units.at)(omega)
 
 
 def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet]) -> None:

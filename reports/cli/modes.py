@@ -7,7 +7,9 @@ import numpy as np
 from rich.console import Console
 
 from ...cases.campbell.changes import changes as blade_changes
-from ...cases.campbell.sweep import ELEMENTS, Method, Named, sweep
+from ...cases.campbell.diagram import CampbellRequest
+from ...cases.campbell.sweep import ELEMENTS, Method, Named, by_velocity_transformation
+from ...cases.campbell.tracked import TrackedMode, tracked
 from ...cases.input import library
 from ...cases.input.changes import parse
 from ...cases.input.schema import speed_range
@@ -45,6 +47,8 @@ def modes(
 ) -> int:
     """Compute the natural frequencies of a blade and name its modes.
 
+    Each row is one mode, tracked from speed to speed by its shape and named at its first speed.
+
     Parameters
     ----------
     case
@@ -66,8 +70,8 @@ def modes(
     allow_large_strain
         Accept steady strains above 20 %.
     json
-        Print JSON: case, omega_rad_s, mode, name, frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown),
-        steady_strain.
+        Print JSON: case, omega_rad_s, mode, label (of the mode tracked through the speeds), name (at this speed),
+        frequency_rad_s, frequency_hz, relative_uncertainty (null: unknown), steady_strain.
     changes
         Change a property: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone, pitch. May be
         repeated.
@@ -91,10 +95,17 @@ def modes(
             raise UsageError(f"--rpm: missing: {case} does not define rotor speeds: give them, as in 0:15:5")
         blade = subject.blade
         at = subject.speeds if speeds is None else speeds
-        named = (units or subject.units).at
-        swept = sweep(blade, at, elements, modes, accuracy, allow_large_strain, method, named)
-        found = [one for at_speed in swept for one in at_speed]
-        rows += [_tidy(blade.name, row) for row in found]
+        shown = units or subject.units
+        request = CampbellRequest(
+            tuple(at), modes, elements=elements, accuracy=accuracy, allow_large_strain=allow_large_strain
+        )
+        solver = None
+        if method != "chain":
+            solver = by_velocity_transformation(blade, elements or ELEMENTS, modes, allow_large_strain)
+        computed = tracked(blade, request, shown.at, solver)
+        by_speed = sorted((row for mode in computed for row in mode.at), key=lambda row: (row.omega, row.mode))
+        labels = {(row.omega, row.mode): mode.label for mode in computed for row in mode.at}
+        rows += [_tidy(blade.name, row, labels[row.omega, row.mode]) for row in by_speed]
         console = Console(stderr=True, highlight=False) if json else output()
         for note in subject.notes:
             console.print(note, style="dim", markup=False, soft_wrap=True)
@@ -103,13 +114,10 @@ def modes(
             if elements is None and method != "chain":
                 elements = ELEMENTS
             mesh = f"accuracy {accuracy:g}" if elements is None else f"{elements} elements"
-            title, shown = (
-                f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}",
-                units or subject.units,
-            )
-            for table in terminal.frequencies(found, title, shown, console.width):
+            title = f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}"
+            for table in terminal.frequencies(computed, title, shown, console.width):
                 console.print(table)
-            for line in remarks(found, accuracy if elements is None else None, shown):
+            for line in (*remarks(by_speed, accuracy if elements is None else None, shown), *_doubts(computed, shown)):
                 console.print(line, markup=False, soft_wrap=True)
             if other:
                 compared = blade_changes(blade, other.blade, at, modes, elements or ELEMENTS)
@@ -160,11 +168,23 @@ def mechanism(
     return PASSED
 
 
-def _tidy(case: str, row: Named) -> dict[str, object]:
+def _doubts(modes: Sequence[TrackedMode], units: Units) -> list[str]:
+    """One line for each step of speed over which the shapes do not identify a mode."""
+    return [
+        f"{mode.label}: between {units.at(d.omega[0])} and {units.at(d.omega[1])} the shape does not identify the mode "
+        f"(MAC {d.mac:.2f}): its row may join two modes; give closer speeds"
+        for mode in modes
+        for d in mode.doubts
+        if d.mac
+    ]
+
+
+def _tidy(case: str, row: Named, label: str) -> dict[str, object]:
     return {
         "case": case,
         "omega_rad_s": row.omega,
         "mode": row.mode,
+        "label": label,
         "name": row.name,
         "frequency_rad_s": row.frequency,
         "frequency_hz": row.frequency / (2 * np.pi),

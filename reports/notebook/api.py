@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...cases.campbell import diagram
-from ...cases.campbell.diagram import Wanted
+from ...cases.campbell.diagram import CampbellRequest
 from ...cases.input import library, readers
 from ...cases.input.default_case import MODES, default_case
 from ...cases.input.errors import CaseError
@@ -149,8 +149,8 @@ def campbell(
     """
     speeds, units = _speeds(rpm, omega)
     low_high = None if operating is None else (operating[0] / units.speeds, operating[1] / units.speeds)
-    wanted = Wanted(tuple(speeds.tolist()), modes, tuple(per_rev), low_high, margin, elements)
-    return CampbellResult(diagram.campbell(blade, wanted, diagram.solver(blade, wanted, at=units.at)), units)
+    request = CampbellRequest(tuple(speeds.tolist()), modes, tuple(per_rev), low_high, margin, elements)
+    return CampbellResult(diagram.campbell(blade, request, diagram.solver(blade, request, at=units.at)), units)
 
 
 def verify(

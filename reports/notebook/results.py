@@ -105,7 +105,7 @@ class CampbellResult:
         frame = pd.DataFrame(
             tracks.frequencies * self.units.frequencies,
             index=pd.Index(tracks.omega * self.units.speeds, name=self.units.speed_label),
-            columns=[self.diagram.label(t) for t in range(tracks.count)],
+            columns=[self.diagram.labels[t] for t in range(tracks.count)],
         )
         frame.attrs["frequency"] = self.units.frequency
         return pd.DataFrame(frame.loc[tracks.asked])
@@ -114,7 +114,7 @@ class CampbellResult:
         """One row per mode and order n: ``mode``, ``per_rev``, ``low``, ``high`` (margins at both ends of the operating range),
         ``kept``; relative to n per revolution. Empty without an operating range."""
         rows = [
-            {"mode": self.diagram.label(m.track), "per_rev": m.per_rev, "low": m.low, "high": m.high, "kept": m.kept}
+            {"mode": self.diagram.labels[m.track], "per_rev": m.per_rev, "low": m.low, "high": m.high, "kept": m.kept}
             for m in self.diagram.margins
         ]
         return pd.DataFrame(rows, columns=["mode", "per_rev", "low", "high", "kept"])
@@ -134,7 +134,7 @@ class CampbellResult:
         return page.write(self.diagram, Path(folder), self.units, "from Python")
 
     def __repr__(self) -> str:
-        speeds = np.array(self.diagram.wanted.speeds) * self.units.speeds
+        speeds = np.array(self.diagram.request.speeds) * self.units.speeds
         over = f"{len(speeds)} speeds from {speeds[0]:g} to {speeds[-1]:g} {self.units.speed}"
         return f"<Campbell diagram of {self.diagram.blade.name}: {self.diagram.tracks.count} modes, {over}>"
 

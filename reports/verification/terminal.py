@@ -7,7 +7,7 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from ...cases.campbell.sweep import Named
+from ...cases.campbell.tracked import TrackedMode
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
 from ..shared.certain import certain, relative
@@ -108,29 +108,29 @@ DIGITS = 7
 """Largest number of digits of a frequency."""
 
 
-def frequencies(rows: Sequence[Named], title: str, units: Units, width: int) -> Iterator[Table]:
+def frequencies(modes: Sequence[TrackedMode], title: str, units: Units, width: int) -> Iterator[Table]:
     """Tables modes × speeds with each mode's largest uncertainty; rows in the order of the first speed.
 
     The speeds are split into several tables if they exceed ``width`` characters.
     """
-    speeds = list(dict.fromkeys(r.omega for r in rows))
-    first = max(len(name) for name in (units.frequency_label, *(r.name for r in rows)))
+    speeds = sorted({at.omega for mode in modes for at in mode.at})
+    first = max(len(name) for name in (units.frequency_label, *(mode.label for mode in modes)))
     column = 3 + max(DIGITS + 2, *(len(units.at(omega)) for omega in speeds))
     count = max(1, (width - first - len(RELATIVE) - 8) // column)
     for k in range(0, len(speeds), count):
-        part = speeds[k : k + count]
-        yield _frequencies([r for r in rows if r.omega in part], "" if k else title, units, part)
+        yield _frequencies(modes, "" if k else title, units, speeds[k : k + count])
 
 
-def _frequencies(rows: Sequence[Named], title: str, units: Units, speeds: Sequence[float]) -> Table:
+def _frequencies(modes: Sequence[TrackedMode], title: str, units: Units, speeds: Sequence[float]) -> Table:
     out = Table(box=box.SIMPLE_HEAD, title=title or None, title_justify="left", title_style="bold")
     out.add_column(units.frequency_label, no_wrap=True)
     for omega in speeds:
         out.add_column(units.at(omega), justify="right", no_wrap=True)
     out.add_column(RELATIVE, justify="right", no_wrap=True)
-    for name in dict.fromkeys(r.name for r in sorted(rows, key=lambda r: (r.omega, r.mode))):
-        mine = [r for r in rows if r.name == name]
-        at = {r.omega: certain(r.frequency * units.frequencies, r.uncertainty) for r in mine}
-        sure = max(r.uncertainty for r in mine)
-        out.add_row(name, *[at.get(omega, "") for omega in speeds], relative(sure))
+    for mode in modes:
+        shown = {at.omega: at for at in mode.at if at.omega in speeds}
+        if shown:
+            fields = {o: certain(at.frequency * units.frequencies, at.uncertainty) for o, at in shown.items()}
+            largest = max(at.uncertainty for at in shown.values())
+            out.add_row(mode.label, *[fields.get(omega, "") for omega in speeds], relative(largest))
     return out

@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from scipy.special import jn_zeros
 
-from southwell.cases.campbell.diagram import Campbell, Wanted, campbell, rises
+from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell, rises
 from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
 from southwell.cases.campbell.sweep import sweep
+from southwell.cases.campbell.tracked import tracked
 from southwell.cases.campbell.variation import Variation, variations
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
@@ -41,14 +42,14 @@ def southwell(omega: float) -> Modes:
 
 
 def diagram(**changes: object) -> Campbell:
-    wanted = Wanted(tuple(np.linspace(0.0, 4.0, 17)), modes=2, per_rev=(1, 2, 3), operating=(1.0, 2.0))
-    return campbell(BLADE, replace(wanted, **changes), southwell)  # type: ignore[arg-type]
+    request = CampbellRequest(tuple(np.linspace(0.0, 4.0, 17)), modes=2, per_rev=(1, 2, 3), operating=(1.0, 2.0))
+    return campbell(BLADE, replace(request, **changes), southwell)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
 def veering() -> Campbell:
-    wanted = Wanted(tuple(np.linspace(0.0, 6.0, 13)), modes=3, per_rev=(1, 2, 3), operating=(1.5, 5.0))
-    return campbell(BLADE, wanted, oscillators(1.5))
+    request = CampbellRequest(tuple(np.linspace(0.0, 6.0, 13)), modes=3, per_rev=(1, 2, 3), operating=(1.5, 5.0))
+    return campbell(BLADE, request, oscillators(1.5))
 
 
 def test_southwells_coefficients_are_those_the_modes_were_made_with() -> None:
@@ -63,7 +64,7 @@ def test_southwells_coefficients_are_those_the_modes_were_made_with() -> None:
 def test_a_fits_residual_is_its_largest_deviation() -> None:
     """ω² = 4 + Ω⁴ at Ω = 0, 1, 2: least squares gives a = 10/3…, by hand: Ω² = (0, 1, 4), ω² = (4, 5, 20)."""
     bent = lambda omega: replace(southwell(omega), frequencies=np.sqrt([4.0 + omega**4, 400.0 + omega**2]))  # noqa: E731
-    found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), bent).southwell[0]
+    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), bent).southwell[0]
     x, y = np.array([0.0, 1.0, 4.0]), np.array([4.0, 5.0, 20.0])
     slope = ((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum()
     rest = y.mean() - slope * x.mean()
@@ -135,22 +136,24 @@ def test_what_cannot_be_asked_is_told(changes: dict[str, object], phrase: str) -
 
 
 def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: Campbell) -> None:
-    assert [veering.label(t) for t in range(3)] == ["flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1", "flapwise 2"]
-    assert veering.local[0] == ("flapwise 1", "edgewise 1", "flapwise 2")
-    assert [veering.label_at(0, omega) for omega in (0.1, 5.9)] == ["flapwise 1", "edgewise 1"]
-    assert veering.label_over(0, 0.0, 1.0) == "flapwise 1"
-    assert veering.label_over(0, 1.0, 5.0) == "flapwise 1 → edgewise 1"
+    labels = veering.labels
+    assert [labels[t] for t in range(3)] == ["flapwise 1 → edgewise", "edgewise 1 → flapwise", "flapwise 2"]
+    assert labels.names == ("flapwise 1", "edgewise 1", "flapwise 2")
+    assert [labels.at(0, omega) for omega in (0.1, 5.9)] == ["flapwise 1", "flapwise 1 (edgewise)"]
+    assert labels.over(0, 0.0, 1.0) == "flapwise 1"
+    assert labels.over(0, 1.0, 5.0) == "flapwise 1 → edgewise"
+    assert labels.over(0, 5.0, 5.9) == "flapwise 1 (edgewise)"
 
 
 def test_the_speed_without_a_steady_state_is_told() -> None:
     blade = library.load("park-cantilever").variants[0].blade
     with pytest.raises(CaseError, match=r"speed: 100000 rad/s: .*give lower speeds"):
-        campbell(blade, Wanted((0.0, 1e5), modes=2, elements=8))
+        campbell(blade, CampbellRequest((0.0, 1e5), modes=2, elements=8))
 
 
 def test_core_has_the_modes_at_n_per_revolution_where_the_diagram_says() -> None:
     blade = library.load("park-blade").variants[0].blade
-    found = campbell(blade, Wanted(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))
+    found = campbell(blade, CampbellRequest(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))
     assert len(found.resonances) >= 4
     for r in found.resonances:
         solved = modes(blade, r.omega, 15, 3).frequencies
@@ -214,7 +217,7 @@ def texts(figure: Figure) -> list[str]:
 def test_the_figure_names_modes_rays_the_range_and_the_veering(veering: Campbell) -> None:
     said = texts(draw(veering, RPM, "oscillators"))
     assert {"1P", "2P", "3P", "operating"} <= set(said)
-    for label in ("flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1", "flapwise 2"):
+    for label in ("flapwise 1 → edgewise", "edgewise 1 → flapwise", "flapwise 2"):
         assert any(text.startswith(f"{label}  ") for text in said)
     gap = next(text for text in said if text.startswith("veering\n"))
     exact = (np.sqrt(EDGE + 1.5) - np.sqrt(EDGE - 1.5)) / (2 * np.pi)
@@ -235,7 +238,7 @@ def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> 
 
 def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
     close = lambda omega: replace(southwell(omega), frequencies=np.array([5.0, 5.01]))  # noqa: E731
-    shown = draw(campbell(BLADE, Wanted((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
+    shown = draw(campbell(BLADE, CampbellRequest((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
     shown.canvas.draw()
     labels = [t for t in shown.findobj(Text) if t.get_text().startswith(("flapwise 1 ", "edgewise 1 "))]  # type: ignore[attr-defined]
     boxes = [t.get_window_extent() for t in labels]
@@ -289,8 +292,8 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
         shapes[1, :, 1 if omega < 1.2 else 0] = STATIONS
         return Modes(omega, np.array([5.0, 9.0]), shapes, 10, uncertainty=np.zeros(2))
 
-    found = campbell(BLADE, Wanted((0.0, 1.0, 2.0), modes=2), jump)
-    phrase = verdict(replace(found, wanted=replace(found.wanted, operating=(0.5, 1.5))), RAD_S)
+    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), jump)
+    phrase = verdict(replace(found, request=replace(found.request, operating=(0.5, 1.5))), RAD_S)
     assert "Not judged, because not tracked over the whole range: " in phrase
     (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Ambiguous tracking")
     assert sheet.rows[0][0] == "edgewise 1"
@@ -335,7 +338,9 @@ def test_a_mode_has_one_name_in_every_command() -> None:
     stiffness = np.repeat(section_stiffness(1e7, 1e3, 1e4, 2e4), 6, axis=0)
     blade = Blade("twisted", stations, stiffness, mass, stations * np.pi / 4)
     speeds = (0.0, 10.0)
-    found = campbell(blade, Wanted(speeds, modes=8, elements=20))
+    found = campbell(blade, CampbellRequest(speeds, modes=8, elements=20))
+    modes = tracked(blade, CampbellRequest(speeds, modes=8, elements=20))
+    assert [mode.label for mode in modes] == [found.labels[t] for t in range(found.tracks.count)]
     for k, rows in enumerate(sweep(blade, speeds, 20, 8)):
-        assert tuple(row.name for row in rows) == found.local[k][: len(rows)]
+        assert tuple(row.name.split()[0] for row in rows) == found.labels.families[k][: len(rows)]
         assert any(row.name.startswith("mixed") for row in rows)

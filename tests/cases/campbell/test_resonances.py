@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from southwell.cases.campbell.diagram import Campbell, Wanted, campbell
+from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
 from southwell.cases.input import library
 from southwell.core.blade import Blade
 from southwell.core.element.discretize import discretize
@@ -40,8 +40,8 @@ def _meets(blade: Blade, n: int, mode: int, between: np.ndarray) -> float:
 
 
 def coarse(blade: Blade, top: float) -> Campbell:
-    wanted = Wanted((0.0, 0.5 * top, top), modes=MODES, per_rev=PER_REV)
-    return campbell(blade, wanted, lambda omega: mesh_modes(blade, omega, ELEMENTS, MODES + 4))
+    request = CampbellRequest((0.0, 0.5 * top, top), modes=MODES, per_rev=PER_REV)
+    return campbell(blade, request, lambda omega: mesh_modes(blade, omega, ELEMENTS, MODES + 4))
 
 
 @pytest.mark.parametrize("name", BLADES)
@@ -99,8 +99,8 @@ def meeting(square: Callable[[float], float]) -> Callable[[float], Modes]:
 
 def bent(bottom: float) -> Campbell:
     """ω² = 4 Ω² + 0.2 (Ω² − 5)² + ``bottom``, solved at four speeds."""
-    wanted = Wanted((0.5, 1.5, 2.5, 3.5), modes=1, per_rev=(2,))
-    return campbell(BLADE, wanted, meeting(lambda x: 4 * x + 0.2 * (x - 5) ** 2 + bottom))
+    request = CampbellRequest((0.5, 1.5, 2.5, 3.5), modes=1, per_rev=(2,))
+    return campbell(BLADE, request, meeting(lambda x: 4 * x + 0.2 * (x - 5) ** 2 + bottom))
 
 
 @pytest.mark.parametrize("bottom", [-1e-3, -0.02, -0.1])
@@ -127,8 +127,8 @@ def test_a_near_miss_within_the_uncertainty_is_not_excluded() -> None:
 
 def test_a_crossing_has_the_uncertainty_of_its_frequency() -> None:
     """ω² = 4 + 1.5 Ω² meets 2 per revolution at Ω² = 1.6; dΩ/Ω = n²/(n² − φ) dω/ω = 1.6e-7."""
-    wanted = Wanted((0.0, 2.0), modes=1, per_rev=(2,))
-    found = campbell(BLADE, wanted, meeting(lambda x: 4 + 1.5 * x))
+    request = CampbellRequest((0.0, 2.0), modes=1, per_rev=(2,))
+    found = campbell(BLADE, request, meeting(lambda x: 4 + 1.5 * x))
     (r,) = found.resonances
     assert r.omega == pytest.approx(np.sqrt(1.6), rel=1e-12)
     assert r.uncertainty == pytest.approx(1.6e-7, rel=1e-2)
@@ -143,7 +143,7 @@ def test_a_mode_that_is_lost_where_it_crosses_is_a_warning() -> None:
         shapes[1, :, 1 if omega < 1.495 else 0] = STATIONS
         return Modes(omega, np.array([5.0, 8.97]), shapes, 10, uncertainty=np.zeros(2))
 
-    found = campbell(BLADE, Wanted((0.0, 1.0, 1.8), modes=2, per_rev=(3, 6)), jump)
+    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 1.8), modes=2, per_rev=(3, 6)), jump)
     (lost,) = found.unlisted
     assert (lost.per_rev, lost.number) == (6, 1)
     assert lost.omega[0] < 1.495 <= lost.omega[1]

@@ -108,11 +108,10 @@ def test_what_the_smallest_step_cannot_settle_is_a_crossing_with_a_gap_no_wider_
     assert e.omega == pytest.approx(MEETING, abs=tracks.smallest)
 
 
-def test_a_doubt_that_stays_is_kept_and_not_guessed_away(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_doubt_that_stays_is_kept_and_not_guessed_away() -> None:
     """No smaller steps allowed: up to the veering's middle the shapes have turned by 45° less what they were turned at rest."""
-    monkeypatch.setattr(tracking, "SMALLEST", 1.0)
     coupling = 2.0
-    tracks = track(oscillators(coupling), [0.0, float(MEETING), 6.0], WEIGHT, 2)
+    tracks = track(oscillators(coupling), [0.0, float(MEETING), 6.0], WEIGHT, 2, smallest_step=1.0)
     turned = np.pi / 4 - 0.5 * np.arctan2(2 * coupling, EDGE - FLAP)
     first = [d for d in tracks.doubts if d.omega[0] == 0.0]
     assert {d.track for d in first} == {0, 1}

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.text import Text
 
-from southwell.cases.campbell.diagram import Campbell, Wanted, campbell
+from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
 from southwell.cases.campbell.elastodyn_shapes import DIGITS, POWERS, Polynomial, as_it_is, fit, polynomials, principal
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
@@ -142,7 +142,7 @@ def test_a_blade_without_the_modes_that_elastodyn_needs_is_reported() -> None:
 
 @pytest.fixture(scope="module")
 def found() -> Campbell:
-    return campbell(BLADE, Wanted((0.0, 2.0), modes=3), oscillators(1.5))
+    return campbell(BLADE, CampbellRequest((0.0, 2.0), modes=3), oscillators(1.5))
 
 
 def test_shapes_are_scaled_to_a_largest_displacement_of_one(found: Campbell) -> None:
@@ -156,7 +156,7 @@ def test_shapes_are_scaled_to_a_largest_displacement_of_one(found: Campbell) -> 
 def test_shapes_are_in_the_blades_axes() -> None:
     """Precone and pitch turn a blade's flap out of the hub's z; in the blade's axes it remains flap."""
     for turned in (replace(BEAM, precone=0.3), replace(BEAM, pitch=0.5)):
-        drawn = campbell(turned, Wanted((0.0, 1.0), modes=2, elements=12))
+        drawn = campbell(turned, CampbellRequest((0.0, 1.0), modes=2, elements=12))
         _, shapes = scaled(drawn, 0)
         assert np.abs(shapes[0, :, [0, 1]]).max() < 1e-6
         assert shapes[0, -1, 2] == pytest.approx(1.0)
@@ -227,10 +227,10 @@ def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without
 def test_flap_and_edge_of_the_iea_15mw_blade_veer_near_0_8_hz() -> None:
     file = Path(str(BLADES)) / "iea15" / "IEA-15-240-RWT_ElastoDyn_blade.dat"
     blade = elastodyn.read(file, Mount(length=117.0, hub_radius=3.97)).blade
-    drawn = campbell(blade, Wanted(tuple(np.arange(0.0, 45.1, 2.5) * np.pi / 30), modes=3, elements=30))
+    drawn = campbell(blade, CampbellRequest(tuple(np.arange(0.0, 45.1, 2.5) * np.pi / 30), modes=3, elements=30))
     (met,) = drawn.encounters
     assert met.kind == "veering"
     assert met.frequency / (2 * np.pi) == pytest.approx(0.8, abs=0.03)
     assert met.exchanged > 0.8
-    assert [drawn.label(t) for t in (0, 1)] == ["flapwise 1 → edgewise 1", "edgewise 1 → flapwise 1"]
+    assert [drawn.labels[t] for t in (0, 1)] == ["flapwise 1 → edgewise", "edgewise 1 → flapwise"]
     assert not drawn.tracks.doubts

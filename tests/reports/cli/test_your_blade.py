@@ -9,6 +9,7 @@ import pytest
 from rich.console import Console
 
 from southwell.cases.campbell.sweep import Named
+from southwell.cases.campbell.tracked import TrackedMode
 from southwell.cases.judge import results
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
@@ -133,8 +134,9 @@ def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
         for rpm in range(0, 3 * count, 3)
         for mode in (1, 2)
     ]
+    modes = [TrackedMode(f"edgewise {k}", tuple(row for row in rows if row.mode == k)) for k in (1, 2)]
     console = Console(width=80, file=StringIO(), highlight=False)
-    for table in terminal.frequencies(rows, "a blade", RPM, 80):
+    for table in terminal.frequencies(modes, "a blade", RPM, 80):
         console.print(table)
     shown = console.file.getvalue()  # type: ignore[attr-defined]
     assert "…" not in shown
