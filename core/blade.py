@@ -26,6 +26,9 @@ Array = NDArray[np.float64]
 
 AXIAL, SHEAR_Y, SHEAR_Z, TORSION, BEND_Y, BEND_Z = range(6)
 
+COUPLING_ROUNDING = 1e-12
+"""Largest off-diagonal entry, of a matrix scaled to a unit diagonal, that counts as rounding."""
+
 
 @dataclass(frozen=True)
 class Blade:
@@ -42,7 +45,8 @@ class Blade:
         twist: (n,) structural twist, rad.
         curve: (n, 3) reference curve from the root in blade axes (prebend, sweep), m; straight along x by default. A cubic
             spline of the arc length interpolates between stations.
-        hub_radius: distance from the rotor's axis to the root, m.
+        hub_radius: distance from the hub's centre to the root, m, measured along the coned axis of the blade: the root is
+            hub_radius × cos(precone) from the rotor's axis.
         precone: tilt of the blade's axis from the plane of rotation towards +z, rad.
         pitch: rotation of the whole blade about its axis at the root, rad; same sense as twist.
         tip_mass: (6, 6) inertia of a rigid body at the tip, in the tip section's axes.
@@ -213,12 +217,14 @@ def _interpolate(stations: Array, values: Array, s: ArrayLike) -> Array:
 
 def coupled(blade: Blade) -> bool:
     """Whether any section has off-diagonal stiffness or mass about the reference curve."""
+    return _off_diagonal(blade.stiffness) or _off_diagonal(blade.mass)
+
+
+def _off_diagonal(matrices: Array) -> bool:
+    """Whether an entry (i, j) of matrices (n, 6, 6) exceeds the fraction ``COUPLING_ROUNDING`` of √(dᵢ dⱼ), d the diagonal."""
+    d = np.sqrt(np.diagonal(matrices, axis1=1, axis2=2))
     off = ~np.eye(6, dtype=bool)
-    scale = np.where(np.isinf(blade.stiffness), 0.0, np.abs(blade.stiffness)).max()
-    return bool(
-        (np.abs(blade.stiffness[:, off]) > 1e-12 * scale).any()
-        or (np.abs(blade.mass[:, off]) > 1e-12 * np.abs(blade.mass).max()).any()
-    )
+    return bool((np.abs(matrices) > COUPLING_ROUNDING * (d[:, :, None] * d[:, None, :]))[:, off].any())
 
 
 def straight(blade: Blade) -> bool:

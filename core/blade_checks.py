@@ -23,7 +23,7 @@ MAX_ROOT_OFFSET = 0.2
 """Largest distance of the curve's first point from the x axis, as a fraction of the length."""
 
 MIN_LENGTH, MAX_LENGTH = 1e-6, 1e4
-"""Limits of the length, m; the second also of the hub radius. Beyond them a length is in another unit."""
+"""Limits of the length, m; the second also of the hub radius. Values outside usually mean a wrong unit."""
 
 MAX_PRECONE, MAX_PITCH = 90.0, 180.0
 """Largest magnitudes, degrees. At a precone of 90° the blade is parallel to the rotor's axis, like a shaft."""
@@ -46,6 +46,9 @@ MASS_TOLERANCE, INERTIA_TOLERANCE = 1e-4, 1e-2
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest asymmetry of a matrix scaled to a unit diagonal."""
+
+ZERO_MOMENT = 1e-9
+"""Smallest moment of inertia, as a fraction of the largest, that scales a matrix; smaller ones may be rounding of zero."""
 
 STRAINS = ("axial", "shear y", "shear z", "torsion", "bending about y", "bending about z")
 
@@ -85,7 +88,7 @@ def _arrays(blade: "Blade") -> None:
         finite = ~np.isnan(value) if name in ("stiffness", "root") else np.isfinite(value)
         if not finite.all():
             where = np.argwhere(~finite)[0].tolist()
-            raise BladeError(f"{name}: not a finite number at index {where}: a gap in the table? give every value")
+            raise BladeError(f"{name}: not a finite number at index {where}: give every value")
 
 
 def _stations(blade: "Blade") -> None:
@@ -102,17 +105,14 @@ def _stations(blade: "Blade") -> None:
         )
     if not MIN_LENGTH <= blade.stations[-1] <= MAX_LENGTH:
         raise BladeError(
-            f"length: {blade.stations[-1]:g} m: not between {MIN_LENGTH:g} and {MAX_LENGTH:g} m: another unit? correct it"
+            f"length: {blade.stations[-1]:g} m: not between {MIN_LENGTH:g} and {MAX_LENGTH:g} m: check the unit"
         )
     if not 0.0 <= blade.hub_radius <= MAX_LENGTH:
-        raise BladeError(
-            f"hub_radius: {blade.hub_radius:g} m: a distance from the rotor's axis, 0 to {MAX_LENGTH:g} m: another unit? "
-            "correct it"
-        )
+        raise BladeError(f"hub_radius: {blade.hub_radius:g} m: not between 0 and {MAX_LENGTH:g} m: check the unit")
     for name, most in (("precone", MAX_PRECONE), ("pitch", MAX_PITCH)):
         angle = np.degrees(getattr(blade, name))
         if not abs(angle) <= most + 1e-9:
-            raise BladeError(f"{name}: {angle:.6g} degrees: beyond ±{most:g}: another unit? correct it")
+            raise BladeError(f"{name}: {angle:.6g} degrees: beyond ±{most:g}: check the unit")
     if (blade.root < 0).any():
         raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for clamped")
 
@@ -146,9 +146,10 @@ def _curve(blade: "Blade") -> None:
     allowed = ARC_TOLERANCE * step + COORDINATE_ROUNDING * length
     if (chord > step + allowed).any():
         k = int(np.argmax(chord - step - allowed))
+        spans = "the stations are spans along x; " if np.allclose(step, np.diff(r[:, 0]), rtol=1e-3) else ""
         raise BladeError(
             f"curve: its points at {s[k]:g} m and {s[k + 1]:g} m are {chord[k]:.6g} m apart, but their arc lengths differ by "
-            f"{step[k]:.6g} m: are the stations spans along x, or in another unit? give the arc length along the curve"
+            f"{step[k]:.6g} m: {spans}give the arc length along the curve, in the unit of the curve"
         )
     arc = lengths(s, r, blade.kinks)
     if (np.abs(arc - step) > allowed).any():
@@ -157,7 +158,7 @@ def _curve(blade: "Blade") -> None:
     if (ends[:, 0] < MIN_TANGENT_X * np.linalg.norm(ends, axis=1)).any():
         k = int(np.argmin(ends[:, 0])) % len(s)
         raise BladeError(
-            f"curve: turns back towards the hub at {s[k]:g} m: are x, y and z in another order? x runs along the blade"
+            f"curve: turns back towards the hub at {s[k]:g} m: x must run along the blade; check the order of x, y and z"
         )
 
 
@@ -189,10 +190,7 @@ def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array
             f"the curve turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points there, or declare a kink: "
             f"kinks = [{corner:g}]"
         )
-    return (
-        f"{found} it is {arc[k]:.6g} m long, but the stations differ by {step:.6g} m: stations that are not arc lengths, or a "
-        "misplaced point? correct either"
-    )
+    return f"{found} it is {arc[k]:.6g} m long, but the stations differ by {step:.6g} m: check the arc lengths and the points"
 
 
 def _stiffness(blade: "Blade") -> None:
@@ -200,7 +198,7 @@ def _stiffness(blade: "Blade") -> None:
     for k, i, _ in np.argwhere(rigid != rigid.any(0))[:1]:
         raise BladeError(
             f"stiffness: {STRAINS[i]} at station {k} ({blade.stations[k]:g} m) is finite but rigid at other stations: a "
-            "strain is rigid at all stations or at none; give inf, or a number, at every station"
+            "strain must be rigid (inf) at every station or at none"
         )
     rigid_entry = rigid.any(0)
     d = np.diagonal(blade.stiffness, axis1=1, axis2=2)
@@ -208,7 +206,7 @@ def _stiffness(blade: "Blade") -> None:
         k, i = np.argwhere(d <= 0)[0]
         raise BladeError(
             f"stiffness: diagonal {i} ({STRAINS[i]}) at station {k} ({blade.stations[k]:g} m) is {d[k, i]:g}: it must be "
-            "positive; wrong sign or unit?"
+            "positive; check its sign and unit"
         )
     rigid_d = np.isinf(d[0])
     coupled = rigid_entry & ~np.eye(6, dtype=bool) | (blade.stiffness != 0).any(0) & (rigid_d[:, None] ^ rigid_d)
@@ -222,17 +220,17 @@ def _stiffness(blade: "Blade") -> None:
     wrong = np.abs(unit - np.swapaxes(unit, 1, 2))
     if wrong.max() > SYMMETRY_TOLERANCE:
         k, i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
-        one, other = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
+        above, below = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
         raise BladeError(
-            f"stiffness: entries ({i}, {j}) and ({j}, {i}) at station {k} ({blade.stations[k]:g} m) are {one:g} and "
-            f"{other:g}: it must be symmetric; one triangle only, or a sign lost? correct one"
+            f"stiffness: entries ({i}, {j}) and ({j}, {i}) at station {k} ({blade.stations[k]:g} m) are {above:g} and "
+            f"{below:g}: it must be symmetric; supply both triangles with equal entries"
         )
     least = np.linalg.eigvalsh(unit)[:, 0]
     if least.min() <= 0:
         k = int(least.argmin())
         raise BladeError(
             f"stiffness: at station {k} ({blade.stations[k]:g} m) not positive definite (least eigenvalue {least[k]:.2g} of a "
-            "unit diagonal): a coupling too large, or in the wrong unit? correct it"
+            "unit diagonal): a coupling is too large; check the off-diagonal entries and their units"
         )
 
 
@@ -243,33 +241,35 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     ``J + m c× c×``, must be those of a distribution of mass: none negative, none larger than the sum of the other two.
     ``unit`` is the unit of the mass.
     """
-    scale = np.abs(matrix).max()
     m, J = matrix[0, 0], matrix[3:, 3:]
     d = np.diag(matrix)
     if (d < 0).any() or (m == 0 and matrix[:3].any()) or (unit != "kg" and m == 0):
         i = int(np.argmin(d)) if (d < 0).any() else 0
         return (
-            f"diagonal {i} is {d[i]:g} {unit if i < 3 else ''}".rstrip() + ": it must be positive; wrong sign or unit?"
+            f"diagonal {i} is {d[i]:g} {unit if i < 3 else ''}".rstrip()
+            + ": it must be positive; check its sign and unit"
         )
     if np.ptp(d[:3]) > MASS_TOLERANCE * m:
         return (
-            f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has the same mass in all directions; columns "
-            "shifted in the table? give one mass"
+            f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has the same mass in all directions; check "
+            "the order of the columns"
         )
-    size = np.maximum(np.sqrt(d)[:, None] * np.sqrt(d), 1e-9 * scale)  # np.outer(d, d) may underflow
-    wrong = np.abs(matrix - matrix.T) / size
-    if wrong.max() > SYMMETRY_TOLERANCE:
+    size = np.sqrt(
+        np.maximum(d, ZERO_MOMENT * np.repeat([m, d[3:].max()], 3))
+    )  # of a unit diagonal; np.outer may underflow
+    wrong = np.abs(matrix - matrix.T) - SYMMETRY_TOLERANCE * (size[:, None] * size)
+    if (wrong > 0).any():
         i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
         return (
-            f"entries ({i}, {j}) and ({j}, {i}) are {matrix[i, j]:g} and {matrix[j, i]:g}: it must be symmetric; one "
-            "triangle only, or a sign lost? correct one"
+            f"entries ({i}, {j}) and ({j}, {i}) are {matrix[i, j]:g} and {matrix[j, i]:g}: it must be symmetric; supply "
+            "both triangles with equal entries"
         )
     linear = np.abs(np.triu(matrix[:3, :3], 1))
     if linear.max() > MASS_TOLERANCE * m:
         i, j = np.unravel_index(int(linear.argmax()), (3, 3))
         return (
-            f"entry ({i}, {j}) is {matrix[i, j]:g}: motion along one axis has no momentum along another; wrong order of "
-            "rows? make it 0"
+            f"entry ({i}, {j}) is {matrix[i, j]:g}: motion along one axis has no momentum along another; check the "
+            "order of the rows"
         )
     moment = matrix[:3, 3:]
     even = np.abs(moment + moment.T)
@@ -277,15 +277,20 @@ def body_fault(matrix: Array, unit: str) -> str | None:
         i, j = np.unravel_index(int(even.argmax()), (3, 3))
         return (
             f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: they must be opposite "
-            "(mass times offset of the centre), 0 on the diagonal; wrong sign or order of rows? correct them"
+            "(mass times offset of the centre), 0 on the diagonal; check signs and the order of the rows"
         )
-    _, centre, moments = about_centre(matrix)
+    *_, moments = about_centre(matrix)
     least, middle, most = np.linalg.eigvalsh(moments)
     rounding = INERTIA_TOLERANCE * np.trace(J)
-    if least < -rounding or (m * np.abs(centre).max() ** 2 > 1e-12 * scale and not np.trace(J)):
+    if (smallest := np.linalg.eigvalsh(J)[0]) < -rounding:
         return (
-            f"smallest moment of inertia about the mass centre is {least:.3g}: negative; were the moments given about the "
-            "mass centre? give them about the reference point, m d² included"
+            f"smallest principal moment of inertia is {smallest:.3g}: the products of inertia are too large for the moments; "
+            "check both"
+        )
+    if least < -rounding:
+        return (
+            f"smallest moment of inertia about the mass centre is {least:.3g}: negative; give the moments about the reference "
+            "point, m d² included"
         )
     if most - middle - least > rounding:
         return (

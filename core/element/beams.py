@@ -152,10 +152,16 @@ def bushing(
         ValueError: if the stiffness is not a symmetric 6×6 matrix.
     """
     k = np.asarray(stiffness, float)
-    if k.shape != (6, 6) or not np.allclose(k, k.T, rtol=1e-9, atol=1e-12 * np.abs(k).max()):
+    if k.shape != (6, 6) or not _symmetric(k):
         raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
     load = np.zeros(6) if preload is None else np.asarray(preload, float)
     return Beams(measures.even(measure, undeformed[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
+
+
+def _symmetric(k: Array) -> bool:
+    """Whether a stiffness (6, 6) is symmetric within rounding; scaled by its force and moment blocks."""
+    size = np.sqrt(np.repeat([np.abs(k[:3, :3]).max(), np.abs(k[3:, 3:]).max()], 3))
+    return bool((np.abs(k - k.T) <= 1e-9 * np.abs(k) + 1e-12 * size[:, None] * size).all())
 
 
 def linear_force(beams: Beams, rho: Array) -> Array:
