@@ -20,7 +20,7 @@ def _cell(mode: int, **changes: Any) -> Cell:
     values: dict[str, Any] = {
         "case": "canary", "omega": 10.0, "mode": mode, "family": "flapwise", "code": "bird", "version": "1", "role": "code",
         "frequency": 10.0 * mode, "reference": 10.0 * mode, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3,
-        "verdict": "pass", "shares": "nothing", "seconds": 0.1,
+        "verdict": "pass", "shares": "nothing",
     }  # fmt: skip
     return Cell(**{**values, **changes})
 

@@ -7,7 +7,6 @@ within them may be due to another refinement. What has moved is information and 
 a cell of either release does.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -154,13 +153,3 @@ def _compared(
 ) -> Comparison:
     changes = tuple(change(before.get(key), after.get(key)) for key in dict.fromkeys((*before, *after)))
     return Comparison(installed(code), code, changes)
-
-
-def smallest(changes: Sequence[Change]) -> Change:
-    """The change whose question (all modes of one blade at one speed) is answered fastest; of its modes, the largest."""
-
-    def cost(one: Change) -> tuple[float, float]:
-        seconds = sum(cell.seconds or 0.0 for cell in (one.before, one.after) if cell)
-        return seconds, -abs(one.relative or 0.0)
-
-    return min(changes, key=cost)

@@ -57,7 +57,6 @@ class Cell:
         elements: number of elements of the finest refinement used.
         order: observed order of convergence, if available.
         mac: mass-weighted MAC of the pairing.
-        seconds: wall time of the finest solution.
         ordinal: number of the mode within its family, counted over all of core's modes at this speed, from 1; 0 without a
             mode.
     """
@@ -80,7 +79,6 @@ class Cell:
     elements: int | None = None
     order: float | None = None
     mac: float | None = None
-    seconds: float | None = None
     shares: str = ""
     ordinal: int = 0
 

@@ -1,4 +1,4 @@
-"""Comparison of a run with an earlier one: moved, worse and missing answers, and timings, which are informational.
+"""Comparison of a run with an earlier one: moved, worse and missing answers.
 
 Cells are identified by case, code, rotor speed and mode. A run fails for a new miss (including that of a new cell), a
 missing answer, a wider target, or a seeded fault that is no longer detected. Moved frequencies are listed and fail a run
@@ -9,16 +9,11 @@ cannot fail a run.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..judge.results import Verdict
 from .history import Detection, Entry, Key, Point
 
 MOVED = 1e-9
 """Relative change above which a frequency counts as moved."""
-
-RUNS = 20
-"""Maximum number of earlier runs on the same machine used to estimate the variation of times."""
 
 RANK: dict[Verdict, int] = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 3, "fail": 4}
 """Severity of a verdict; other verdicts are not answers. ``measured`` is absent: data are not judged."""
@@ -50,32 +45,6 @@ class Gone:
 
 
 @dataclass(frozen=True)
-class Timing:
-    """Times of one code in both runs, for the solutions that both have.
-
-    Attributes:
-        code: name of the code.
-        before: total time in the earlier run, s.
-        after: total time in the later run, s.
-        ratios: after over before per blade and speed: lower quartile, median, upper quartile.
-        earlier: least and most total time in earlier runs on the same machine, s; None with fewer than two.
-    """
-
-    code: str
-    before: float
-    after: float
-    ratios: tuple[float, float, float]
-    earlier: tuple[float, float] | None
-
-    @property
-    def noise(self) -> bool:
-        """Whether the change is within the usual variation of times."""
-        if self.earlier:
-            return self.earlier[0] <= self.after <= self.earlier[1]
-        return self.ratios[0] <= 1.0 <= self.ratios[2]
-
-
-@dataclass(frozen=True)
 class Comparison:
     """Comparison of two runs.
 
@@ -90,7 +59,6 @@ class Comparison:
         gone: missing answers.
         new: cells with an answer that had none.
         undetected: seeded faults that are no longer detected; all of them if none is run any more.
-        timings: times by code; informational.
         missed: seeded faults that this run does not detect.
     """
 
@@ -102,7 +70,6 @@ class Comparison:
     gone: tuple[Gone, ...]
     new: tuple[Point, ...]
     undetected: tuple[Detection, ...]
-    timings: tuple[Timing, ...]
     missed: tuple[str, ...] = ()
     loosened: tuple[Change, ...] = ()
     measured: int = 0
@@ -138,7 +105,6 @@ def within(entry: Entry, other: Entry) -> Entry:
 def compare(
     before: Entry,
     after: Entry,
-    earlier: Sequence[Entry] = (),
     tolerance: float = MOVED,
     missed: Sequence[str] = (),
 ) -> Comparison:
@@ -146,7 +112,6 @@ def compare(
 
     Args:
         missed: names of undetected faults, see ``results.Control``.
-        earlier: runs used to estimate the variation of times, if from the same machine.
         tolerance: relative change above which a frequency counts as moved.
     """
     old = {p.key: p for p in before.cells}
@@ -164,7 +129,6 @@ def compare(
         gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
         new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
         undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, bool(tried))),
-        timings=tuple(_timings(before, after, [e for e in earlier if e.machine == after.machine][-RUNS:])),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
         measured=sum(p.verdict == "measured" for p in after.cells),
@@ -199,28 +163,3 @@ def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
     due = [p for p in old.values() if p.frequency is not None and p.verdict != "measured"]
     gone = [p for p in due if p.key not in answered]
     return [Gone(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0))) for p in gone]
-
-
-Solution = tuple[str, str, float]
-"""Code, case, rotor speed: key of a time."""
-
-
-def _seconds(entry: Entry) -> dict[Solution, float]:
-    return {(p.code, p.case, p.omega): p.seconds for p in entry.cells if p.seconds}
-
-
-def _timings(before: Entry, after: Entry, earlier: Sequence[Entry]) -> list[Timing]:
-    then, now = _seconds(before), _seconds(after)
-    past = [_seconds(e) for e in earlier]
-    out = []
-    for code in dict.fromkeys(solution[0] for solution in now):
-        both = [s for s in now if s[0] == code and s in then]
-        if not both:
-            continue
-        ratios = [now[s] / then[s] for s in both]
-        low, middle, high = np.percentile(ratios, (25, 50, 75)).tolist()
-        totals = [sum(run[s] for s in both) for run in past if all(s in run for s in both)]
-        spread = (min(totals), max(totals)) if len(totals) > 1 else None
-        total = sum(then[s] for s in both), sum(now[s] for s in both)
-        out.append(Timing(code, *total, (low, middle, high), spread))
-    return out

@@ -31,7 +31,6 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
     difference: float | None
     uncertainty: float | None
     verdict: Verdict
-    seconds: float | None
     target: float | None = None
 
     @property
@@ -60,7 +59,7 @@ class Entry:
     Attributes:
         commit: commit of the code that was run, or any other name of its state.
         date: time of the entry: ISO 8601, UTC.
-        machine: description of the machine; timings are comparable on equal machines.
+        machine: description of the machine, on which rounding depends.
         versions: package or code → version.
         cells: in the run's order.
         controls: in the run's order.
@@ -100,7 +99,6 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
                 difference=c.difference,
                 uncertainty=c.uncertainty,
                 verdict=c.verdict,
-                seconds=c.seconds,
                 target=c.target,
             )
             for c in run.cells

@@ -22,7 +22,7 @@ from ...references.protocol.overlay import ReleaseError
 from ...references.protocol.process import Limits
 from ...references.protocol.registry import at_release, release_of
 from ..input.schema import Case
-from ..judge.releases import Bisection, change, comparisons, smallest
+from ..judge.releases import Bisection, change, comparisons
 from ..judge.results import Cell, Run
 from . import mechanism_columns
 from .columns import Column, columns
@@ -63,7 +63,7 @@ def bisections(
 ) -> tuple[Bisection, ...]:
     """One bisection for each column of another release that moves a frequency, or gives or lacks an answer.
 
-    Each uses one question: the fastest of those with a moved frequency, or else with one answer missing.
+    Each uses one question: that of the largest change, or else one with an answer missing.
 
     Args:
         run: the results, with the columns of other releases.
@@ -77,7 +77,7 @@ def bisections(
     for found in comparisons(run):
         code, differing = known[found.code], found.moved or found.lost + found.gained
         if code.version and differing:  # without an installed release there is nothing to bisect
-            one = smallest(differing)
+            one = max(differing, key=lambda change: abs(change.relative or 0.0))
             case = _narrowed(cases, one.cell)
             question = Question(case, code, limits(case), one.cell.mode)
             release = release_of(known[found.other].asked)  # its code may not say, if it cannot be imported

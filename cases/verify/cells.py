@@ -275,7 +275,6 @@ def _row(head: Head, omega: float, i: int, reference: Reference, finest: Modes |
         empty(head, omega, "fail", partner.note),
         **_mode(reference, i),
         elements=finest.elements if finest else None,
-        seconds=finest.seconds if finest else None,
         mac=partner.mac if finest else None,
     )
 

@@ -177,7 +177,6 @@ def cells(head: Head, omega: float, reference: Reference, answer: Answer, count:
                 verdict=verdict,
                 reason=reason,
                 mac=float(likeness[i, k]),
-                seconds=answer.seconds,
             )
         )
     return out

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
-from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone, Timing
+from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
 from ...cases.regression.history import Detection, Entry, Point
 from ..shared.markdown import plain, table
 
@@ -57,14 +57,8 @@ def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
         ("Moved", [_change(c) for c in found.moved]),
         ("Better", [_change(c) for c in found.better]),
         ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
-        (_times(found), [_timing(t) for t in found.timings]),
     ]
     return [(title, rows) for title, rows in every if rows]
-
-
-def _times(found: Comparison) -> str:
-    same = found.before.machine == found.after.machine
-    return "Timings (informational)" + ("" if same else "; on different or unknown machines")
 
 
 def _place(point: Point) -> Row:
@@ -127,20 +121,6 @@ def _undetected(control: Detection) -> Row:
         "case": control.case,
         "speed, rad/s": f"{control.omega:.6g}",
         "was detected by": ", ".join(control.detected_by),
-    }
-
-
-def _timing(timing: Timing) -> Row:
-    low, middle, high = timing.ratios
-    earlier = f"{timing.earlier[0]:.3g} to {timing.earlier[1]:.3g}" if timing.earlier else "not known"
-    return {
-        "code": timing.code,
-        "from, s": f"{timing.before:.3g}",
-        "to, s": f"{timing.after:.3g}",
-        "ratio, median": f"{middle:.2f}",
-        "quartiles": f"{low:.2f} to {high:.2f}",
-        "earlier runs here, s": earlier,
-        "change": "within noise" if timing.noise else ("slower" if middle > 1 else "faster"),
     }
 
 

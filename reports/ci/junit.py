@@ -24,21 +24,17 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
 
     A cell fails if its verdict is a failure or inconclusive, or if the gate found it worse or, with ``strict``, moved.
     Missing answers, and negative controls that are no longer detected, are separate failed test cases. An incomplete
-    run adds a first test case with an error. The time of a solution is divided among its modes.
+    run adds a first test case with an error.
     """
     findings = _findings(found, strict) if found else {}
     root = Element("testsuites", name="southwell")
     if messages := summary.incomplete(run):
-        test = _test(SubElement(root, "testsuite", name="the run"), "southwell", "the run is complete", 0.0)
+        test = _test(SubElement(root, "testsuite", name="the run"), "southwell", "the run is complete")
         SubElement(test, "error", type="incomplete", message=_text(messages)).text = _text(messages)
-    shared: dict[tuple[str, str, float], int] = {}
-    for c in run.cells:
-        shared[c.case, c.code, c.omega] = shared.get((c.case, c.code, c.omega), 0) + 1
     for case in summary.cases(run):
         suite = SubElement(root, "testsuite", name=_text(case))
         for cell in (c for c in run.cells if c.case == case):
-            seconds = (cell.seconds or 0.0) / shared[cell.case, cell.code, cell.omega]
-            test = _test(suite, case, _name(cell.code, cell.mode, cell.family, cell.omega), seconds)
+            test = _test(suite, case, _name(cell.code, cell.mode, cell.family, cell.omega))
             _judge(test, cell, findings.get((cell.case, cell.code, cell.omega, cell.mode), ""))
     if found:
         _regressions(root, found)
@@ -68,14 +64,14 @@ def _regressions(root: Element, found: Comparison) -> None:
     suite = SubElement(root, "testsuite", name="against the earlier run")
     for gone in found.gone:
         p: Point = gone.point
-        test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega), 0.0)
+        test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega))
         _failed(test, "gone", f"the answer {p.frequency!r} rad/s is missing; now {gone.instead or 'nothing'}")
     for control in found.undetected:
         _lost(suite, control)
 
 
 def _lost(suite: Element, control: Detection) -> None:
-    test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s", 0.0)
+    test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s")
     _failed(test, "not detected", f"was detected by {', '.join(control.detected_by)}; no code detects it now")
 
 
@@ -84,8 +80,8 @@ def _name(code: str, mode: int, family: str, omega: float) -> str:
     return f"{code}: {which} at {omega:.6g} rad/s"
 
 
-def _test(suite: Element, case: str, name: str, seconds: float) -> Element:
-    return SubElement(suite, "testcase", classname=_text(case), name=_text(name), time=f"{seconds:.6f}")
+def _test(suite: Element, case: str, name: str) -> Element:
+    return SubElement(suite, "testcase", classname=_text(case), name=_text(name))
 
 
 def _judge(test: Element, cell: Cell, finding: str) -> None:

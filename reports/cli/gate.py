@@ -1,7 +1,6 @@
 """``southwell gate``: compares a run with an earlier one; status 1 if something got worse."""
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -44,7 +43,7 @@ def command(
     """Compare a run with an earlier one; status 1 if anything got worse.
 
     Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected. Changed frequencies are listed.
-    Run times are informational. An incomplete run does not pass: status 3.
+    An incomplete run does not pass: status 3.
 
     Parameters
     ----------
@@ -72,11 +71,11 @@ def command(
     after = history.entry(run, str(folder))
     if commit and not against:
         raise CaseError(f"--commit {commit}: no history: give its file by --against")
-    before, earlier = _before(against, commit) if against else (nothing(after), ())
+    before = _before(against, commit) if against else nothing(after)
     if partial:
         before = within(before, after)
     missed = [c.control for c in run.controls if c.missed]
-    gate = compare(before, after, earlier, tolerance, missed)
+    gate = compare(before, after, tolerance, missed)
     console = output()
     if message := incomplete(run):
         console.print(message, markup=False, soft_wrap=True)
@@ -97,12 +96,12 @@ def command(
     return PASSED if gate.passed(strict) else FAILED
 
 
-def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
-    """The run to compare with, and the runs from which the noise of run times is estimated."""
+def _before(path: Path, commit: str) -> Entry:
+    """The run to compare with."""
     if os.path.isdir(path) or _is_run(path):
         if commit:
             raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")
-        return replace(history.entry(finished(path), str(path)), date="", machine=""), ()
+        return replace(history.entry(finished(path), str(path)), date="", machine="")
     entries = load(path).entries
     if not entries:
         raise CaseError(f"--against {path}: no runs in it: add one by `southwell history add`")
@@ -111,7 +110,7 @@ def _before(path: Path, commit: str) -> tuple[Entry, Sequence[Entry]]:
         raise CaseError(
             f"--commit {commit}: not in {path}: {nearest(commit, dict.fromkeys(e.commit for e in entries))}"
         )
-    return chosen[-1], entries
+    return chosen[-1]
 
 
 def _is_run(path: Path) -> bool:

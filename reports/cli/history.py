@@ -31,7 +31,7 @@ def add(
 ) -> int:
     """Append a run to a history.
 
-    A run is one line of JSON with every frequency, difference, verdict and run time. Several jobs may append at the same time;
+    A run is one line of JSON with every frequency, difference and verdict. Several jobs may append at the same time;
     a truncated line does not affect the others.
 
     Parameters
@@ -43,7 +43,7 @@ def add(
     commit
         What was run. Default: the commit of the Git checkout in the current folder, with `-dirty` if it has changes.
     machine
-        Name of the machine; run times are compared only within one machine. Default: system and processors.
+        Name of the machine. Default: system and processors.
     """
     entry = history.entry(finished(folder), commit or _checked_out(), machine)
     with writable(f"--history {file}", "file"):

@@ -167,7 +167,6 @@ def _cell(c: Cell, u: Units) -> dict[str, Any]:
         "bar": (c.uncertainty or 0.0) * (c.reference or 0.0) * u.frequencies if c.verdict == "measured" else None,
         "elements": c.elements,
         "order": c.order,
-        "seconds": c.seconds,
     }
 
 

@@ -1,4 +1,4 @@
-"""The history as data: frequencies, differences and run times by run, and where they changed.
+"""The history as data: frequencies and differences by run, and where they changed.
 
 A difference is ``code/core − 1``, so each cell also gives core's frequency. If core changed, the change is attributed
 to core.
@@ -6,7 +6,6 @@ to core.
 
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import pairwise
 from math import inf
 from typing import Any
 
@@ -14,7 +13,6 @@ from ...cases.regression.gate import MOVED
 from ...cases.regression.history import Entry, History, Key
 from ..shared.summary import WORST_FIRST
 from .data import verdicts
-from .steps import frequency_steps, timing_steps
 
 CORE = "core"
 
@@ -22,14 +20,12 @@ CORE = "core"
 def of_history(history: History) -> dict[str, Any]:
     """All numbers of a history; a number that is the same in every run is stored once."""
     entries = history.entries
-    cells, timings = _cells(entries), _timings(entries)
     return {
         "runs": [_run(e) for e in entries],
         "torn": list(history.torn),
         "verdicts": verdicts(),
-        "steps": [*moves(entries), *_slower(timings)],
-        "cells": cells,
-        "timings": timings,
+        "steps": moves(entries),
+        "cells": _cells(entries),
     }
 
 
@@ -92,7 +88,7 @@ def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
     out = []
     for (k, who, case), where in found.items():
         (omega, mode), change = max(where.items(), key=_size)
-        step = {"run": k, "kind": "frequency", "who": who, "case": case, "count": len(where)}
+        step = {"run": k, "who": who, "case": case, "count": len(where)}
         out.append({**step, "change": change, "omega": omega, "mode": mode, "family": families[case, omega, mode]})
     return out
 
@@ -106,31 +102,13 @@ def _size(item: tuple[Any, float | None]) -> float:
     return inf if item[1] is None else abs(item[1])
 
 
-def _timings(entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """Run times of each code on each case, in seconds, summed over speeds, separately for each machine."""
-    series: dict[tuple[str, str, str], list[float | None]] = defaultdict(lambda: [None] * len(entries))
-    for k, entry in enumerate(entries):
-        spent: dict[tuple[str, str], dict[float, float]] = defaultdict(dict)
-        for p in entry.cells:
-            if p.seconds is not None:
-                spent[p.case, p.code][p.omega] = p.seconds
-        for (case, code), by_speed in spent.items():
-            series[case, code, entry.machine][k] = round(sum(by_speed.values()), 6)
-    return [
-        {"case": case, "code": code, "machine": machine, "values": values, "steps": timing_steps(values)}
-        for (case, code, machine), values in series.items()
-    ]
-
-
-def _slower(timings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """One row per run and code: the number of cases whose run time changed, and the largest change."""
-    found: dict[tuple[int, str], dict[str, float | None]] = defaultdict(dict)
-    for t in timings:
-        for (_, before), (k, after) in pairwise(t["steps"]):
-            found[k, t["code"]][t["case"]] = _change(before, after)
-    out = []
-    for (k, code), where in found.items():
-        case, change = max(where.items(), key=_size)
-        step = {"run": k, "kind": "time", "who": code, "case": case, "count": len(where)}
-        out.append({**step, "change": change, "omega": None, "mode": None})
+def frequency_steps(values: Sequence[float | None]) -> list[int]:
+    """Positions at which a frequency differs from its previous value; frequencies have no noise."""
+    out, last = [], None
+    for k, value in enumerate(values):
+        if value is None:
+            continue
+        if last is not None and abs(value - last) > MOVED * abs(last):
+            out.append(k)
+        last = value
     return out

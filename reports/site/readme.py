@@ -8,7 +8,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -64,7 +63,7 @@ def condense(run: Run) -> Run:
             cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
     table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
     cells += [c for c in table if c.code not in ISOLATED]
-    kept = dict.fromkeys(replace(c, seconds=None) for c in cells)
+    kept = dict.fromkeys(cells)
     columns_kept = {(c.case, c.code) for c in kept}
     origins = tuple(o for o in run.origins if (o.case, o.code) in columns_kept)
     return Run(tuple(kept), versions=run.versions, command=run.command, settings=run.settings, origins=origins)

@@ -259,7 +259,6 @@ def _run():
             "elements": 20,
             "order": 4.0,
             "mac": 1.0,
-            "seconds": 0.1,
             "shares": "nothing",
         }
         return Cell(**row | more)

@@ -106,17 +106,6 @@ def _running(folder: Path) -> list[str]:
     return found
 
 
-def untimed(results: Path) -> list[str]:
-    """The lines of a results file as they stand, but for the times of cells."""
-    lines = []
-    for line in results.read_text(encoding="utf-8").splitlines():
-        row = json.loads(line)
-        if "seconds" in row:
-            row["seconds"] = None
-        lines.append(json.dumps(row))
-    return lines
-
-
 def asked(folder: Path) -> list[str]:
     """Every question that the codes were asked, in their order."""
     path = folder / "asked.txt"

@@ -43,16 +43,13 @@ def cell(**changes: object) -> Cell:
         "elements": 64,
         "order": 2.0,
         "mac": 1.0,
-        "seconds": 0.25,
     }
     return Cell(**{**fields, **changes})  # type: ignore[arg-type]
 
 
 def empty(verdict: str, reason: str, **changes: object) -> Cell:
     """A cell without an answer."""
-    blank = dict.fromkeys(
-        ("frequency", "reference", "difference", "uncertainty", "full", "elements", "order", "mac", "seconds")
-    )
+    blank = dict.fromkeys(("frequency", "reference", "difference", "uncertainty", "full", "elements", "order", "mac"))
     return cell(mode=0, family="", ordinal=0, verdict=verdict, reason=reason, **blank, **changes)
 
 

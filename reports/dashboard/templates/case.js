@@ -13,7 +13,7 @@ function casePage() {
   if (s) MAIN.append(make("p", { class: "muted" }, s.description),
     make("p", { class: "muted" }, Object.entries(s.facts).map(([k, v]) => `${k}: ${v}`).join(" · ")), make("p", { class: "muted" }, `Source: ${s.source}`));
   differences();
-  MAIN.append(make("div", { class: "pair" }, make("div", {}, campbell(), convergence()), make("div", {}, viewer(), timing())));
+  MAIN.append(make("div", { class: "pair" }, make("div", {}, campbell(), convergence()), make("div", {}, viewer())));
   everything();
 }
 
@@ -156,18 +156,6 @@ function spanwise(rest, mode) {
     return { name, most, colour: colour(place), dash: dash(place * COLOURS.length), points: radius.map((r, j) => [r, (mode.re[j][k] * c + mode.im[j][k] * s) / far]) };
   }).filter((s) => s.most > 0.01 * far);
   return [chart(series, { x: "radius over the tip's", y: "displacement", height: 190, label: "Displacements along the blade" }), legend(series)];
-}
-
-function timing() {
-  const spent = new Map(DATA.cells.filter((c) => c.seconds).map((c) => [JSON.stringify([c.code, c.speed]), [c.code, c.seconds]]));
-  const lines = unique([...spent.values()].map(([code]) => code)).map((code) => {
-    const all = [...spent.values()].filter(([name]) => name === code).map(([, seconds]) => seconds).sort((a, b) => a - b);
-    return [code, all[Math.floor(all.length / 2)], all.reduce((a, b) => a + b, 0)];
-  }).sort((a, b) => b[2] - a[2]);
-  const longest = Math.max(...lines.map((l) => l[2]));
-  return make("section", {}, make("h2", {}, "Time"), make("p", { class: "muted" }, "Of the finest solution, while other codes ran beside it: a hint, not a measurement."),
-    lines.length ? table(["code", "median, s", "all speeds, s", ""], lines.map(([code, median, sum]) => row(code, digits(median, 2), digits(sum, 2),
-      make("td", { class: "bar" }, make("span", { style: `width:${(100 * sum / longest).toFixed(1)}%` })))), { id: "timing", class: null }) : make("p", { class: "muted" }, "No times in this run."));
 }
 
 function everything() {

@@ -56,28 +56,16 @@ function between() {
     }
     return [...groups].map(([name, g]) => row(name, g.moved.size || "", g.far ? relative(g.far[0]) : "", g.far ? `${g.far[1][CASE]}, ${where(g.far[1][MODE], g.far[1][FAMILY], g.far[1][OMEGA])}` : "", g.gone || "", g.fresh || "", g.judged || ""));
   }
-  function times() {
-    const sums = new Map();
-    for (const t of DATA.timings) {
-      const x = t.values[from], y = t.values[to];
-      if (t.machine !== RUNS[from].machine || x === null || y === null) continue;
-      const sum = sums.get(t.code) || [0, 0];
-      sums.set(t.code, [sum[0] + x, sum[1] + y]);
-    }
-    return [...sums].map(([code, [x, y]]) => row(code, digits(x, 3), digits(y, 3), x ? `× ${digits(y / x, 3)}` : ""));
-  }
   function draw() {
     const all = DATA.cells.map((cell) => change(cell, from, to)).filter((c) => c.moved || c.shifted || c.judged || c.gone || c.fresh);
     const size = (c) => (c.gone || c.fresh || c.judged ? Infinity : Math.max(Math.abs(c.code), Math.abs(c.core)));
     all.sort((p, q) => (size(p) === size(q) ? 0 : size(q) - size(p)));
-    const other = versions(from, to), clock = times();
+    const other = versions(from, to);
     place.replaceChildren(make("p", { class: "muted" }, other ? `Versions: ${other}.` : "The same versions of everything."),
       all.length ? table(["who", "frequencies moved", "largest move", "where", "answers gone", "answers new", "verdicts changed"], who(all), { id: "who" }) : make("p", {}, "No frequency moved, no verdict changed."),
       all.length ? make("details", {}, make("summary", {}, all.length > MOST ? `The first ${MOST} of ${all.length} cells` : `All ${all.length} cells`), table(["case", "code", "mode, speed", "from, rad/s", "to, rad/s", "code moved", "core moved", "verdict"], all.slice(0, MOST).map((c) => row(c.cell[CASE], c.cell[CODE],
         where(c.cell[MODE], c.cell[FAMILY], c.cell[OMEGA]), digits(c.x, 12) || "absent", digits(c.y, 12) || "absent", c.moved ? relative(c.code) : "", c.shifted ? relative(c.core) : "",
-        c.judged ? `${verdictOf(c.before)} → ${verdictOf(c.after)}` : "")), { id: "cells" })) : "",
-      clock.length ? make("details", {}, make("summary", {}, "Times of what both have"), table(["code", "from, s", "to, s", "ratio"], clock, { id: "times" }))
-        : make("p", { class: "muted" }, "Times are not compared: different machines, or none."));
+        c.judged ? `${verdictOf(c.before)} → ${verdictOf(c.after)}` : "")), { id: "cells" })) : "");
   }
   MAIN.append(make("h2", {}, "Changes between two runs"), make("div", { class: "filters" }, chooser("from", options, (v) => { from = Number(v); draw(); }, "from", from),
     chooser("to", options, (v) => { to = Number(v); draw(); }, "to", to)), place);
@@ -86,9 +74,9 @@ function between() {
 
 function steps() {
   const all = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
-  MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A frequency steps where it moves by more than 1e-9, a code's own or core's; a time where its level changes and stays, beyond its scatter, on one machine."),
+  MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A frequency steps where it moves by more than 1e-9, a code's own or core's."),
     all.length ? table(["at run", "who", "what", "largest change", "where", "versions that changed"], all.map((s) => row(named(s.run), s.who,
-      s.kind === "time" ? `time, in ${s.count} ${s.count === 1 ? "case" : "cases"}` : `${s.count} ${s.count === 1 ? "frequency" : "frequencies"}`, s.change === null ? "from nothing" : relative(s.change), s.mode === null ? s.case : `${s.case}, mode ${where(s.mode, s.family, s.omega)}`,
+      `${s.count} ${s.count === 1 ? "frequency" : "frequencies"}`, s.change === null ? "from nothing" : relative(s.change), `${s.case}, mode ${where(s.mode, s.family, s.omega)}`,
       make("td", { class: "reason" }, s.run ? versions(s.run - 1, s.run) : ""))), { id: "steps" }) : make("p", { id: "steps" }, "None."));
 }
 
@@ -96,14 +84,13 @@ function steps() {
 function latest() {
   const [step] = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
   if (!step) return {};
-  if (step.kind === "time") return { case: step.case, code: step.who, number: `t ${DATA.timings.find((t) => t.case === step.case && t.code === step.who)?.machine}` };
   const cell = DATA.cells.find((c) => c[CASE] === step.case && c[MODE] === step.mode && c[OMEGA] === step.omega && (c[CODE] === step.who || step.who === "core"));
   return { case: step.case, code: cell[CODE], number: `${step.who === "core" ? "d" : "f"} mode ${where(cell[MODE], cell[FAMILY], cell[OMEGA])}` };
 }
 
 function numbers() {
   const place = make("div", { class: "chart" }), chosen = latest();
-  const names = unique([...DATA.cells.filter((c) => c[VALUES] !== null), ...DATA.timings.map((t) => [t.case])].map((c) => c[CASE]));
+  const names = unique(DATA.cells.filter((c) => c[VALUES] !== null).map((c) => c[CASE]));
   if (!names.length) return;
   const choosers = ["case", "code", "number"].map((name) => chooser(name, [], (v) => { chosen[name] = v; draw(); }, `series-${name}`));
   const fill = (k, options) => {
@@ -119,18 +106,17 @@ function numbers() {
       const text = `mode ${where(c[MODE], c[FAMILY], c[OMEGA])}`;
       out.push([`f ${text}`, `frequency: ${text}`, c[VALUES], "frequency, rad/s"], [`d ${text}`, `difference: ${text}`, c[DIFFERENCES], "difference from core, relative"]);
     }
-    for (const t of DATA.timings) if (t.case === chosen.case && t.code === chosen.code) out.push([`t ${t.machine}`, `time on ${t.machine}`, t.values, "seconds, all speeds", t.steps.slice(1).map(([k]) => k + 1)]);
     return out.filter((n) => n[2] !== null);
   }
   function draw() {
     fill(0, names.map((n) => [n, n]));
-    fill(1, unique([...DATA.cells.filter((c) => c[CASE] === chosen.case && c[VALUES] !== null).map((c) => c[CODE]), ...DATA.timings.filter((t) => t.case === chosen.case).map((t) => t.code)]).map((n) => [n, n]));
+    fill(1, unique(DATA.cells.filter((c) => c[CASE] === chosen.case && c[VALUES] !== null).map((c) => c[CODE])).map((n) => [n, n]));
     const all = list();
     fill(2, all);
-    const [, text, values, unit, levels] = all.find((n) => String(n[0]) === chosen.number);
+    const [, text, values, unit] = all.find((n) => String(n[0]) === chosen.number);
     const points = RUNS.map((_, k) => [k + 1, of(values, k) ?? NaN]);
     const moved = points.filter(([, v], k) => k && Number.isFinite(v) && Number.isFinite(points[k - 1][1]) && Math.abs(v - points[k - 1][1]) > MOVED * (unit.startsWith("f") ? Math.abs(v) : 1)).map(([k]) => k);
-    place.replaceChildren(chart([{ name: text, colour: COLOURS[0], marks: true, points }], { x: "run", y: unit, whole: true, height: 240, label: text, steps: levels || moved }),
+    place.replaceChildren(chart([{ name: text, colour: COLOURS[0], marks: true, points }], { x: "run", y: unit, whole: true, height: 240, label: text, steps: moved }),
       make("p", { class: "muted" }, Array.isArray(values) ? "Dashed: steps." : "The same in every run, to rounding."));
   }
   MAIN.append(make("h2", {}, "Every number, run by run"), make("div", { class: "filters" }, ...choosers), place);

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from southwell.cases.judge.releases import Bisection, comparisons, smallest
+from southwell.cases.judge.releases import Bisection, comparisons
 from southwell.cases.judge.results import Cell, Origin, Run, read, write
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.reports.verification import releases as shown
@@ -13,7 +13,7 @@ from southwell.reports.verification.report import headline, render
 
 from ...support import samples
 
-OLD = samples.cell(uncertainty=2e-6, seconds=1.0, shares="nothing")
+OLD = samples.cell(uncertainty=2e-6, shares="nothing")
 NEW = replace(OLD, code="alpha@2.2", version="2.2")
 
 
@@ -42,14 +42,6 @@ def test_only_answers_to_the_same_question_are_compared() -> None:
     (one,) = comparisons(Run((OLD, silent, *elsewhere)))
     assert (len(one.compared), one.moved, len(one.lost), len(one.gained)) == (0, (), 1, 3)
     assert comparisons(Run((OLD,))) == []
-
-
-def test_the_smallest_question_is_the_fastest_and_of_its_modes_the_one_that_moves_most() -> None:
-    fast = [replace(OLD, mode=mode, omega=5.0, seconds=0.1) for mode in (1, 2)]
-    after = [replace(moved(by), mode=mode, omega=5.0, seconds=0.1) for mode, by in ((1, 1e-4), (2, -2e-4))]
-    (one,) = comparisons(Run((OLD, *fast, moved(0.1), *after)))
-    chosen = smallest(one.moved).cell
-    assert (chosen.omega, chosen.mode) == (5.0, 2)
 
 
 def test_another_release_is_no_further_witness() -> None:

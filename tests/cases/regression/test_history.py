@@ -32,7 +32,6 @@ CELL = Cell(
     uncertainty=1e-6,
     target=1e-3,
     verdict="pass",
-    seconds=0.25,
 )
 RUN = Run(
     cells=(CELL, replace(CELL, mode=0, family="", ordinal=0, frequency=None, verdict="not run")),
@@ -46,8 +45,8 @@ def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "abc", "a machine", MADE))
     (found,) = history.read(file).entries
-    beam = Point("beam", "some-code", 10.0, 1, "edgewise", 11.71095, 8.1e-5, 1e-6, "pass", 0.25, 1e-3)
-    none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 0.25, 1e-3)
+    beam = Point("beam", "some-code", 10.0, 1, "edgewise", 11.71095, 8.1e-5, 1e-6, "pass", 1e-3)
+    none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 1e-3)
     detection = Detection("frozen frame", "beam", 10.0, ("some-code",))
     assert found == Entry(
         "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (detection,)

@@ -19,7 +19,7 @@ from southwell.cases.verify.pool import Pool
 from southwell.cases.verify.software import Software, installed
 from southwell.tests.support.studies import deadly, sleeping, solved, stub, study, tasks_of
 
-from ...support import clusters, killing
+from ...support import clusters
 
 
 def test_processes_of_this_machine_by_default() -> None:
@@ -190,6 +190,6 @@ def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path
         line = ["verify", "tip-mass", "--codes", "exact-beam", "--faults", "none", "--out", name, *options]
         done = subprocess.run([sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        found[name] = killing.untimed(tmp_path / name / "results.jsonl")
+        found[name] = (tmp_path / name / "results.jsonl").read_text()
     assert found["here"] == found["there"]
-    assert len(found["here"]) > 10
+    assert len(found["here"].splitlines()) > 10

@@ -20,8 +20,7 @@ from southwell.reports.cli import app as cli
 from southwell.reports.dashboard import moving as shapes
 from southwell.reports.dashboard.data import of_case, page
 from southwell.reports.dashboard.moving import moving
-from southwell.reports.dashboard.past import CORE, moves, of_history
-from southwell.reports.dashboard.steps import frequency_steps, timing_steps
+from southwell.reports.dashboard.past import CORE, frequency_steps, moves, of_history
 from southwell.reports.dashboard.write import SCRIPTS, write
 from southwell.reports.shared.units import RAD_S
 from southwell.reports.site import readme
@@ -202,23 +201,6 @@ def test_steps_of_frequencies_are_moves_beyond_rounding() -> None:
     assert frequency_steps([1.0, 1.0 + 1e-12, None, 1.0 + 2e-9, 1.0 + 2e-9]) == [3]
 
 
-def test_steps_of_timings_are_levels_not_points() -> None:
-    noisy = [1.0, 1.1, 0.95, 1.05, 1.02, 5.0, 0.98, 1.04, 1.0, 1.1]
-    assert [k for k, _ in timing_steps(noisy)] == [0]
-    assert timing_steps([*noisy, 2.0, None, 2.1, 1.95, 2.05])[1] == (10, pytest.approx(2.025))
-    assert [k for k, _ in timing_steps([*noisy, 0.4, 0.41, 0.4])] == [0, 10]
-    assert [k for k, _ in timing_steps([*noisy, 5.0, 0.1, 5.0])] == [0]
-    assert [k for k, _ in timing_steps([1.0, 2.0])] == [0]
-    assert [k for k, _ in timing_steps([0.0] * 6 + [5e-4] * 6)] == [0]
-    assert timing_steps([None, None]) == []
-
-
-def test_random_times_of_one_level_seldom_step() -> None:
-    random = np.random.default_rng(5)
-    series = random.lognormal(0.0, 0.15, (300, 60))
-    assert sum(len(timing_steps(times.tolist())) > 1 for times in series) <= 3
-
-
 def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
     found = moves(history.read(kept(tmp_path / "h.jsonl")).entries)
     assert {(m["run"], m["who"], m["case"]) for m in found} == {
@@ -228,18 +210,6 @@ def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
     assert [m["change"] for m in found] == [pytest.approx(1e-6, rel=1e-6), pytest.approx(1e-5, rel=1e-6)]
     wright = {(c.omega, c.mode) for c in run().cells if c.case == "wright-flapwise" and c.frequency}
     assert next(m["count"] for m in found if m["who"] == CORE) == len(wright)
-
-
-def test_times_of_two_machines_are_two_series(tmp_path: Path) -> None:
-    entries = []
-    for k in range(12):
-        cells = tuple(replace(c, seconds=0.1 if k < 6 else 1.0) for c in run().cells if c.case == "tip-mass")
-        entries.append(history.entry(replace(run(), cells=cells), str(k), machine="slow" if k >= 6 else "fast"))
-    assert of_history(history.History(tuple(entries)))["steps"] == []
-    one = tuple(replace(e, machine="one") for e in entries)
-    steps = of_history(history.History(one))["steps"]
-    assert {(s["run"], s["kind"], s["case"]) for s in steps} == {(6, "time", "tip-mass")}
-    assert all(s["change"] == pytest.approx(9.0) for s in steps)
 
 
 def test_every_number_is_in_the_history(tmp_path: Path) -> None:

@@ -26,7 +26,6 @@ def datum(uncertainty: float, reason: str, **changes: object) -> results.Cell:
         "code": "rig", "version": "measured, in rig.csv", "role": "measured", "verdict": "measured", "shares": "",
         "omega": 13.0, "mode": 2, "family": "flapwise", "ordinal": 1, "frequency": 18.0, "reference": 20.0, "full": 20.0,
         "difference": -0.1, "uncertainty": uncertainty, "reason": reason, "elements": None, "order": None, "mac": None,
-        "seconds": None,
     }  # fmt: skip
     return samples.cell(**{**values, **changes})
 
