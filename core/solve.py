@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from .blade import Blade, without_rotary_inertia
 from .effects import ALL_EFFECTS, Effects
-from .element.discretize import Chain, Mass, discretize
+from .element.discretize import Mass, discretize
 from .element.measures import LARGEST_STRAIN, Measure
+from .element.mesh import Chain
 from .modes import Modes
 from .spectrum.mesh_solver import MeshSolver
 from .spectrum.refinement import Meshes, as_given, refined, without_bias

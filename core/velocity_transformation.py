@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from .blade import Blade, without_rotary_inertia
 from .effects import ALL_EFFECTS, Effects
-from .element.discretize import Chain, Mass, discretize
+from .element.discretize import Mass, discretize
 from .element.measures import Measure
+from .element.mesh import Chain
 from .mechanism.description import MechanismError, at_rate
 from .modes import Modes
 from .space import spatial as sp
@@ -151,7 +152,7 @@ def _about_steady_state(tree: Tree, body: Chain, omega: float, effects: Effects,
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
     except eigen.UnstableError as error:
-        hinge = "; or a free hinge has no stiffness (at rest; lead–lag without offset)" if body.clamped.size else ""
+        hinge = "; or a free hinge has no stiffness (at rest; lead–lag without offset)" if body.joints else ""
         raise eigen.UnstableError(f"omega: {omega:.6g} rad/s: {error}{hinge}") from error
     off = np.abs(found.correction).max(initial=0.0) / max(body.scale, 1.0)
     if off > _BALANCED:

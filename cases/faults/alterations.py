@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.effects import Effects
-from ...core.element.discretize import Chain
+from ...core.element.mesh import Chain
 from ...core.steady.blade_state import Steady
 from ..verify import core_faults, core_solver
 

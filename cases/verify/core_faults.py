@@ -14,8 +14,9 @@ import numpy as np
 from ...core import solve
 from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
 from ...core.effects import Effects
-from ...core.element.discretize import Chain, Mass, discretize
+from ...core.element.discretize import Mass, discretize
 from ...core.element.measures import Measure
+from ...core.element.mesh import Chain
 from ...core.modes import Modes
 from ...core.spectrum import mesh_solver as solution
 from ...core.spectrum.lanczos import lanczos

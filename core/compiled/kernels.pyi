@@ -64,9 +64,14 @@ def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
 def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
     """``measures.response``."""
 
-# chain
+# trees
 
-def chain_parts(
+class Links:
+    """``links.Links`` for the kernels; it keeps the arrays. ``clamped`` is (n, 6, 6), or (0, 6, 6) without joints."""
+
+    def __init__(self, parent: NDArray[np.int64], to_child: Array, clamped: Array) -> None: ...
+
+def tree_parts(
     beams: Beams,
     nodes: Array,
     relative: Array,
@@ -74,31 +79,24 @@ def chain_parts(
     beta: Array,
     lumps: Array,
     force: Array,
+    parent: NDArray[np.int64],
     omega: float,
     gravity: Array,
     geometric: bool,
-) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]:
-    """``beams.OnStrain`` of the elements, Ad⁻¹ (n, 6, 6), and g (n+1, 6), C and K (n+1, 6, 6) of the nodes."""
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array]:
+    """``beams.OnStrain`` of the elements, and g (n+1, 6), C and K (n+1, 6, 6) of the nodes."""
 
-def chain_sum(
-    f: Array,
-    M: Array,
-    C: Array,
-    K: Array,
-    spring: Array,
-    back: Array,
-    lumps: Array,
-    g: Array,
-    of_C: Array,
-    of_K: Array,
-) -> Array:
-    """Add the springs and the nodes to the elements' M, C and K, in place; returns the residual (n, d) on (ρ, β)."""
+def gathered(links: Links, f: Array, g: Array) -> Array:
+    """``links.gathered``."""
 
-def displaced(nodes: Array, relative: Array, step: Array) -> tuple[Array, Array]:
-    """The poses (n+1, 4, 4) and (n, 4, 4) after the twists of the nodes 1 … n in ``step`` (n, 6 or more)."""
+def tree_sum(links: Links, M: Array, C: Array, K: Array, spring: Array, lumps: Array, of_C: Array, of_K: Array) -> None:
+    """Add the springs and the nodes to the elements' M, C and K, in place."""
 
-def bent(first: Array, between: Array, coordinates: Array) -> tuple[Array, Array]:
-    """The poses (n+1, 4, 4) and (n, 4, 4) from the first node's, after the elements' twists ``coordinates`` (n, 6 or more)."""
+def displaced(parent: NDArray[np.int64], relative: Array, step: Array) -> Array:
+    """The relative poses (n, 4, 4) after the twists of the nodes 1 … n in ``step`` (n, 6 or more)."""
+
+def placed(parent: NDArray[np.int64], first: Array, relative: Array) -> Array:
+    """The poses (n+1, 4, 4) of the nodes from that of node 0 and the relative ones (n, 4, 4)."""
 
 def degree(x: Array, values: Array) -> int:
     """Degree of the polynomial with which to extrapolate values (k, …) at abscissae x (k,), the latest last, to x = 0.
@@ -110,13 +108,13 @@ def degree(x: Array, values: Array) -> int:
 def extrapolated(x: Array, values: Array, degree: int) -> Array:
     """The value (…) at x = 0 of the polynomial fitted by least squares to values (k, …) at abscissae x (k,)."""
 
-def product(matrix: Array, sign: float, back: Array, x: Array) -> Array:
+def product(matrix: Array, sign: float, links: Links, x: Array) -> Array:
     """``matrices.product``."""
 
-def quadratic_forms(K: Array, C: Array, M: Array, back: Array, x: Array) -> Array:
+def quadratic_forms(K: Array, C: Array, M: Array, links: Links, x: Array) -> Array:
     """(m, 3) x*Kx, ½i x*Cx and x*Mx of complex vectors x (m, 2, dn), by real and imaginary parts."""
 
-def twists(back: Array, x: Array) -> None:
+def twists(links: Links, x: Array) -> None:
     """Replace ρ by ξ_b in vectors x (k, n, d), in place."""
 
 def sampled(
@@ -124,6 +122,7 @@ def sampled(
     nodes: Array,
     corner: Array,
     beta: Array,
+    parent: NDArray[np.int64],
     element: NDArray[np.int64],
     zeta0: Array,
     shape: Array,
@@ -132,13 +131,13 @@ def sampled(
 ) -> Array:
     """(m, q, 4, 2) real and imaginary parts of ``mode_shapes.mode_shapes`` at q points of the elements ``element`` (q,)."""
 
-def factor(K: Array, back: Array, clamped: Array) -> tuple[int, Array, Array, Array]:
+def factor(K: Array, links: Links) -> tuple[int, Array, Array, Array]:
     """The parts of ``elimination.Factor``; before them 2 if all pivots are positive, 1 if not, 0 if K is singular."""
 
-def solve(flexibility: Array, ride: Array, reaction: Array, back: Array, x: Array) -> None:
+def solve(flexibility: Array, ride: Array, reaction: Array, links: Links, x: Array) -> None:
     """``elimination.solve``."""
 
-def negative_pivots(K: Array, C: Array, M: Array, back: Array, clamped: Array, omega: float) -> int:
+def negative_pivots(K: Array, C: Array, M: Array, links: Links, omega: float) -> int:
     """Negative pivots of K + iωC − ω²M; see ``completeness``."""
 
 class Operator:
@@ -153,7 +152,7 @@ class Operator:
         M: Array,
         C: Array,
         K: Array,
-        back: Array,
+        links: Links,
         flexibility: Array,
         ride: Array,
         reaction: Array,

@@ -2,20 +2,22 @@
 #pragma once
 
 #include "../spectrum/krylov.hpp"
-#include "chains.hpp"
+#include "trees.hpp"
 
 namespace southwell {
 
 // A⁻¹S; see krylov.Operator.
 struct LanczosOperator {
-    Doubles M, C, K, back, flexibility, ride, reaction, massive, lever;
+    Doubles M, C, K;
+    LinkArrays links;
+    Doubles flexibility, ride, reaction, massive, lever;
 
-    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, Doubles back_, Doubles flexibility_, Doubles ride_,
+    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_, Doubles ride_,
                     Doubles reaction_, Doubles massive_, Doubles lever_)
         : M(M_),
           C(C_),
           K(K_),
-          back(back_),
+          links(links_),
           flexibility(flexibility_),
           ride(ride_),
           reaction(reaction_),
@@ -28,7 +30,7 @@ struct LanczosOperator {
         return {elements_of<D>(M, m.n),
                 elements_of<D>(C, m.n),
                 m,
-                items<Matrix6>(back, m.n),
+                links_of(links, m.n),
                 factors_of<D>(flexibility, ride, reaction, m.n),
                 massive.size() ? items<Matrix6>(massive, m.n) : nullptr,
                 massive.size() ? items<Matrix6>(lever, m.n) : nullptr};

@@ -1,7 +1,7 @@
 // The module that Python imports; setup.py sets MODULE, its name, and SOURCES, the digest of the sources. kernels.pyi has the signatures.
-#include "chains.hpp"
 #include "elements.hpp"
 #include "lanczos.hpp"
+#include "trees.hpp"
 
 namespace southwell {
 
@@ -39,10 +39,12 @@ inline void define(py::module_& m) {
     m.def("relative_strains", &relative_strains);
     m.def("respond", &respond);
 
-    m.def("chain_parts", &chain_parts);
-    m.def("chain_sum", &chain_sum);
+    py::class_<LinkArrays>(m, "Links", py::module_local()).def(py::init<Indices, Doubles, Doubles>());
+    m.def("tree_parts", &tree_parts);
+    m.def("gathered", &gathered);
+    m.def("tree_sum", &tree_sum);
     m.def("displaced", &displaced);
-    m.def("bent", &bent);
+    m.def("placed", &placed);
     m.def("degree", &degree);
     m.def("extrapolated", &extrapolated);
     m.def("product", &product);
@@ -53,7 +55,7 @@ inline void define(py::module_& m) {
     m.def("solve", &solve_in_place);
     m.def("negative_pivots", &negative);
     py::class_<LanczosOperator>(m, "Operator", py::module_local())
-        .def(py::init<Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles>())
+        .def(py::init<Doubles, Doubles, Doubles, const LinkArrays&, Doubles, Doubles, Doubles, Doubles, Doubles>())
         .def("keep_massive", &LanczosOperator::keep_massive)
         .def("forward", &LanczosOperator::forward)
         .def("extend", &LanczosOperator::extend);

@@ -17,8 +17,8 @@ from .. import solve
 from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
-from ..element.discretize import Chain
 from ..element.measures import LARGEST_STRAIN, even
+from ..element.mesh import Chain
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
 from ..space.inertia import about_centre, transformed

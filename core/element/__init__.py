@@ -5,8 +5,9 @@ strain of an element from the relative pose of its ends, ``beams.pencil`` gives 
 """
 
 from .beams import Beams, Pencil, Points, bushing
-from .discretize import Chain, Mass, divide
+from .discretize import Mass, divide
 from .measures import Measure, StrainLaw
+from .mesh import Chain
 from .sections import StaticSolution, frames, root
 
 __all__ = [

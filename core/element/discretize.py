@@ -1,7 +1,6 @@
 """A blade as a chain: rigid bodies at nodes along the blade, joined by beam elements."""
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -15,54 +14,13 @@ from ..space.inertia import transformed
 from . import beams as bm
 from . import sections
 from .beams import Beams, Points
-from .measures import Measure, StrainLaw, even, joined
+from .branches import attached, hub
+from .measures import Measure, StrainLaw
+from .mesh import Chain
 from .sections import StaticSolution
 
 Array = NDArray[Any]
 Mass = Literal["consistent", "half_end"]
-
-
-@dataclass(frozen=True)
-class Chain:
-    """Nodes and elements of a blade; node 0 is clamped to the hub.
-
-    Attributes:
-        nodes: (n+1, 4, 4) undeformed poses in the hub's axes.
-        lumps: (n+1, 6, 6) inertia of the rigid body at each node, in the node's axes.
-        beams: the n elements, from node k to node k+1.
-        samples: massless points at ``modes.STATIONS``, where mode shapes are evaluated.
-        scale: the blade's length, m.
-        force: (n+1, 3) steady loads on the nodes, N, in the hub's axes.
-        corner: (n, 4, 4) pose of each element's end b in the frame of its node: the identity (the default), except at a kink,
-            where the node has the frame of the section on the tip side.
-        clamped: (6, 6) projector of node 1's twist, in the node's axes, on the directions that the root joint clamps; the
-            first element then is that joint and has no length. Empty for a clamped root.
-        root_axes: (3, 3) axes of the root joint, in those of the first section.
-    """
-
-    nodes: Array
-    lumps: Array
-    beams: Beams
-    samples: Points
-    scale: float
-    force: Array
-    corner: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
-    clamped: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    root_axes: Array = field(default_factory=lambda: np.eye(3))
-
-    def __post_init__(self) -> None:
-        if not self.corner.size:
-            object.__setattr__(self, "corner", np.tile(np.eye(4), (len(self.nodes) - 1, 1, 1)))
-
-    @cached_property
-    def between(self) -> Array:
-        """(n, 4, 4) undeformed poses of nodes 1 … n, each in the frame of the previous node."""
-        return self.beams.undeformed @ sp.inverse(self.corner)
-
-    @property
-    def elements(self) -> int:
-        """Number of beam elements."""
-        return len(self.beams.undeformed) - (1 if self.clamped.size else 0)
 
 
 def discretize(
@@ -132,7 +90,10 @@ def discretize(
         force=force,
         corner=corner,
     )
-    return chain if clamped(blade) else _on_joint(chain, blade)
+    if clamped(blade):
+        return chain
+    frame = sp.pose(sp.rotation(0, blade.twist[0]).T, np.zeros(3))  # the root's axes in those of the first section
+    return attached(hub(chain, nodes[0]), 0, chain, frame, frame, blade.root)
 
 
 MIN_SHARED = 16
@@ -162,38 +123,6 @@ def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:
     for _ in range(elements - len(lengths)):
         number[np.argmax(lengths / number)] += 1
     return number
-
-
-def _on_joint(chain: Chain, blade: Blade) -> Chain:
-    """The chain with the root's joint before its first element."""
-    turn = np.kron(np.eye(2), sp.rotation(0, blade.twist[0]).T)  # from the root's axes to the first section's
-    fixed = np.isinf(blade.root)
-    b = chain.beams
-
-    def before(new: Array, old: Array) -> Array:
-        return np.concatenate([new, old])
-
-    none = np.zeros((1, 6, 6))
-    spring = turn @ np.diag(np.where(fixed, 0.0, blade.root)) @ turn.T
-    beams = replace(
-        b,
-        law=joined([even(b.law.measure, np.eye(4)[None]), b.law]),
-        stiffness=before(spring[None], b.stiffness),
-        points=replace(b.points, element=b.points.element + 1),
-        preload=before(none[:, 0], b.preload),
-        inner_preload=before(none[:, 0], b.inner_preload),
-    )
-    return replace(
-        chain,
-        nodes=before(chain.nodes[:1], chain.nodes),
-        lumps=before(none, chain.lumps),
-        force=before(none[:, 0, :3], chain.force),
-        beams=beams,
-        corner=before(np.eye(4)[None], chain.corner),
-        samples=replace(chain.samples, element=chain.samples.element + 1),
-        clamped=turn @ np.diag(fixed.astype(float)) @ turn.T,
-        root_axes=turn[:3, :3],
-    )
 
 
 def _at(blade: Blade, values: Array, s: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects import Effects
-from ..element.discretize import Chain
+from ..element.mesh import Chain
 from ..space import spatial as sp
 from ..steady.blade_state import Steady
 from ..tree.pencil import linearize

@@ -60,4 +60,4 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
 
 def below(p: ChainPencil, omega: float) -> int:
     """Number of natural frequencies between 0 and ``omega`` (rad/s), which must not be one of them."""
-    return kernels.negative_pivots(p.K, p.C, p.M, p.back, p.clamped, omega)
+    return kernels.negative_pivots(p.K, p.C, p.M, p.links.arrays, omega)

@@ -18,7 +18,7 @@ constexpr int MAX_PASSES = 3;         // of orthogonalisation
 template <int D>
 struct Operator {
     ElementMatrices<D> M, C, K;
-    const Matrix6* back;
+    Links links;
     Factors<D> factor;
     const Matrix6* massive;
     const Matrix6* lever;
@@ -45,19 +45,21 @@ struct Pairs {
 
 // Remove the motion of nodes without inertia from vectors y.
 //
-// It has no part in M y, but is amplified by every orthogonalisation, and its rounding errors are not without mass.
+// It has no part in M y, but is amplified by every orthogonalisation, and its rounding errors do carry mass.
 template <int D>
 void keep_massive(const Operator<D>& a, Rows y) {
     if (!a.massive) return;
     constexpr int d = D - 6;
     for (int v = 0; v < y.count; ++v) {
-        Vector6 xi{}, before{};
+        std::vector<Vector6> xi(a.elements() + 1, Vector6{}),
+            kept(xi);  // twists of the nodes, and their part with mass
         for (int k = 0; k < a.elements(); ++k) {
             double* rho = y[v] + d * k;
-            xi = outwards(a.back[k], rho, xi);
-            const Vector6 here = a.massive[k] * xi, at_a = a.lever[k] * here;
-            for (int i = 0; i < 6; ++i) rho[i] = at_a[i] - before[i];
-            before = here;
+            const auto from = a.links.parent[k];
+            xi[k + 1] = outwards(a.links.to_child[k], rho, xi[from]);
+            kept[k + 1] = a.massive[k] * xi[k + 1];
+            const Vector6 at_a = a.lever[k] * kept[k + 1];
+            for (int i = 0; i < 6; ++i) rho[i] = at_a[i] - kept[from][i];
         }
     }
 }
@@ -71,8 +73,8 @@ void forward(const Operator<D>& a, Rows v, Rows w, Rows force, Rows My) {
     for (int m = 0; m < v.count; ++m)
         for (int i = 0; i < n; ++i) w[m][n + i] = v[m][i];
     keep_massive(a, {w.data + n, w.stride, v.count});
-    times(a.C, -1.0, a.back, v, solved);  // skew
-    times(a.M, 1.0, a.back, {v.data, n, 2 * v.count}, both);
+    times(a.C, -1.0, a.links, v, solved);  // skew
+    times(a.M, 1.0, a.links, {v.data, n, 2 * v.count}, both);
     for (int m = 0; m < v.count; ++m) {
         const double *of_x = both[2 * m], *of_y = both[2 * m + 1];
         for (int i = 0; i < n; ++i) {
@@ -82,7 +84,7 @@ void forward(const Operator<D>& a, Rows v, Rows w, Rows force, Rows My) {
             force[m][n + i] = -of_x[i];
         }
     }
-    solve(a.factor, a.back, a.elements(), solved);
+    solve(a.factor, a.links, solved);
 }
 
 // Products a bᵀ of rows of n numbers with the one or two rows of b, into ``out`` (rows of two); four rows of a at a time.
@@ -157,8 +159,8 @@ Pairs orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, R
     Pairs gram{w.count, {}};
     largest = 0.0;
     for (int turn = 0; turn < MAX_PASSES; ++turn) {
-        if (turn > 0) times(a.M, 1.0, a.back, Rows{w.data + n, w.stride, w.count}, My);
-        times(a.K, 1.0, a.back, w, dual);
+        if (turn > 0) times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, My);
+        times(a.K, 1.0, a.links, w, dual);
         for (int m = 0; m < w.count; ++m)
             for (int i = 0; i < n; ++i) dual[m][n + i] = My[m][i];
         products(filled, dual, 2 * n, overlap);
@@ -188,8 +190,8 @@ Pairs extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhaus
     std::vector<double> memory(8 * static_cast<size_t>(most));
     auto* overlap = reinterpret_cast<double (*)[2]>(memory.data());
     of_last.count = basis.size - basis.before;
-    times(a.M, 1.0, a.back, Rows{w.data + n, w.stride, w.count}, of_w);
-    times(a.M, 1.0, a.back, Rows{basis.vectors[basis.before] + n, basis.vectors.stride, of_last.count}, of_last);
+    times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, of_w);
+    times(a.M, 1.0, a.links, Rows{basis.vectors[basis.before] + n, basis.vectors.stride, of_last.count}, of_last);
     while (true) {
         double largest, value[2], turn[2][2];
         const Pairs gram = orthogonalise(a, w, of_w, basis, force, largest);

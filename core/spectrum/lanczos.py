@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..compiled import kernels
 from ..tree.elimination import solve
+from ..tree.links import allowed
 from ..tree.matrices import product
 from ..tree.pencil import ChainPencil
 from . import completeness, eigen
@@ -89,7 +90,9 @@ def _operator(p: ChainPencil) -> kernels.Operator:
         factor = p.factor
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
-    return kernels.Operator(p.M, p.C, p.K, p.back, factor.flexibility, factor.ride, factor.reaction, *_massive(p))
+    return kernels.Operator(
+        p.M, p.C, p.K, p.links.arrays, factor.flexibility, factor.ride, factor.reaction, *_massive(p)
+    )
 
 
 def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None) -> Array:
@@ -102,8 +105,7 @@ def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None) -> A
     n = len(p.residual)
     w = _start(2 * n).copy() if near is None else near.vectors.copy()
     y = w[:, n:].copy()
-    if p.clamped.size:
-        y[:, :6] -= y[:, :6] @ p.clamped
+    y = allowed(p.links, y)
     a.keep_massive(y)
     w[:, n:] = y
     lost = solve_error(p, w)
@@ -172,17 +174,16 @@ def _massive(p: ChainPencil) -> tuple[Array, Array]:
     """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.hpp``."""
     if p.M.shape[1] > 12:
         return np.zeros((0, 6, 6)), np.zeros((0, 6, 6))
-    lever, joint = p.back.copy(), bool(p.clamped.size)
-    if joint:
-        lever[0] = np.eye(6)
-    lever = np.asarray(np.linalg.inv(lever), dtype=np.float64)
-    lumps = np.concatenate([p.M[1:, :6, :6], p.M[-1:, 6:, 6:]])  # the tip's also in the axes of the node before
-    lumps[-2:-1] -= lumps[-1]
-    lumps[-1] = lever[-1].T @ lumps[-1] @ lever[-1]
+    links = p.links
+    lever = np.asarray(np.linalg.inv(links.to_child), dtype=np.float64)
+    on_b = p.M[:, 6:12, 6:12]  # of a node at a tip, in the axes of end a; those of the others are on ξ_a
+    lumps = np.zeros((len(lever) + 1, 6, 6))
+    np.add.at(lumps, links.parent, p.M[:, :6, :6] - on_b)
+    lumps[1:] += np.swapaxes(lever, 1, 2) @ on_b @ lever
     massive = np.linalg.pinv(lumps, hermitian=True) @ lumps
-    if joint:
-        massive[0] = np.eye(6)  # ``back`` leaves its free directions only
-    return massive, lever
+    for k in np.flatnonzero(links.clamped.any(axis=(1, 2))):  # a joint's ends move together
+        massive[[links.parent[k], k + 1]] = np.eye(6)
+    return massive[1:], lever
 
 
 def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
@@ -194,7 +195,7 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
 def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
-    kappa, half, inertia = kernels.quadratic_forms(p.K, p.C, p.M, p.back, np.ascontiguousarray(x)).T
+    kappa, half, inertia = kernels.quadratic_forms(p.K, p.C, p.M, p.links.arrays, np.ascontiguousarray(x)).T
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
 
 
@@ -202,10 +203,10 @@ def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
 def solve_error(p: ChainPencil, v: Array) -> float:
     """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2
-    force = product(p.M, 1.0, p.back, v[:1, :n])
+    force = product(p.M, 1.0, p.links, v[:1, :n])
     x = force.copy()
     solve(p.factor, x)
-    left = force - product(p.K, 1.0, p.back, x)
+    left = force - product(p.K, 1.0, p.links, x)
     more = left.copy()
     solve(p.factor, more)
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects import ALL_EFFECTS, Effects
-from ..element.discretize import Chain
+from ..element.mesh import Chain
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import Steady, SteadyStateError
@@ -53,13 +53,15 @@ class MeshSolver:
         try:
             state = balance(body, omega, self.gravity, self.effects, near if guess is None else guess)
         except SteadyStateError as error:
-            if pencil.loose(pencil.linearize(body, pencil.undeformed(body), omega, self.gravity, self.effects)):
+            if pencil.has_free_motion(
+                pencil.linearize(body, pencil.undeformed(body), omega, self.gravity, self.effects)
+            ):
                 raise _free_hinge(omega) from error
             raise
         try:
             found = self._lowest(state.pencil)
         except (UnstableError, EigensolverError) as error:
-            if pencil.loose(state.pencil):
+            if pencil.has_free_motion(state.pencil):
                 raise _free_hinge(omega) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
         self.start = found.start

@@ -11,10 +11,11 @@ from ..compiled import kernels
 from ..effects import Effects
 from ..element import beams as bm
 from ..element import measures
-from ..element.discretize import Chain
+from ..element.mesh import Chain
 from ..space import spatial as sp
-from ..tree import elimination, matrices, root_joint
-from ..tree.pencil import ChainPencil, Shape, linearize, undeformed
+from ..tree import elimination, joint_links
+from ..tree.links import twists
+from ..tree.pencil import ChainPencil, Shape, assembled, linearize, undeformed
 
 Array = NDArray[np.float64]
 
@@ -84,15 +85,12 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
     size = np.repeat([chain.scale, 1.0], 3)
     before = np.nan  # energy of the last step
     for _ in range(_MAX_STEPS):
-        if chain.clamped.size:
-            nodes, first = root_joint.put(chain, shape.nodes, shape.relative[0])
-            shape = Shape(nodes, shape.beta, np.concatenate([first[None], shape.relative[1:]]))
         p = linearize(chain, shape, omega, gravity)
         try:
             relative = elimination.solution(p.factor, -p.residual)
         except np.linalg.LinAlgError:
             raise SteadyStateError("singular stiffness") from None
-        step = matrices.twists(p.back, relative[None])[0]
+        step = twists(p.links, relative[None])[0]
         change = float(np.abs(step[:, :6] / size).max())
         if not np.isfinite(change) or change > 10.0:
             raise SteadyStateError("diverged")
@@ -100,9 +98,9 @@ def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
         if _converged(energy, before, rounding_energy(p, shape)):
             if measures.out_of_range(chain.beams.law, shape.relative @ chain.corner).any():
                 raise SteadyStateError("elements are deformed beyond the range of their strain measure")
-            return Steady(displaced(shape, step), p)
-        step *= min(1.0, 0.5 / max(change, 0.5))
-        shape, before = displaced(shape, step), energy
+            return Steady(displaced(chain, shape, step, relative), p)
+        damping = min(1.0, 0.5 / max(change, 0.5))
+        shape, before = displaced(chain, shape, damping * step, damping * relative), energy
     raise SteadyStateError("no convergence")
 
 
@@ -139,16 +137,29 @@ def largest_strain(chain: Chain, shape: Shape) -> float:
     return float(measures.relative_strain(chain.beams.law, shape.relative @ chain.corner, shape.beta).max(initial=0.0))
 
 
-def displaced(shape: Shape, step: Array) -> Shape:
-    """The shape after a step (n, 6 or 12): twists of nodes 1 … n in their axes, and changes of β."""
-    parts = (np.ascontiguousarray(a) for a in (shape.nodes, shape.relative, step))
-    nodes, relative = kernels.displaced(*parts)
-    return Shape(nodes, shape.beta + step[:, 6:], relative)
+def displaced(chain: Chain, shape: Shape, step: Array, relative: Array) -> Shape:
+    """The shape after a step.
+
+    Args:
+        chain: the nodes and elements.
+        shape: before the step.
+        step: (n, 6 or 12) twists of nodes 1 … n in their axes, and changes of β.
+        relative: (dn,) the same step by the coordinates (ρ, β).
+    """
+    moved = kernels.displaced(chain.parent, np.ascontiguousarray(shape.relative), np.ascontiguousarray(step))
+    rho = relative.reshape(step.shape)[:, :6]
+    joints = shape.joints.copy()
+    for q, joint in zip(joints, chain.joints, strict=True):
+        free = ~joint.clamped
+        q[free] += np.linalg.lstsq(joint_links.twists(joint, q)[:, free], rho[joint.link], rcond=None)[0]
+    return assembled(chain, moved, shape.beta + step[:, 6:], joints)
 
 
 def coordinates(chain: Chain, shape: Shape) -> Array:
-    """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, and β."""
-    return np.concatenate([sp.log(sp.inverse(chain.between) @ shape.relative), shape.beta], axis=1)
+    """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, or coordinates of joints; and β."""
+    out = np.concatenate([sp.log(sp.inverse(chain.between) @ shape.relative), shape.beta], axis=1)
+    out[[joint.link for joint in chain.joints], :6] = shape.joints
+    return out
 
 
 def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Shape | None:
@@ -163,8 +174,8 @@ def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Sha
     if found is None:
         at, values = np.array(list(known)) - omega**2, np.array(list(known.values()))
         found = kernels.extrapolated(at, values, kernels.degree(at, values))
-    nodes, relative = kernels.bent(chain.nodes[0], chain.between, found)
-    return Shape(nodes, found[:, 6:], relative)
+    relative = chain.between @ sp.exp(np.ascontiguousarray(found[:, :6]))
+    return assembled(chain, relative, found[:, 6:], found[[joint.link for joint in chain.joints], :6])
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
@@ -175,12 +186,13 @@ def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:
         shape: its shape.
         finer: the finer mesh.
     """
-    first = 1 if chain.clamped.size else 0  # without the joint at the root, which has no length
+    first = len(chain.joints)  # without the joint at the root, which has no length
     twists = sp.log(shape.nodes[first:] @ sp.inverse(chain.nodes[first:]))
     at = CubicSpline(_lengths(chain)[first:], twists)(_lengths(finer)[first:])
     nodes = finer.nodes.copy()
     nodes[first:] = sp.exp(at) @ finer.nodes[first:]
-    return Shape(nodes, np.zeros((len(nodes) - 1, finer.beams.inner)), sp.inverse(nodes[:-1]) @ nodes[1:])
+    relative = sp.inverse(nodes[finer.parent]) @ nodes[1:]
+    return assembled(finer, relative, np.zeros((len(nodes) - 1, finer.beams.inner)), shape.joints)
 
 
 def _lengths(chain: Chain) -> Array:

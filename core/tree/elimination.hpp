@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "matrices.hpp"
 
@@ -24,72 +25,101 @@ void add_beyond(const Matrix6& beyond, Matrix<D, D>& out) {
     add(beyond, 6, 6, out);
 }
 
-// Fill the factors; returns the worst result of ``invert`` over all elements. ``clamped`` may be null.
+// Remove the directions of ρ that a joint clamps from a matrix, and give them a stiffness: they do not move.
 template <int D>
-int eliminate(const ElementMatrices<D>& K, const Matrix6* back, const Matrix6* clamped, const Factors<D>& out) {
+void clamp(const Matrix6& clamped, double stiffness, Matrix<D, D>& out) {
+    for (int pass = 0; pass < 2; ++pass) {  // of the rows, then of the columns
+        for (int j = 0; j < D; ++j) {
+            double part[6] = {};
+            for (int i = 0; i < 6; ++i)
+                for (int l = 0; l < 6; ++l) part[i] += clamped[i][l] * (pass ? out[j][6 + l] : out[6 + l][j]);
+            for (int i = 0; i < 6; ++i) (pass ? out[j][6 + i] : out[6 + i][j]) -= part[i];
+        }
+    }
+    add(stiffness * clamped, 6, 6, out);
+}
+
+// Whether link k is a joint.
+inline bool is_joint(const Links& links, int k) {
+    if (!links.clamped) return false;
+    double trace = 0.0;
+    for (int i = 0; i < 6; ++i) trace += links.clamped[k][i][i];
+    return trace > 0.0;
+}
+
+// Fill the factors; returns the worst result of ``invert`` over all elements.
+template <int D>
+int eliminate(const ElementMatrices<D>& K, const Links& links, const Factors<D>& out) {
+    constexpr int d = D - 6;
     int kind = 2;
-    Matrix6 P = Matrix6::zero();
+    std::vector<Matrix6> P(K.n + 1, Matrix6::zero());  // stiffness of each node and all that lies beyond
     for (int k = K.n - 1; k >= 0; --k) {
         Matrix<D, D> H = K.element[k];
-        add_beyond(congruence(back[k], P), H);
-        if (k == 0 && clamped) add(*clamped, 6, 6, H);  // any stiffness: these directions do not move
+        add_beyond(congruence(links.to_child[k], P[k + 1]), H);
+        const bool joint = is_joint(links, k);
+        if (joint) clamp(links.clamped[k], 1.0, H);
         kind = std::min(kind, invert(H, 6));
         if (kind == 0) break;
-        P = block<6, 6>(H, 0, 0);
-        out.ride[k] = -1.0 * transposed(block<D - 6, 6>(H, 6, 0));
-        out.reaction[k] = transposed(block<6, D - 6>(H, 0, 6));
-        out.flexibility[k] = transposed(block<D - 6, D - 6>(H, 6, 6));
+        if (joint) clamp(links.clamped[k], 0.0, H);
+        add(block<6, 6>(H, 0, 0), 0, 0, P[links.parent[k]]);
+        out.ride[k] = -1.0 * transposed(block<d, 6>(H, 6, 0));
+        out.reaction[k] = transposed(block<6, d>(H, 0, 6));
+        out.flexibility[k] = transposed(block<d, d>(H, 6, 6));
     }
     return kind;
 }
 
-// Replace V loads by the displacements; ``back`` as for K. Loads on clamped directions have no effect.
+// Replace V loads by the displacements. Loads on clamped directions have no effect.
 template <int D, int V>
-void solve(const Factors<D>& f, const Matrix6* back, int n, double* const (&x)[V]) {
+void solve(const Factors<D>& f, const Links& links, double* const (&x)[V]) {
     constexpr int d = D - 6;
-    Vector6 p[V]{}, xi[V]{};
+    const int n = links.n;
+    std::vector<std::array<Vector6, V>> p(n + 1), xi(n + 1);
     for (int k = n - 1; k >= 0; --k) {
+        auto& at_a = p[links.parent[k]];
         for (int v = 0; v < V; ++v) {
             double* q = x[v] + d * k;
-            p[v] = transposed_times(back[k], p[v]);
-            for (int i = 0; i < 6; ++i) q[i] += p[v][i];
+            Vector6 here = transposed_times(links.to_child[k], p[k + 1][v]);
+            for (int i = 0; i < 6; ++i) q[i] += here[i];
             for (int i = 0; i < d; ++i)
-                for (int j = 0; j < 6; ++j) p[v][j] += f.reaction[k][i][j] * q[i];
+                for (int j = 0; j < 6; ++j) here[j] += f.reaction[k][i][j] * q[i];
+            at_a[v] = at_a[v] + here;
         }
     }
     for (int k = 0; k < n; ++k) {
+        const auto& at_a = xi[links.parent[k]];
         Vector<d> here[V]{};
         for (int j = 0; j < d; ++j)
             for (int v = 0; v < V; ++v)
                 for (int i = 0; i < d; ++i) here[v][i] += f.flexibility[k][j][i] * x[v][d * k + j];
-        for (int v = 0; v < V; ++v) {  // last, since this alone waits for the element before
-            here[v] = here[v] + transposed_times(f.ride[k], xi[v]);
+        for (int v = 0; v < V; ++v) {  // last, since only this step depends on the previous element
+            here[v] = here[v] + transposed_times(f.ride[k], at_a[v]);
             for (int i = 0; i < d; ++i) x[v][d * k + i] = here[v][i];
-            xi[v] = outwards(back[k], x[v] + d * k, xi[v]);
+            xi[k + 1][v] = outwards(links.to_child[k], x[v] + d * k, at_a[v]);
         }
     }
 }
 
 // Replace the rows of x by the solutions.
 template <int D>
-void solve(const Factors<D>& f, const Matrix6* back, int n, Rows x) {
+void solve(const Factors<D>& f, const Links& links, Rows x) {
     int v = 0;
     for (; v + 1 < x.count; v += 2) {
         double* const two[2] = {x[v], x[v + 1]};
-        solve<D, 2>(f, back, n, two);
+        solve<D, 2>(f, links, two);
     }
     if (v < x.count) {
         double* const one[1] = {x[v]};
-        solve<D, 1>(f, back, n, one);
+        solve<D, 1>(f, links, one);
     }
 }
 
 // Negative pivots of K + iωC − ω²M in the same elimination, by real and imaginary parts.
 template <int D>
 int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, const ElementMatrices<D>& M,
-                    const Matrix6* back, const Matrix6* clamped, double omega) {
+                    const Links& links, double omega) {
     int count = 0;
-    Matrix6 P = Matrix6::zero(), Q = Matrix6::zero();
+    std::vector<Matrix6> P(K.n + 1, Matrix6::zero()), Q(K.n + 1, Matrix6::zero());
     for (int k = K.n - 1; k >= 0; --k) {
         Matrix<D, D> re, im;
         const auto &stiffness = K.element[k], &gyroscopic = C.element[k], &mass = M.element[k];
@@ -99,9 +129,12 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
                 im[i][j] = omega * gyroscopic[i][j];
             }
         }
-        add_beyond(congruence(back[k], P), re);
-        add_beyond(congruence(back[k], Q), im);
-        if (k == 0 && clamped) add(*clamped, 6, 6, re);
+        add_beyond(congruence(links.to_child[k], P[k + 1]), re);
+        add_beyond(congruence(links.to_child[k], Q[k + 1]), im);
+        if (is_joint(links, k)) {
+            clamp(links.clamped[k], 1.0, re);
+            clamp(links.clamped[k], 0.0, im);
+        }
         for (int p = D - 1; p > 5; --p) {
             if (re[p][p] < 0.0) ++count;
             const double inverse = 1.0 / re[p][p];
@@ -113,10 +146,12 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
                 }
             }
         }
+        Matrix6 &at_a = P[links.parent[k]], &skew_at_a = Q[links.parent[k]];
         for (int i = 0; i < 6; ++i) {
             for (int j = 0; j <= i; ++j) {
-                P[i][j] = P[j][i] = re[i][j];
-                Q[i][j] = im[i][j], Q[j][i] = -im[i][j];
+                at_a[i][j] += re[i][j];
+                skew_at_a[i][j] += im[i][j];
+                if (i != j) at_a[j][i] += re[i][j], skew_at_a[j][i] -= im[i][j];
             }
         }
     }

@@ -1,11 +1,12 @@
-"""Elimination of a chain's elements from the tip inwards, in the coordinates (ρ, β) of each: factors of K and solutions.
+"""Elimination of a tree's elements from the tips inwards, in the coordinates (ρ, β) of each: factors of K and solutions.
 
-Let P be the stiffness that the part of the chain beyond an element presents to its end b. With ξ_b = Ad⁻¹ (ρ + ξ_a), the
+Let P be the stiffness that all that lies beyond an element presents to its end b. With ξ_b = Ad⁻¹ (ρ + ξ_a), the
 element and that part have the stiffness
 
     [[X, Y], [W, Z]] on ξ_a and (ρ, β),
 
-the element's matrix plus Ad⁻ᵀ P Ad⁻¹ on ξ_a + ρ, and present P = X − Y Z⁻¹ W to end a. This is the recursion of Featherstone's
+the element's matrix plus Ad⁻ᵀ P Ad⁻¹ on ξ_a + ρ, and present X − Y Z⁻¹ W to end a, where the elements that begin there add
+up. This is the recursion of Featherstone's
 articulated bodies (*Rigid Body Dynamics Algorithms*, 2008, sec. 7.2) for a stiffness instead of an inertia. The large stiffness
 of a short element appears in Z only, not as a difference. The rounding error grows with the number of elements, and not
 with its fourth power as the condition number of the stiffness on the nodes' twists.
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import kernels
+from .links import Links
 
 Array = NDArray[np.float64]
 
@@ -30,38 +32,36 @@ class Factor(NamedTuple):
         flexibility: (n, d, d) Gᵀ.
         ride: (n, 6, d) Vᵀ.
         reaction: (n, d, 6) Rᵀ.
-        back: (n, 6, 6) Ad⁻¹.
+        links: the tree.
         positive: whether K is positive definite.
     """
 
     flexibility: Array
     ride: Array
     reaction: Array
-    back: Array
+    links: Links
     positive: bool
 
 
-def factor(K: Array, back: Array, clamped: Array) -> Factor:
+def factor(K: Array, links: Links) -> Factor:
     """Factor K.
 
     Args:
         K: (n, d + 6, d + 6) of the elements, see ``matrices``; not symmetric out of balance.
-        back, clamped: as in ``ChainPencil``.
+        links: the tree.
 
     Raises:
         numpy.linalg.LinAlgError: if K is singular.
     """
-    worst_pivot, flexibility, ride, reaction = kernels.factor(K, back, clamped)
+    worst_pivot, flexibility, ride, reaction = kernels.factor(K, links.arrays)
     if worst_pivot == 0:
         raise np.linalg.LinAlgError("singular")
-    if clamped.size:
-        flexibility[0, :6, :6] = back[0] @ flexibility[0, :6, :6] @ back[0]
-    return Factor(flexibility, ride, reaction, back, worst_pivot == 2)
+    return Factor(flexibility, ride, reaction, links, worst_pivot == 2)
 
 
 def solve(f: Factor, x: Array) -> None:
     """Replace loads (k, dn) by the displacements. Loads on clamped directions have no effect."""
-    kernels.solve(f.flexibility, f.ride, f.reaction, f.back, x)
+    kernels.solve(f.flexibility, f.ride, f.reaction, f.links.arrays, x)
 
 
 def solution(f: Factor, b: Array) -> Array:

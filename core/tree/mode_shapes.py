@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import kernels
-from ..element.discretize import Chain
+from ..element.mesh import Chain
 from .pencil import Shape
 
 Array = NDArray[np.float64]
@@ -22,5 +22,7 @@ def mode_shapes(body: Chain, shape: Shape, twists: Array) -> NDArray[np.complex1
     p = body.samples
     nodes, corner, beta, moved = (np.ascontiguousarray(a) for a in (shape.nodes, body.corner, shape.beta, twists))
     element = p.element.astype(np.int64)
-    found = kernels.sampled(body.beams.law.arrays, nodes, corner, beta, element, p.zeta0, p.shape, p.bubble, moved)
+    found = kernels.sampled(
+        body.beams.law.arrays, nodes, corner, beta, body.parent, element, p.zeta0, p.shape, p.bubble, moved
+    )
     return found.view(np.complex128)[..., 0]

@@ -1,11 +1,10 @@
-"""The rotating chain: its Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a given shape.
+"""The rotating tree: its Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a given shape.
 
-With elastic connections only, every node moves freely: the velocity transformation B of the general solver is square and
-invertible, so the modes follow from the twists of the bodies, of which each element couples two. Twists and wrenches of
-node k are in the axes of node k.
+All nodes rotate with the hub. Twists and wrenches of node k are in the axes of node k, and ξ is relative to the hub. In these
+axes B is constant, so that M̂ = BᵀMB, Ĉ = BᵀCB and K̂ = BᵀKB (``links``, ``matrices``).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -13,9 +12,11 @@ from numpy.typing import NDArray
 
 from ..compiled import kernels
 from ..effects import ALL_EFFECTS, Effects
-from ..element.discretize import Chain
-from . import elimination, matrices, root_joint
+from ..element.mesh import Chain
+from ..space import spatial as sp
+from . import elimination, joint_links, matrices
 from .elimination import Factor
+from .links import Links, allowed, gathered, twists
 
 Array = NDArray[np.float64]
 
@@ -26,94 +27,121 @@ _ROUNDING = 1e-13  # relative rounding in the stiffness of a rigid motion
 class ChainPencil:
     """Residual (dn,) on (ρ, β), and M, C, K (n, d + 6, d + 6) of the elements, see ``matrices``.
 
-    The inertia carried by a node is part of the element that begins there, or, at the tip, of the last one. ``back`` is the
-    Ad⁻¹ (n, 6, 6) of the relative poses. For a joint at the root, ρ of the first element is the twist of node 1, on which its
-    springs act, and ``back`` the projector on the free directions; ``clamped`` is as in ``Chain``, at this shape. A clamped
-    direction bears no load and does not move.
+    The inertia of a node is part of the first element that begins there, or, at a tip, of the one that ends there. A direction
+    that a joint clamps bears no load and does not move.
     """
 
     residual: Array
     M: Array
     C: Array
     K: Array
-    back: Array
-    clamped: Array
+    links: Links
 
     @cached_property
     def factor(self) -> Factor:
         """Factors of K; ``numpy.linalg.LinAlgError`` if it is singular."""
-        return elimination.factor(self.K, self.back, self.clamped)
+        return elimination.factor(self.K, self.links)
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A configuration of a chain.
+    """A configuration of a tree.
 
     Attributes:
         nodes: (n+1, 4, 4) poses in the hub's axes.
         beta: (n, 6 or 0) the elements' internal coordinates β.
-        relative: (n, 4, 4) pose of each node in the frame of the one before. Redundant with ``nodes``, but
+        relative: (n, 4, 4) pose of each node in the frame of its parent. Redundant with ``nodes``, but
             differences of poses lose the last digits of the strain: at radius R, with axial stiffness EA and element length
             h, the force would be wrong by EA R/h times the rounding unit.
+        joints: (j, 6) coordinates of the joints.
     """
 
     nodes: Array
     beta: Array
     relative: Array
+    joints: Array = field(default_factory=lambda: np.zeros((0, 6)))
 
 
 def undeformed(chain: Chain) -> Shape:
     """The undeformed shape."""
-    return Shape(chain.nodes, np.zeros((len(chain.nodes) - 1, chain.beams.inner)), chain.between)
+    beta = np.zeros((len(chain.nodes) - 1, chain.beams.inner))
+    return Shape(chain.nodes, beta, chain.between, np.zeros((len(chain.joints), 6)))
+
+
+def assembled(chain: Chain, relative: Array, beta: Array, joints: Array) -> Shape:
+    """The shape with these relative poses (n, 4, 4), in which those of joints are replaced by their coordinates (j, 6)."""
+    for joint, q in zip(chain.joints, joints, strict=True):
+        relative[joint.link] = joint_links.pose(joint, q)
+    return Shape(kernels.placed(chain.parent, chain.nodes[0], relative), beta, relative, joints)
 
 
 def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> ChainPencil:
     """Residual and pencil at a shape.
 
     Args:
-        chain: the chain.
-        shape: its configuration.
+        chain: the nodes and elements.
+        shape: where.
         omega: rotor speed, rad/s.
-        gravity: (3,) free-fall acceleration in the hub's axes, turning with it, m/s².
-        effects: effects included.
+        gravity: (3,) m/s², in the hub's axes.
+        effects: the effects included; without the geometric ones, the residual is not meaningful.
     """
     nodes, relative, corner, beta, lumps, force, fall = (
         np.ascontiguousarray(a)
         for a in (shape.nodes, shape.relative, chain.corner, shape.beta, chain.lumps, chain.force, gravity)
     )
-    f, M, C, K, spring, back, g, of_C, of_K = kernels.chain_parts(
-        chain.beams.arrays, nodes, relative, corner, beta, lumps, force, omega, fall, effects.geometric
+    f, M, C, K, spring, g, of_C, of_K = kernels.tree_parts(
+        chain.beams.arrays, nodes, relative, corner, beta, lumps, force, chain.parent, omega, fall, effects.geometric
     )
-    clamped = chain.clamped
-    if clamped.size:  # the joint replaces the first element
-        joint = root_joint.response(chain, relative[0], g[1] + f[1, :6] - f[1, 6:12])
-        clamped, spring[0] = joint.clamped, joint.stiffness
-        back[0] = np.eye(6) - clamped
-        f[0], K[0, :, :12], K[0, :12] = 0.0, 0.0, 0.0
-        f[0, 6:12] = joint.wrench
-        if effects.geometric:
-            of_K[1] += joint.turning
-    residual = kernels.chain_sum(f, M, C, K, spring, back, lumps, g, of_C, of_K)
+    links = Links(chain.parent, sp.adjoint(sp.inverse(relative)), np.zeros((0, 6, 6)))
+    for joint in chain.joints:
+        f[joint.link], K[joint.link, :, :12], K[joint.link, :12], spring[joint.link] = 0.0, 0.0, 0.0, 0.0
+    residual = gathered(links, f, g)
+    if chain.joints:
+        links = _with_joints(chain, shape, links, residual, K, spring, effects.geometric)
+    kernels.tree_sum(links.arrays, M, C, K, spring, lumps, of_C, of_K)
     if not effects.coriolis:
         C[:] = 0.0
-    if clamped.size:
-        residual[0, :6] -= clamped @ residual[0, :6]
-    return ChainPencil(residual.ravel(), M, C, K, back, clamped)
+    return ChainPencil(allowed(links, residual.reshape(1, -1))[0], M, C, K, links)
+
+
+def _with_joints(
+    chain: Chain, shape: Shape, links: Links, residual: Array, K: Array, spring: Array, geometric: bool
+) -> Links:
+    """Add the joints' forces to the residual (n, d) and their stiffness to K and ``spring``; the links with what they clamp."""
+    clamped = np.zeros((len(residual), 6, 6))
+    for joint, q in zip(chain.joints, shape.joints, strict=True):
+        k = joint.link
+        carried = residual[k, :6].copy() if geometric else np.zeros(6)
+        its = joint_links.response(joint, q, carried, chain.beams.preload[k])
+        clamped[k], spring[k] = its.clamped, its.stiffness
+        residual[k, :6] += its.force
+        turning = sp.cross(-carried)  # of the joint's wrench on end b, which follows end a: see add_elastic in beam.hpp
+        K[k, :6, 6:12] += turning
+        K[k, 6:12, 6:12] += turning
+    return Links(links.parent, links.to_child, clamped)
 
 
 def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     """(2m, n, d) ξ_b and β of the elements, the real and the imaginary parts of vectors (dn, m) of (ρ, β) in turn."""
-    return matrices.twists(p.back, np.stack([vectors.real.T, vectors.imag.T], axis=1).reshape(-1, len(vectors)))
+    return twists(p.links, np.stack([vectors.real.T, vectors.imag.T], axis=1).reshape(-1, len(vectors)))
 
 
-def loose(p: ChainPencil) -> bool:
-    """Whether the root joint allows a rigid-body motion of the blade without stiffness, apart from rounding."""
-    if not p.clamped.size:
+def has_free_motion(p: ChainPencil) -> bool:
+    """Whether a joint allows a rigid-body motion without stiffness, apart from rounding."""
+    if not p.links.clamped.size:
         return False
-    free = np.linalg.svd(np.eye(6) - p.clamped)[0][:, : 6 - round(float(np.trace(p.clamped)))]
-    x = np.zeros((free.shape[1], len(p.residual)))
-    x[:, :6] = free.T  # no strain beyond the joint
-    K = x @ matrices.product(p.K, 1.0, p.back, x).T
-    begins = np.abs(matrices.twists(p.back, x)[:, :-1, :6])
-    cancelled = np.einsum("mki,kij,mkj->", begins, np.abs(p.K[1:, :6, :6]), begins)
+    return any(_rigid_motion_is_free(p, int(k)) for k in np.flatnonzero(p.links.clamped.any(axis=(1, 2))))
+
+
+def _rigid_motion_is_free(p: ChainPencil, link: int) -> bool:
+    """Whether the joint at a link allows all that lies beyond to move without stiffness."""
+    clamped = p.links.clamped[link]
+    free = np.linalg.svd(np.eye(6) - clamped)[0][:, : 6 - round(float(np.trace(clamped)))]
+    x = np.zeros((free.shape[1], len(p.links.parent), len(p.residual) // len(p.links.parent)))
+    x[:, link, :6] = free.T  # no strain beyond the joint
+    x = x.reshape(len(x), -1)
+    K = x @ matrices.product(p.K, 1.0, p.links, x).T
+    moved = np.concatenate([np.zeros((len(x), 1, 6)), twists(p.links, x)[..., :6]], axis=1)
+    begins = np.abs(moved[:, p.links.parent])
+    cancelled = np.einsum("mki,kij,mkj->", begins, np.abs(p.K[:, :6, :6]), begins)
     return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= _ROUNDING * cancelled)

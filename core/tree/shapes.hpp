@@ -21,8 +21,8 @@ struct Samples {
 //
 // ``a`` and ``b`` are the poses of the element's nodes, ``corner`` that of its end in the frame of b, and ``eta0`` the logarithm of the
 // undeformed element.
-inline Matrix<4, 18> reading(const Samples& of, int point, const Pose& a, const Pose& b, const Pose& corner,
-                             const Vector6& eta0, const Vector6& beta) {
+inline Matrix<4, 18> sampling_matrix(const Samples& of, int point, const Pose& a, const Pose& b, const Pose& corner,
+                                     const Vector6& eta0, const Vector6& beta) {
     const Pose between = inverse(a) * b;
     const Vector6 eta = log(between * corner);
     const Vector6 zeta = of.zeta0[point] + of.shape[point] * (eta - eta0) + of.bubble[point] * beta;
@@ -39,16 +39,17 @@ inline Matrix<4, 18> reading(const Samples& of, int point, const Pose& a, const 
     return out;
 }
 
-// Read a mode's twists ξ_b and β, of d numbers an element, at a point of element k; ``out`` has four numbers, ``step`` apart.
-inline void read(const Matrix<4, 18>& reading, const double* twists, int d, int k, double* out, int step) {
+// Sample a mode's twists ξ_b and β, of d numbers an element, at a point of element k, which begins at node a; ``out`` has four
+// numbers, ``step`` apart.
+inline void sample(const Matrix<4, 18>& sampling, const double* twists, int d, int k, int a, double* out, int step) {
     Vector<18> u{};
     for (int i = 0; i < 6; ++i) {
-        u[i] = k > 0 ? twists[d * (k - 1) + i] : 0.0;  // node 0 does not move
+        u[i] = a > 0 ? twists[d * (a - 1) + i] : 0.0;  // node 0 does not move
         u[6 + i] = twists[d * k + i];
         if (d > 6) u[12 + i] = twists[d * k + 6 + i];
     }
-    const Vector<4> found = reading * u;
-    for (int i = 0; i < 4; ++i) out[step * i] = found[i];
+    const Vector<4> motion = sampling * u;
+    for (int i = 0; i < 4; ++i) out[step * i] = motion[i];
 }
 
 }  // namespace southwell

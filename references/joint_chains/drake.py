@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.element.discretize import Chain
+from ...core.element.mesh import Chain
 from ..protocol import install
 from .joint_chain import JointChain, bodies, check, places, rigid
 

@@ -20,7 +20,8 @@ from scipy.linalg import block_diag
 from ...core import curve
 from ...core.blade import Blade, clamped
 from ...core.effects import ALL_EFFECTS, Effects
-from ...core.element.discretize import Chain, discretize, divide
+from ...core.element.discretize import discretize, divide
+from ...core.element.mesh import Chain
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed

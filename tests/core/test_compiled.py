@@ -50,18 +50,20 @@ def test_every_function_has_its_signature_and_every_signature_its_function() -> 
 
 BODY = discretize(BLADE, 4)
 P = pencil.linearize(BODY, pencil.undeformed(BODY), 8.0, np.zeros(3))
-F = P.factor
+F, L = P.factor, P.links.arrays
+SHORT = kernels.Links(BODY.parent[:-1], P.links.to_child[:-1].copy(), np.zeros((0, 6, 6)))
 VECTOR = np.zeros((1, len(P.residual)))
 
 WRONG = [
-    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR.astype(int)), TypeError, "float64"),  # type: ignore[arg-type]
-    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR.repeat(2, axis=1)[:, ::2]), TypeError, "C-contiguous"),
-    (lambda: kernels.product(P.K, 1.0, P.back, VECTOR[:, :-1].copy()), ValueError, "length"),
-    (lambda: kernels.product(P.K[:, :9, :9].copy(), 1.0, P.back, VECTOR), ValueError, r"12, 12\) or \(n, 18, 18"),
-    (lambda: kernels.product(P.K, 1.0, P.back[:-1], VECTOR), ValueError, "108 numbers, not 144"),
-    (lambda: kernels.negative_pivots(P.K, P.C[:-1], P.M, P.back, P.clamped, 1.0), ValueError, "numbers"),
-    (lambda: kernels.solve(F.flexibility, F.ride[:-1], F.reaction, F.back, VECTOR), ValueError, "numbers"),
-    (lambda: kernels.displaced(BODY.nodes[:-1], BODY.between, np.zeros((4, 12))), ValueError, "numbers"),
+    (lambda: kernels.product(P.K, 1.0, L, VECTOR.astype(int)), TypeError, "float64"),  # type: ignore[arg-type]
+    (lambda: kernels.product(P.K, 1.0, L, VECTOR.repeat(2, axis=1)[:, ::2]), TypeError, "C-contiguous"),
+    (lambda: kernels.product(P.K, 1.0, L, VECTOR[:, :-1].copy()), ValueError, "length"),
+    (lambda: kernels.product(P.K[:, :9, :9].copy(), 1.0, L, VECTOR), ValueError, r"12, 12\) or \(n, 18, 18"),
+    (lambda: kernels.product(P.K, 1.0, SHORT, VECTOR), ValueError, "another number of links"),
+    (lambda: kernels.negative_pivots(P.K, P.C[:-1], P.M, L, 1.0), ValueError, "numbers"),
+    (lambda: kernels.solve(F.flexibility, F.ride[:-1], F.reaction, L, VECTOR), ValueError, "numbers"),
+    (lambda: kernels.displaced(BODY.parent, BODY.between[:-1].copy(), np.zeros((4, 12))), ValueError, "numbers"),
+    (lambda: kernels.Links(np.array([0, 2]), np.zeros((2, 6, 6)), np.zeros((0, 6, 6))), ValueError, "before its child"),
     (lambda: kernels.exp(np.zeros(5)), ValueError, "numbers"),
     (lambda: kernels.exp(np.array(1.0)), ValueError, "dimensions"),
 ]
@@ -77,11 +79,11 @@ def test_results_are_not_written_to_arrays_that_are_read_only() -> None:
     fixed = VECTOR.copy()
     fixed.flags.writeable = False
     with pytest.raises(ValueError, match=r"writ|read-only"):
-        kernels.solve(F.flexibility, F.ride, F.reaction, F.back, fixed)
+        kernels.solve(F.flexibility, F.ride, F.reaction, L, fixed)
 
 
 def test_a_block_has_one_or_two_vectors() -> None:
-    a = kernels.Operator(P.M, P.C, P.K, P.back, F.flexibility, F.ride, F.reaction, *np.zeros((2, 0, 6, 6)))
+    a = kernels.Operator(P.M, P.C, P.K, L, F.flexibility, F.ride, F.reaction, *np.zeros((2, 0, 6, 6)))
     basis, projected = np.zeros((20, 2 * VECTOR.size)), np.zeros((20, 20))
     for w, size in ((np.ones((3, 2 * VECTOR.size)), 0), (np.ones((1, 2 * VECTOR.size)), 21)):
         with pytest.raises(ValueError, match="one or two vectors"):

@@ -94,7 +94,7 @@ def test_stiffness_lost_to_rounding_is_not_called_unstable(monkeypatch: pytest.M
 
 def test_stiffness_that_may_be_either_is_called_both(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lanczos, "solve_error", lambda *_: 1e-2)
-    indefinite = property(lambda p: elimination.factor(p.K, p.back, p.clamped)._replace(positive=False))
+    indefinite = property(lambda p: elimination.factor(p.K, p.links)._replace(positive=False))
     monkeypatch.setattr(ChainPencil, "factor", indefinite)
     with pytest.raises(lanczos.EigensolverError, match=r"the steady state is unstable; or it is lost to rounding"):
         solve.mesh_modes(FLAT, 8.0, 40, 5)

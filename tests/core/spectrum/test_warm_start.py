@@ -82,7 +82,8 @@ def lumped(monkeypatch: pytest.MonkeyPatch) -> MeshSolver:
         apart = flap[:, None] != flap
         assert max(np.abs(m[:, apart]).max() / np.abs(m).max() for m in (p.M, p.K)) < 1e-15
         M, C, K = (np.where(apart, 0.0, m) for m in (p.M, p.C, p.K))
-        return replace(state, pencil=replace(p, M=M, C=C, K=K, back=np.where(apart[:6, :6], 0.0, p.back)))
+        to_child = np.where(apart[:6, :6], 0.0, p.links.to_child)
+        return replace(state, pencil=replace(p, M=M, C=C, K=K, links=replace(p.links, to_child=to_child)))
 
     monkeypatch.setattr(solution, "balance", decoupled)
     return MeshSolver(discretize(FLAT, 40, "half_end", "body_fixed"), 6, ALL_EFFECTS, np.zeros(3))

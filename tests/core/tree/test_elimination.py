@@ -1,4 +1,4 @@
-"""Products, factors and counts of a chain's matrices, element by element, against dense ones."""
+"""Products, factors and counts of a tree's matrices, element by element, against dense ones."""
 
 from dataclasses import replace
 
@@ -8,43 +8,63 @@ import pytest
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import completeness
 from southwell.core.tree import elimination, matrices
+from southwell.core.tree.links import Links, allowed, gathered, twists
 from southwell.core.tree.pencil import ChainPencil
-from southwell.tests.support.dense import dense
-
-SIZES = [(1, 6), (2, 12), (7, 12), (7, 6)]
-ROOTED = [(*size, 0) for size in SIZES] + [(*size, clamped) for size in SIZES[1:] for clamped in (2, 5)]
+from southwell.tests.support.dense import dense, to_twists
 
 
-def random(n: int, d: int, clamped: int = 0) -> ChainPencil:
-    """A chain with K > 0, M > 0 and C skew. If directions of node 1 are clamped, the first element is a massless joint."""
+def random(n: int, d: int, tree: str = "chain", joints: tuple[int, ...] = ()) -> ChainPencil:
+    """A tree with K > 0, M > 0 and C skew; the given links are massless joints that clamp two to five directions."""
     rng = np.random.default_rng(n * d)
     a, M, C = rng.normal(size=(3, n, d + 6, d + 6))
-    back, fixed = sp.adjoint(sp.exp(rng.normal(size=(n, 6)))), np.zeros((0, 0))
+    to_child, clamped = sp.adjoint(sp.exp(rng.normal(size=(n, 6)))), np.zeros((n if joints else 0, 6, 6))
     K, M, C = a @ np.swapaxes(a, 1, 2) + np.eye(d + 6), M @ np.swapaxes(M, 1, 2), C - np.swapaxes(C, 1, 2)
-    if clamped:
-        basis = np.linalg.qr(rng.normal(size=(6, clamped)))[0]
-        fixed = basis @ basis.T
-        free = back[0] = np.eye(6) - fixed
-        K[0, :12], K[0, 12:, :12], M[0], C[0] = 0.0, 0.0, 0.0, 0.0
-        K[0, 6:12, 6:12] = free @ np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]) @ free
-    return ChainPencil(np.zeros(n * d), M, C, K, back, fixed)
+    for k in joints:
+        basis = np.linalg.qr(rng.normal(size=(6, int(rng.integers(2, 6)))))[0]
+        clamped[k] = basis @ basis.T
+        free = np.eye(6) - clamped[k]
+        K[k, :12], K[k, 12:, :12], M[k], C[k] = 0.0, 0.0, 0.0, 0.0
+        K[k, 6:12, 6:12] = free @ np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]) @ free
+    parents = {
+        "chain": np.arange(n),
+        "bushy": np.array([int(rng.integers(0, k + 1)) for k in range(n)]),
+        "star": np.array([0 if k % 4 == 0 else k for k in range(n)]),  # branches of four links
+    }
+    return ChainPencil(np.zeros(n * d), M, C, K, Links(parents[tree].astype(np.int64), to_child, clamped))
 
 
-@pytest.mark.parametrize(("n", "d"), SIZES)
+CASES = [(n, d, "chain", ()) for n, d in ((1, 6), (2, 12), (7, 12), (7, 6))]
+CASES += [(2, 12, "chain", (0,)), (7, 12, "chain", (0,)), (7, 6, "chain", (0, 3)), (7, 12, "chain", (2, 6))]
+CASES += [(9, 12, "bushy", ()), (9, 6, "bushy", (1, 4)), (12, 12, "star", ()), (12, 12, "star", (0, 5, 10))]
+
+
+@pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("vectors", [1, 2, 5])
-def test_products_are_those_of_the_dense_matrix(n: int, d: int, vectors: int) -> None:
-    p = random(n, d)
-    x = np.random.default_rng(1).normal(size=(vectors, n * d))
+def test_products_are_those_of_the_dense_matrix(case, vectors: int) -> None:
+    p = random(*case)
+    x = allowed(p.links, np.random.default_rng(1).normal(size=(vectors, len(p.residual))))
     for matrix, sign in ((p.K, 1.0), (p.M, 1.0), (p.C, -1.0)):
-        np.testing.assert_allclose(matrices.product(matrix, sign, p.back, x), x @ dense(p, matrix).T, atol=1e-10)
+        product = allowed(p.links, matrices.product(matrix, sign, p.links, x))
+        np.testing.assert_allclose(product, x @ dense(p, matrix).T, atol=1e-10)
 
 
-@pytest.mark.parametrize(("n", "d", "clamped"), ROOTED)
+@pytest.mark.parametrize("case", CASES)
+def test_wrenches_are_gathered_by_the_transpose_of_the_velocity_transformation(case) -> None:
+    p = random(*case)
+    n, d = len(p.links.parent), len(p.residual) // len(p.links.parent)
+    g = np.random.default_rng(2).normal(size=(n + 1, 6))
+    load = np.zeros((n, d))
+    load[:, :6] = g[1:]
+    collected = gathered(p.links, np.zeros((n, d + 6)), g).ravel()
+    np.testing.assert_allclose(collected, to_twists(p, d).T @ load.ravel(), atol=1e-10)  # Bᵀ
+
+
+@pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("vectors", [1, 2, 5])
-def test_solutions_are_those_of_the_dense_matrix(n: int, d: int, clamped: int, vectors: int) -> None:
-    p = random(n, d, clamped)
+def test_solutions_are_those_of_the_dense_matrix(case, vectors: int) -> None:
+    p = random(*case)
     p = replace(p, K=p.K + p.C)  # out of balance
-    x = np.random.default_rng(1).normal(size=(vectors, n * d))
+    x = np.random.default_rng(1).normal(size=(vectors, len(p.residual)))
     expected = x @ np.linalg.pinv(dense(p, p.K), rcond=1e-12).T  # zero in clamped directions
     assert p.factor.positive
     elimination.solve(p.factor, x)
@@ -52,20 +72,20 @@ def test_solutions_are_those_of_the_dense_matrix(n: int, d: int, clamped: int, v
 
 
 @pytest.mark.parametrize("least", [1.0, 1e-6, -1e-6, -1.0])
-@pytest.mark.parametrize("clamped", [0, 2])
-def test_the_factor_detects_a_positive_definite_matrix(least: float, clamped: int) -> None:
+@pytest.mark.parametrize("case", [(4, 12, "chain", ()), (4, 12, "chain", (0,)), (6, 12, "bushy", (2,))])
+def test_the_factor_detects_a_positive_definite_matrix(least: float, case) -> None:
     """K − λM, which is zero at the lowest eigenvalue of the pair, with that eigenvalue shifted."""
-    p = random(4, 12, clamped)
+    p = random(*case)
     K, M = (dense(p, matrix) for matrix in (p.K, p.M))
     lowest = 1.0 / np.linalg.eigvals(np.linalg.pinv(K, rcond=1e-12) @ M).real.max()
     shifted = replace(p, K=p.K - lowest * (1.0 - least) * p.M)
     assert shifted.factor.positive == (least > 0)
 
 
-@pytest.mark.parametrize(("n", "d", "clamped"), ROOTED)
+@pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("omega", [0.0, 0.3, 1.0, 3.0, 10.0])
-def test_the_count_is_that_of_the_dense_matrix(n: int, d: int, clamped: int, omega: float) -> None:
-    p = random(n, d, clamped)
+def test_the_count_is_that_of_the_dense_matrix(case, omega: float) -> None:
+    p = random(*case)
     K, C, M = (dense(p, matrix) for matrix in (p.K, p.C, p.M))
     signs = np.linalg.eigvalsh(K + 1j * omega * C - omega**2 * M)
     assert completeness.below(p, omega) == int((signs < -1e-9).sum())
@@ -97,8 +117,8 @@ def test_solutions_of_a_straight_beam_keep_their_digits(n: int) -> None:
     K[:, 6:, 6:] = back.T @ np.linalg.inv(flexibility) @ back  # on ρ, in the axes of a
     for k in range(n):  # a unit force at the tip
         load[0, 6 * k + 1], load[0, 6 * k + 5] = 1.0, (n - k) * h
-    backs = np.tile(back, (n, 1, 1))
-    elimination.solve(elimination.factor(K, backs, np.zeros((0, 0))), load)
-    tip = matrices.twists(backs, load)[0, -1]
+    links = Links(np.arange(n, dtype=np.int64), np.tile(back, (n, 1, 1)), np.zeros((0, 6, 6)))
+    elimination.solve(elimination.factor(K, links), load)
+    tip = twists(links, load)[0, -1]
     assert tip[1] == pytest.approx(1.0 / (3.0 * EI), rel=1e-15 * n)
     assert tip[5] == pytest.approx(1.0 / (2.0 * EI), rel=1e-15 * n)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from southwell.cases.input.library import load
 from southwell.core import solve
 from southwell.core.blade import Blade, without_rotary_inertia
-from southwell.core.element.discretize import Chain, discretize
+from southwell.core.element.discretize import discretize
+from southwell.core.element.mesh import Chain
 from southwell.references.joint_chains import drake as drake_chain
 from southwell.references.joint_chains import joint_chain
 from southwell.references.joint_chains import mujoco as mujoco_chain

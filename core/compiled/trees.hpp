@@ -1,13 +1,13 @@
-// Chains: what Python calls of core/tree.
+// Trees: what Python calls of core/tree.
 #pragma once
 
 #include <algorithm>
 
 #include "../spectrum/energies.hpp"
 #include "../steady/extrapolation.hpp"
-#include "../tree/chain.hpp"
 #include "../tree/elimination.hpp"
 #include "../tree/shapes.hpp"
+#include "../tree/tree.hpp"
 #include "elements.hpp"
 
 namespace southwell {
@@ -27,6 +27,31 @@ auto sized(const py::array& matrix, F f) {
     throw std::invalid_argument("the matrices of elements must be (n, 12, 12) or (n, 18, 18)");
 }
 
+// The links of a tree, with the arrays they refer to; see links.hpp.
+struct LinkArrays {
+    Indices parent;
+    Doubles to_child, clamped;
+    std::vector<bool> leaf;  // of the nodes
+    Links links;
+
+    LinkArrays(Indices parent_, Doubles to_child_, Doubles clamped_)
+        : parent(parent_), to_child(to_child_), clamped(clamped_), leaf(parent.size() + 1, true) {
+        const int n = static_cast<int>(parent.size());
+        for (int k = 0; k < n; ++k) {
+            if (parent.at(k) < 0 || parent.at(k) > k)
+                throw std::invalid_argument("a parent must come before its child");
+            leaf[parent.at(k)] = false;
+        }
+        links = {n, parent.data(), items<Matrix6>(to_child, n), clamped.size() ? items<Matrix6>(clamped, n) : nullptr};
+    }
+};
+
+// The links of a matrix of n elements.
+inline const Links& links_of(const LinkArrays& of, py::ssize_t n) {
+    if (of.links.n != n) throw std::invalid_argument("the tree has another number of links than the matrix");
+    return of.links;
+}
+
 // Vectors as the rows of an array (k, length).
 inline Rows rows_of(const py::array& a, py::ssize_t length) {
     if (a.ndim() != 2 || a.shape(1) != length)
@@ -41,36 +66,48 @@ inline Rows writable_rows(py::array& a, py::ssize_t length) {
     return rows_of(a, length);
 }
 
-// Elements and nodes at a shape, before assembly: OnStrain, Ad⁻¹ (n, 6, 6), and g, C, K of the nodes.
-inline py::tuple chain_parts(const BeamArrays& of, const py::array& nodes, const py::array& relative,
-                             const py::array& corner, const py::array& beta, const py::array& lumps,
-                             const py::array& force, double omega, const py::array& gravity, bool geometric) {
+// Elements and nodes at a shape, before assembly: OnStrain, and g, C, K of the nodes.
+inline py::tuple tree_parts(const BeamArrays& of, const py::array& nodes, const py::array& relative,
+                            const py::array& corner, const py::array& beta, const py::array& lumps,
+                            const py::array& force, const Indices& parent, double omega, const py::array& gravity,
+                            bool geometric) {
     const Beams& beams = of.beams;
     const int n = beams.elements;
     const Pose *pose = items<Pose>(nodes, n + 1), *between = items<Pose>(relative, n), *end = items<Pose>(corner, n);
     const Matrix6* lump = items<Matrix6>(lumps, n + 1);
     const Vector3 *push = items<Vector3>(force, n + 1), *g0 = items<Vector3>(gravity, 1);
+    if (parent.size() != n) throw std::invalid_argument("the tree has another number of links than elements");
     check(beta, beams.inner ? 6 * n : 0);
     OnStrain out(n, of.size());
-    Doubles back({n, 6, 6}), g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
+    Doubles g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
+    std::vector<Surroundings> around(n + 1);
     for (int k = 0; k <= n; ++k) {
-        const Surroundings around = surroundings(pose[k], omega, *g0);
-        const Inertial node = node_pencil(lump[k], push[k], around, geometric);
+        around[k] = surroundings(pose[k], omega, *g0);
+        const Inertial node = node_pencil(lump[k], push[k], around[k], geometric);
         fill<Vector6>(g)[k] = node.g, fill<Matrix6>(C)[k] = node.C, fill<Matrix6>(K)[k] = node.K;
-        if (k == n) break;
-        fill<Matrix6>(back)[k] = adjoint(inverse(between[k]));
-        out.set(k, element_pencil(beams, k, between[k] * end[k], coordinates(beta, k), around, geometric, of.loaded));
     }
-    return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring, back, g, C, K);
+    for (int k = 0; k < n; ++k)
+        out.set(k, element_pencil(beams, k, between[k] * end[k], coordinates(beta, k), around[parent.at(k)], geometric,
+                                  of.loaded));
+    return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring, g, C, K);
 }
 
-// Add springs and nodes to the elements' M, C and K, in place; returns the residual on (ρ, β).
-inline Doubles chain_sum(const py::array& f, py::array& M, py::array& C, py::array& K, const py::array& spring,
-                         const py::array& back, const py::array& lumps, const py::array& g, const py::array& of_C,
-                         const py::array& of_K) {
-    return sized(M, [&](auto D) {
-        const int n = static_cast<int>(M.shape(0));
-        const Matrix6 *springs = items<Matrix6>(spring, n), *ahead = items<Matrix6>(back, n);
+// Loads (n, d) on (ρ, β) from those of the elements (n, D) and nodes (n + 1, 6).
+inline Doubles gathered(const LinkArrays& of, const py::array& f, const py::array& g) {
+    const int n = of.links.n, d = static_cast<int>(f.size() / std::max(n, 1)) - 6;
+    Doubles out({n, d});
+    gather(of.links, items<double>(f, py::ssize_t{n} * (d + 6)), items<Vector6>(g, n + 1), d, out.mutable_data());
+    return out;
+}
+
+// Add springs and nodes to the elements' M, C and K, in place. The part of a node belongs to the first element that begins
+// there, or to the one that ends there if it is a leaf.
+inline void tree_sum(const LinkArrays& of, py::array& M, py::array& C, py::array& K, const py::array& spring,
+                     const py::array& lumps, const py::array& of_C, const py::array& of_K) {
+    sized(M, [&](auto D) {
+        const Links& links = links_of(of, M.shape(0));
+        const int n = links.n;
+        const Matrix6* springs = items<Matrix6>(spring, n);
         auto *mass = writable<Matrix<D, D>>(M, n), *gyroscopic = writable<Matrix<D, D>>(C, n);
         auto* stiffness = writable<Matrix<D, D>>(K, n);
         const Matrix6* on_nodes[3] = {items<Matrix6>(lumps, n + 1), items<Matrix6>(of_C, n + 1),
@@ -78,40 +115,35 @@ inline Doubles chain_sum(const py::array& f, py::array& M, py::array& C, py::arr
         for (int k = 0; k < n; ++k) add(springs[k], 6, 6, stiffness[k]);
         for (auto [matrix, node] :
              {std::pair{mass, on_nodes[0]}, {gyroscopic, on_nodes[1]}, {stiffness, on_nodes[2]}}) {
-            for (int k = 1; k < n; ++k) add(node[k], 0, 0, matrix[k]);
-            add_at_tip(ahead[n - 1], node[n], matrix[n - 1]);
+            std::vector<bool> waiting(n + 1, true);
+            waiting[0] = false;  // node 0 does not move
+            for (int k = 0; k < n; ++k) {
+                const auto a = links.parent[k];
+                if (waiting[a]) add(node[a], 0, 0, matrix[k]);
+                waiting[a] = false;
+                if (of.leaf[k + 1]) add_at_end(links.to_child[k], node[k + 1], matrix[k]);
+            }
         }
-        Doubles out({n, D - 6});
-        gather(items<double>(f, n * D), ahead, items<Vector6>(g, n + 1), n, D - 6, out.mutable_data());
-        return out;
+        return 0;
     });
 }
 
-// The poses (n + 1, 4, 4) and (n, 4, 4) after a step (n, 6 or 12).
-inline py::tuple displaced(const py::array& nodes, const py::array& relative, const py::array& step) {
-    const int n = static_cast<int>(step.shape(0)), width = static_cast<int>(step.shape(1));
-    Doubles moved({n + 1, 4, 4}), between({n, 4, 4});
-    std::copy_n(items<Pose>(nodes, n + 1), n + 1, fill<Pose>(moved));
-    std::copy_n(items<Pose>(relative, n), n, fill<Pose>(between));
-    displace(items<double>(step, n * width), width, n, fill<Pose>(moved), fill<Pose>(between));
-    return py::make_tuple(moved, between);
+// The relative poses (n, 4, 4) after a step (n, 6 or 12) of twists of the nodes 1 … n.
+inline Doubles displaced(const Indices& parent, const py::array& relative, const py::array& step) {
+    const int n = static_cast<int>(parent.size()), width = static_cast<int>(step.shape(1));
+    Doubles out({n, 4, 4});
+    std::copy_n(items<Pose>(relative, n), n, fill<Pose>(out));
+    displace(parent.data(), items<double>(step, n * width), width, n, fill<Pose>(out));
+    return out;
 }
 
-// The poses of the nodes and the relative ones, from the first node's pose and twists (n, 6 or 12) from ``between`` on.
-inline py::tuple bent(const py::array& first, const py::array& between, const py::array& coordinates) {
-    const int n = static_cast<int>(coordinates.shape(0)), width = static_cast<int>(coordinates.shape(1));
-    const Pose* from = items<Pose>(between, n);
-    const double* twist = items<double>(coordinates, n * width);
-    Doubles nodes({n + 1, 4, 4}), relative({n, 4, 4});
-    Pose *to = fill<Pose>(nodes), *step = fill<Pose>(relative);
-    to[0] = *items<Pose>(first, 1);
-    for (int k = 0; k < n; ++k) {
-        Vector6 change;
-        for (int i = 0; i < 6; ++i) change[i] = twist[width * k + i];
-        step[k] = from[k] * exp(change);
-        to[k + 1] = to[k] * step[k];
-    }
-    return py::make_tuple(nodes, relative);
+// The poses (n + 1, 4, 4) of the nodes from that of node 0 and the relative ones (n, 4, 4).
+inline Doubles placed(const Indices& parent, const py::array& first, const py::array& relative) {
+    const int n = static_cast<int>(parent.size());
+    Doubles nodes({n + 1, 4, 4});
+    fill<Pose>(nodes)[0] = *items<Pose>(first, 1);
+    place(parent.data(), items<Pose>(relative, n), n, fill<Pose>(nodes));
+    return nodes;
 }
 
 // Values (k, …) as rows.
@@ -138,18 +170,18 @@ inline Doubles extrapolated(const py::array& x, const py::array& values, int deg
 }
 
 // Products (k, dn) of a symmetric (sign 1) or skew (−1) matrix with the rows of x (k, dn).
-inline Doubles product(const py::array& matrix, double sign, const py::array& back, const py::array& x) {
+inline Doubles product(const py::array& matrix, double sign, const LinkArrays& links, const py::array& x) {
     return sized(matrix, [&](auto D) {
         const auto m = elements_of<D>(matrix, matrix.shape(0));
         const Rows from = rows_of(x, m.n * (D - 6));
         Doubles out({from.count, m.n * (D - 6)});
-        times(m, sign, items<Matrix6>(back, m.n), from, {out.mutable_data(), from.stride, from.count});
+        times(m, sign, links_of(links, m.n), from, {out.mutable_data(), from.stride, from.count});
         return out;
     });
 }
 
 // x*Kx, ½i x*Cx and x*Mx (m, 3) of complex vectors x (m, 2, dn), by real and imaginary parts.
-inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py::array& M, const py::array& back,
+inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links,
                                const py::array& x) {
     return sized(K, [&](auto D) {
         const auto n = K.shape(0);
@@ -159,54 +191,53 @@ inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py:
         double* from = const_cast<double*>(items<double>(x, py::ssize_t{2} * modes * size));
         Doubles out({modes, 3});
         std::fill_n(out.mutable_data(), out.size(), 0.0);
-        add_energies(mass, gyroscopic, stiffness, items<Matrix6>(back, n), {from, size, 2 * modes},
-                     fill<Energies>(out));
+        add_energies(mass, gyroscopic, stiffness, links_of(links, n), {from, size, 2 * modes}, fill<Energies>(out));
         return out;
     });
 }
 
 // Replace ρ by ξ_b in vectors x (k, n, d), in place.
-inline void twists(const py::array& back, py::array& x) {
+inline void twists(const LinkArrays& links, py::array& x) {
     if (x.ndim() != 3) throw std::invalid_argument("vectors must be (k, n, d)");
     const auto n = x.shape(1), d = x.shape(2);
     double* data = writable<double>(x, x.size());
-    to_twists(items<Matrix6>(back, n), static_cast<int>(n), static_cast<int>(d),
-              {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
+    to_twists(links_of(links, n), static_cast<int>(d), {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
 }
 
 // Complex displacements and rotations (m, q, 4, 2) of q points, by real and imaginary parts, from the twists (2m, n, d) of m modes.
 inline Doubles sampled(const LawArrays& law, const py::array& nodes, const py::array& corner, const py::array& beta,
-                       const Indices& element, const py::array& zeta0, const py::array& shape, const py::array& bubble,
-                       const py::array& twists) {
+                       const Indices& parent, const Indices& element, const py::array& zeta0, const py::array& shape,
+                       const py::array& bubble, const py::array& twists) {
     if (twists.ndim() != 3 || twists.shape(0) % 2) throw std::invalid_argument("twists must be (2m, n, d)");
     const py::ssize_t n = law.n, q = element.size(), rows = twists.shape(0), d = twists.shape(2);
     const Pose *pose = items<Pose>(nodes, n + 1), *end = items<Pose>(corner, n);
     const double* from = items<double>(twists, rows * n * d);
     check(beta, n * (d - 6));
+    if (parent.size() != n) throw std::invalid_argument("the tree has another number of links than elements");
     const Samples of{static_cast<int>(q), element.data(), items<Vector6>(zeta0, q), items<Matrix6>(shape, q),
                      items<Matrix6>(bubble, q)};
     Doubles out({rows / 2, q, py::ssize_t{4}, py::ssize_t{2}});
     for (int p = 0; p < of.count; ++p) {
         const auto k = of.element[p];
         if (k < 0 || k >= n) throw std::invalid_argument("a point belongs to no element");
-        const Matrix<4, 18> at = reading(of, p, pose[k], pose[k + 1], end[k], law.law.eta[k], coordinates(beta, k));
+        const auto a = parent.at(k);
+        const Matrix<4, 18> at =
+            sampling_matrix(of, p, pose[a], pose[k + 1], end[k], law.law.eta[k], coordinates(beta, k));
         for (py::ssize_t v = 0; v < rows; ++v)
-            read(at, from + v * n * d, static_cast<int>(d), static_cast<int>(k),
-                 out.mutable_data() + 8 * (v / 2 * q + p) + v % 2, 2);
+            sample(at, from + v * n * d, static_cast<int>(d), static_cast<int>(k), static_cast<int>(a),
+                   out.mutable_data() + 8 * (v / 2 * q + p) + v % 2, 2);
     }
     return out;
 }
 
-inline const Matrix6* clamp(const py::array& clamped) { return clamped.size() ? items<Matrix6>(clamped, 1) : nullptr; }
-
 // Factors of K: the worst pivot (see ``invert``), flexibility, ride, reaction.
-inline py::tuple factor(const py::array& K, const py::array& back, const py::array& clamped) {
+inline py::tuple factor(const py::array& K, const LinkArrays& links) {
     return sized(K, [&](auto D) {
         constexpr int d = D - 6;
         const auto m = elements_of<D>(K, K.shape(0));
         Doubles flexibility({m.n, d, d}), ride({m.n, 6, d}), reaction({m.n, d, 6});
         const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(ride), fill<Matrix<d, 6>>(reaction)};
-        const int kind = eliminate(m, items<Matrix6>(back, m.n), clamp(clamped), out);
+        const int kind = eliminate(m, links_of(links, m.n), out);
         return py::make_tuple(kind, flexibility, ride, reaction);
     });
 }
@@ -222,22 +253,20 @@ Factors<D> factors_of(const py::array& flexibility, const py::array& ride, const
 
 // Replace the loads x (k, dn) by the displacements.
 inline void solve_in_place(const py::array& flexibility, const py::array& ride, const py::array& reaction,
-                           const py::array& back, py::array& x) {
-    const int n = static_cast<int>(flexibility.shape(0)), d = static_cast<int>(flexibility.shape(1));
-    const Matrix6* ahead = items<Matrix6>(back, n);
+                           const LinkArrays& of, py::array& x) {
+    const Links& links = links_of(of, flexibility.shape(0));
+    const int n = links.n, d = static_cast<int>(flexibility.shape(1));
     const Rows rows = writable_rows(x, n * d);
     if (d == 12)
-        solve(factors_of<18>(flexibility, ride, reaction, n), ahead, n, rows);
+        solve(factors_of<18>(flexibility, ride, reaction, n), links, rows);
     else
-        solve(factors_of<12>(flexibility, ride, reaction, n), ahead, n, rows);
+        solve(factors_of<12>(flexibility, ride, reaction, n), links, rows);
 }
 
-inline int negative(const py::array& K, const py::array& C, const py::array& M, const py::array& back,
-                    const py::array& clamped, double omega) {
+inline int negative(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links, double omega) {
     return sized(K, [&](auto D) {
         const auto m = elements_of<D>(K, K.shape(0));
-        return negative_pivots(m, elements_of<D>(C, m.n), elements_of<D>(M, m.n), items<Matrix6>(back, m.n),
-                               clamp(clamped), omega);
+        return negative_pivots(m, elements_of<D>(C, m.n), elements_of<D>(M, m.n), links_of(links, m.n), omega);
     });
 }
 

@@ -1,0 +1,89 @@
+"""Meshes joined to a tree: a blade on its root joint, blades on a hub."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..space import spatial as sp
+from .beams import Beams, Points
+from .measures import even, joined, part
+from .mesh import Chain, JointLink
+
+Array = NDArray[np.float64]
+
+CLAMPED: Array = np.full(6, np.inf)
+"""Stiffness of a joint that connects rigidly."""
+
+
+def hub(like: Chain, pose: Array) -> Chain:
+    """A tree without links: node 0, fixed to the rotating hub at ``pose`` (4, 4); for branches of the kind of ``like``."""
+    none = slice(0, 0)
+    b = like.beams
+    beams = Beams(part(b.law, none), b.stiffness[none], _sliced(b.points), b.preload[none], b.inner_preload[none])
+    return Chain(pose[None], np.zeros((1, 6, 6)), beams, _sliced(like.samples), 0.0, np.zeros((1, 3)))
+
+
+def attached(
+    tree: Chain, node: int, branch: Chain, at_a: Array, at_b: Array | None = None, stiffness: Array = CLAMPED
+) -> Chain:
+    """A tree with a branch on a joint.
+
+    Args:
+        tree: nodes and elements.
+        node: the tree's node that carries the joint.
+        branch: nodes and elements; its node 0 becomes the joint's other end, with the inertia given there.
+        at_a: (4, 4) pose of the joint's frame in the tree's node.
+        at_b: (4, 4) the same in the branch's node 0; the identity by default.
+        stiffness: (6,) of the joint's coordinates, see ``JointLink``; clamped by default.
+
+    Raises:
+        ValueError: elements of different strain measures, or with mass in one part and lumped in the other.
+    """
+    a, b = tree.beams, branch.beams
+    if tree.elements and branch.elements and (a.law.measure, a.inner) != (b.law.measure, b.inner):
+        raise ValueError("branch: its elements have another strain measure or mass than the tree's")
+    end = np.eye(4) if at_b is None else at_b
+    links, nodes = len(tree.parent), len(tree.nodes)
+    root = tree.nodes[node] @ at_a @ sp.inverse(end)  # pose of the branch's node 0
+    moved = root @ sp.inverse(branch.nodes[0])
+    joint = JointLink(links, at_a, end, stiffness)
+    none = np.zeros((1, 6))
+    beams = Beams(
+        law=joined([a.law, even(b.law.measure, (at_a @ sp.inverse(end))[None]), b.law]),
+        stiffness=np.concatenate([a.stiffness, np.zeros((1, 6, 6)), b.stiffness]),
+        points=_together(a.points, b.points, links + 1),
+        preload=np.concatenate([a.preload, none, b.preload]),
+        inner_preload=np.concatenate([a.inner_preload, none, b.inner_preload]),
+    )
+    return Chain(
+        nodes=np.concatenate([tree.nodes, moved @ branch.nodes]),
+        lumps=np.concatenate([tree.lumps, branch.lumps]),
+        beams=beams,
+        samples=_together(tree.samples, branch.samples, links + 1),
+        scale=max(tree.scale, branch.scale),
+        force=np.concatenate([tree.force, branch.force @ moved[:3, :3].T]),
+        corner=np.concatenate([tree.corner, np.eye(4)[None], branch.corner]),
+        parent=np.concatenate([tree.parent, [node], branch.parent + nodes]),
+        joints=(*tree.joints, joint, *(replace(j, link=j.link + links + 1) for j in branch.joints)),
+    )
+
+
+def around_hub(blade: Chain, count: int) -> Chain:
+    """A rotor of ``count`` equal blades, clamped at equal angles to a hub that rotates about z."""
+    rotor = hub(blade, np.eye(4))
+    for k in range(count):
+        azimuth = sp.pose(sp.rotation(2, np.array(2.0 * np.pi * k / count)), np.zeros(3))
+        rotor = attached(rotor, 0, blade, azimuth @ blade.nodes[0])
+    return rotor
+
+
+def _sliced(points: Points) -> Points:
+    return Points(*(getattr(points, f.name)[:0] for f in fields(points)))
+
+
+def _together(a: Points, b: Points, offset: int) -> Points:
+    """Points of both; the elements of the second ones are numbered from ``offset`` on."""
+    rows = {f.name: np.concatenate([getattr(a, f.name), getattr(b, f.name)]) for f in fields(a)}
+    rows["element"][len(a.element) :] += offset
+    return Points(**rows)
