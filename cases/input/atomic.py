@@ -30,16 +30,16 @@ def through(path: Path, save: Callable[[BinaryIO], object]) -> None:
     Raises:
         OSError: as for ``write``.
     """
-    beside = path.with_name(f"{path.name}{PART}")
+    partial = path.with_name(f"{path.name}{PART}")
     try:
-        with beside.open("wb") as file:
+        with partial.open("wb") as file:
             save(file)
             file.flush()
             os.fsync(file.fileno())
-        beside.replace(path)
+        partial.replace(path)
     except BaseException as error:
         with suppress(OSError):
-            beside.unlink(missing_ok=True)
+            partial.unlink(missing_ok=True)
         if isinstance(error, OSError):
             raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         raise

@@ -1,15 +1,19 @@
 """Text files as saved by editors and spreadsheets: byte order marks, UTF-16, separators other than commas.
 
 Files that are not text are recognised: an empty or binary file, a web page, a pointer in place of the file. Files
-referenced by another file are read only from the folder of the file that the user named, see ``reading``.
+referenced by another file are read only from the folder of the file that the user named or, in a deck, from the folders
+beside it; see ``reading``.
 """
 
 import codecs
 import csv
+import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ...core.regular_files import read_bytes
 from .errors import CaseError
@@ -21,48 +25,74 @@ NOT_THE_FILE = (
 )
 """Beginning of a file that is in place of another → what it is and the remedy."""
 
-_folders: ContextVar[tuple[Path, ...]] = ContextVar("folders", default=())
-"""Folders from which files may be read; empty: any."""
+
+@dataclass(frozen=True)
+class Allowed:
+    """Folders from which files may be read.
+
+    Attributes:
+        folders: folders with everything below them.
+        trees: folders above that of a deck's main file, of which subfolders may be read but not the files in them.
+    """
+
+    folders: tuple[Path, ...]
+    trees: tuple[Path, ...] = ()
+
+
+_allowed: ContextVar[Allowed | None] = ContextVar("allowed", default=None)
+"""None: any folder."""
+
+_roots: ContextVar[tuple[Path, ...]] = ContextVar("roots", default=())
+"""Folders that the user allows in addition, ``--root``."""
 
 _outside: ContextVar[bool] = ContextVar("outside", default=False)
 
 
 @contextmanager
-def outside_allowed(allowed: bool = True) -> Iterator[None]:
-    """Context manager that allows files to reference files in any folder (``--allow-outside``)."""
-    token = _outside.set(allowed)
+def _set(variable: ContextVar[Any], value: object) -> Iterator[None]:
+    token = variable.set(value)
     try:
         yield
     finally:
-        _outside.reset(token)
+        variable.reset(token)
 
 
-@contextmanager
-def reading(*named: Path) -> Iterator[None]:
+def outside_allowed(allowed: bool = True) -> AbstractContextManager[None]:
+    """Context manager that allows files to reference files in any folder (``--allow-outside``)."""
+    return _set(_outside, allowed)
+
+
+def root_allowed(root: Path) -> AbstractContextManager[None]:
+    """Context manager that allows files to reference files below ``root`` (``--root``).
+
+    Raises:
+        CaseError: if it is not a folder.
+    """
+    if not os.path.isdir(root):  # also False for an invalid name
+        raise CaseError(f"--root {root}: no such folder: give the folder that holds all files of the deck")
+    return _set(_roots, (*_roots.get(), _resolved(root)))
+
+
+def reading(*named: Path, deck: bool = False) -> AbstractContextManager[None]:
     """Context manager that restricts reading to the folders of the files that the user named.
 
-    HAWC2 resolves paths from the model's folder: the parent of an htc file's folder, if that is called ``htc``. A nested
-    ``reading``, for a file that another one references, changes nothing.
+    HAWC2 resolves paths from the model's folder: the parent of an htc file's folder, if that is called ``htc``. The files of a
+    ``deck`` may also reference files in the folders beside theirs, as ``../5MW_Baseline/Blade.dat``: this is how OpenFAST's
+    models share files. Hidden folders are excluded, and so are all of them if the folder above is the user's home folder,
+    contains it, or is the root of the file system. A nested ``reading``, for a file that another one references, changes
+    nothing.
     """
-    folders = [path.parent.parent if _resolved(path.parent).name == "htc" else path.parent for path in named]
-    with _only(_folders.get() or tuple(map(_resolved, (*folders, *named)))):  # a named file may be a link to any folder
-        yield
+    if _allowed.get():
+        return nullcontext()
+    folders = [_resolved(path.parent.parent if _resolved(path.parent).name == "htc" else path.parent) for path in named]
+    above = {folder.parent for folder in folders if deck and not _resolved(Path.home()).is_relative_to(folder.parent)}
+    return _set(_allowed, Allowed((*folders, *map(_resolved, named)), tuple(above)))  # a named file may be a link
 
 
-@contextmanager
-def reading_also(folder: Path) -> Iterator[None]:
+def reading_also(folder: Path) -> AbstractContextManager[None]:
     """Context manager that also allows ``folder``, which the user named other than by a file."""
-    with _only((*_folders.get(), _resolved(folder))):
-        yield
-
-
-@contextmanager
-def _only(folders: tuple[Path, ...]) -> Iterator[None]:
-    token = _folders.set(folders)
-    try:
-        yield
-    finally:
-        _folders.reset(token)
+    now = _allowed.get() or Allowed(())
+    return _set(_allowed, replace(now, folders=(*now.folders, _resolved(folder))))
 
 
 def _resolved(path: Path) -> Path:
@@ -76,14 +106,26 @@ def inside(path: Path) -> None:
     """Check that a file lies in an allowed folder, after resolving ``..`` and links.
 
     Raises:
-        CaseError: if it does not; the message names the option that allows it.
+        CaseError: if it does not; the message names the options that allow it.
     """
-    folders = _folders.get()
-    if folders and not _outside.get() and not any(_resolved(path).is_relative_to(folder) for folder in folders):
+    allowed, file = _allowed.get(), _resolved(path)
+    if allowed is None or _outside.get():
+        return
+    within = any(file.is_relative_to(folder) for folder in (*allowed.folders, *_roots.get()))
+    if not within and not any(_in_subfolder(file, tree) for tree in allowed.trees):
         raise CaseError(
-            f"{path}: outside {folders[0]}: files that a file names are read from its folder only: "
-            "move it there, or give --allow-outside if you trust the file that names it"
+            f"{path}: outside {allowed.folders[0]}: a file may name files in its folder only, in a deck also those in "
+            "folders beside it: move it there, give --root FOLDER with all files of the deck, or give --allow-outside if you "
+            "trust the file that names it"
         )
+
+
+def _in_subfolder(file: Path, tree: Path) -> bool:
+    """Whether a file is in a folder within ``tree``, none of them hidden, and not directly in ``tree``."""
+    if not file.is_relative_to(tree):
+        return False
+    folders = file.relative_to(tree).parts[:-1]
+    return bool(folders) and not any(name.startswith(".") for name in folders)
 
 
 def text(path: Path, absent: str = "correct the path", older: bool = False) -> str:
@@ -108,18 +150,20 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
     if b"\0" in raw and not marked:
         raise CaseError(f"{path}: not a text file: is it the right one? if it is in UTF-16 or UTF-32, save it as UTF-8")
     try:
-        found = raw.decode("utf-16" if marked else "utf-8-sig")
+        content = raw.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError as error:
         if not older or marked:
             line = raw.count(b"\n", 0, error.start) + 1
-            raise CaseError(f"{path}: line {line}: not UTF-8: another encoding, or no text? save it as UTF-8") from None
-        found = raw.decode("latin-1")
-    if not found.strip():
+            raise CaseError(
+                f"{path}: line {line}: not UTF-8: wrong encoding or binary file? save it as UTF-8"
+            ) from None
+        content = raw.decode("latin-1")
+    if not content.strip():
         raise CaseError(f"{path}: empty: was it written to the end?")
     for begins, what in NOT_THE_FILE:
-        if found.lstrip()[: len(begins)].lower() == begins:
+        if content.lstrip()[: len(begins)].lower() == begins:
             raise CaseError(f"{path}: {what}")
-    return found
+    return content
 
 
 def table(path: Path, absent: str) -> list[tuple[int, list[str]]]:

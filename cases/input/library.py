@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .. import data
 from .errors import CaseError, FilesMissingError, nearest
-from .mechanisms import Described, is_one
+from .mechanisms import Described, matches_format
 from .mechanisms import read as describe
 from .readers import southwell_toml
 from .schema import Case, read
@@ -60,7 +60,7 @@ def load(name: str) -> Case:
     if name in names():
         with as_file(files(data)) as folder:
             return read(folder / f"{name}.toml")
-    if name in mechanisms() or (name.endswith(".toml") and is_one(Path(name))):
+    if name in mechanisms() or (name.endswith(".toml") and matches_format(Path(name))):
         raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
     if name.endswith(".toml"):
         return read(Path(name))
@@ -89,4 +89,4 @@ def is_blade_file(name: str) -> bool:
     path = Path(name)
     if name in names() or name.partition("/")[0] in names() or not (path.suffix or os.path.isfile(path)):
         return False
-    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.is_one(path))
+    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.matches_format(path))

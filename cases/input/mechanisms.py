@@ -59,7 +59,7 @@ class Described:
             raise CaseError(f"{self.path}: {error}") from error
 
 
-def is_one(path: Path) -> bool:
+def matches_format(path: Path) -> bool:
     """Whether a TOML file describes a mechanism, i.e. has bodies.
 
     Raises:

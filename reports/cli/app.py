@@ -6,7 +6,8 @@ A command's module is imported when the command runs, so that `southwell --help`
 import sys
 import traceback
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext, redirect_stderr, redirect_stdout
+from contextlib import AbstractContextManager, ExitStack, nullcontext, redirect_stderr, redirect_stdout
+from pathlib import Path
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
@@ -15,8 +16,8 @@ from ..shared.log_safe import LogSafe
 from ..shared.statuses import BAD_INPUT, INCOMPLETE, INTERNAL, INTERRUPTED, PASSED, listed
 from .errors import IncompleteError, UsageError
 
-OUTSIDE = "--allow-outside"
-"""An option that every command accepts, at any position."""
+OUTSIDE, ROOT = "--allow-outside", "--root"
+"""Options that every command accepts, at any position."""
 
 ABOUT = (
     "Verify the natural frequencies of rotating blades.",
@@ -78,7 +79,7 @@ def build(listing: bool = False) -> App:
         name="southwell",
         help="\n\n".join((*ABOUT, f"Exit status: {listed()}.")),
         help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
-        help_epilogue=f"{OUTSIDE}: files that a given file names may lie outside its folder (any command).",
+        help_epilogue=f"{ROOT} FOLDER: a file may name files anywhere in FOLDER; {OUTSIDE}: in any folder (any command).",
         group_commands=LAST,
         default_parameter=Parameter(negative=(), show_default=_default),
         version=_version,
@@ -102,9 +103,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with (
         redirect_stdout(LogSafe(sys.stdout)),  # pyright: ignore[reportArgumentType]
         redirect_stderr(LogSafe(sys.stderr)),  # pyright: ignore[reportArgumentType]
-        _outside_allowed() if OUTSIDE in words else nullcontext(),
     ):
-        status = _status([word for word in words if word != OUTSIDE])
+        status = _status(words)
         streams.finish()
     sys.exit(status)
 
@@ -112,7 +112,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _status(words: list[str]) -> int:
     """Run a command; return its exit status."""
     try:
-        status = _run(words)
+        rest, allowed = _allowed(words)
+        with allowed:
+            status = _run(rest)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
         status = _reported(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
@@ -152,10 +154,34 @@ def _reported(what: object, status: int) -> int:
     return status
 
 
-def _outside_allowed() -> AbstractContextManager[object]:
-    from ...cases.input import files
+def _allowed(words: Sequence[str]) -> tuple[list[str], AbstractContextManager[object]]:
+    """The words without ``ROOT`` and ``OUTSIDE``, and the context in which files may be read as these options say.
 
-    return files.outside_allowed(True)
+    Raises:
+        UsageError: if ``ROOT`` has no value.
+        CaseError: if its value is not a folder.
+    """
+    rest, roots, outside = [], [], False
+    remaining = iter(words)
+    for word in remaining:
+        option, equals, value = word.partition("=")
+        if word == OUTSIDE:
+            outside = True
+        elif option == ROOT:
+            root = value if equals else next(remaining, "")
+            if not root:
+                raise UsageError(f"{ROOT}: missing folder: give the folder that holds all files of the deck")
+            roots.append(root)
+        else:
+            rest.append(word)
+    stack = ExitStack()
+    if outside or roots:
+        from ...cases.input import files
+
+        stack.enter_context(files.outside_allowed(outside))
+        for root in roots:
+            stack.enter_context(files.root_allowed(Path(root)))
+    return rest, stack
 
 
 def _one_thread() -> AbstractContextManager[object]:

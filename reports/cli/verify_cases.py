@@ -39,7 +39,7 @@ def case_of(name: str, decks: Decks) -> Case | MechanismCase:
         return default_case(
             subject.blade, speeds, rpm=units is RPM, source="; ".join(subject.about), unused=subject.unused
         )
-    if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.is_one(Path(name))):
+    if name in library.mechanisms() or (name.endswith(".toml") and mechanisms.matches_format(Path(name))):
         return mechanism_case.case(library.mechanism(name))
     return library.select(name)
 

@@ -2,15 +2,17 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from math import radians
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...cases.campbell import diagram
 from ...cases.campbell.diagram import CampbellRequest
-from ...cases.input import library, readers
+from ...cases.input import files, library, readers
 from ...cases.input.default_case import MODES, default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.readers import Mount
@@ -40,6 +42,12 @@ def read(
     hub_radius: float | None = None,
     precone: float | None = None,
     pitch: float | None = None,
+    pitch_convention: Literal["southwell", "openfast"] = "southwell",
+    subset: tuple[int, int] | None = None,
+    multipliers: tuple[float, float, float] | None = None,
+    offsets: bool | None = None,
+    root: str | Path | None = None,
+    allow_outside: bool = False,
 ) -> Blade:
     """Read the blade in a file, or the blade of a case that comes with the package.
 
@@ -50,24 +58,36 @@ def read(
         length: from root to tip, m, if no file states it.
         hub_radius: from the rotor axis to the root, m.
         precone: degrees, positive downwind.
-        pitch: degrees, positive with the leading edge downwind (the opposite sign of OpenFAST's BlPitch).
+        pitch: degrees; its sign is that of ``pitch_convention``.
+        pitch_convention: ``southwell``: positive with the leading edge downwind; ``openfast``: upwind, as BlPitch.
+        subset: set and subset of a HAWC2 structural file, ``(5, 1)``.
+        multipliers: of mass, flap and edge stiffness, in place of an ElastoDyn table's AdjBlMs, AdjFlSt and AdjEdSt.
+        offsets: whether the offset columns of a FAST 7 table are used; by default they are.
+        root: folder that holds all files of the deck; a file may reference files anywhere in it.
+        allow_outside: whether a file may reference files in any folder.
 
     Raises:
         CaseError: one line with file and line, value, likely cause and remedy.
     """
-    known = (*library.names(), *library.mechanisms())
     mount = Mount(
         main=None if main is None else Path(main),
         length=length,
         hub_radius=hub_radius,
         precone=None if precone is None else radians(precone),
-        pitch=None if pitch is None else radians(pitch),
+        pitch=None if pitch is None else radians(pitch if pitch_convention == "southwell" else -pitch),
+        subset=subset,
+        multipliers=multipliers,
+        offsets=offsets,
     )
-    if str(path).partition("/")[0] not in known:
-        return readers.read(Path(path), mount)
-    if mount != Mount():
-        raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")
-    case = library.select(str(path))
+    with ExitStack() as allowed:
+        allowed.enter_context(files.outside_allowed(allow_outside))
+        if root is not None:
+            allowed.enter_context(files.root_allowed(Path(root)))
+        if str(path).partition("/")[0] not in (*library.names(), *library.mechanisms()):
+            return readers.read(Path(path), mount)
+        if mount != Mount():
+            raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")
+        case = library.select(str(path))
     if len(case.variants) > 1:
         raise CaseError(f"{path}: several blades: name one of {', '.join(v.name for v in case.variants)}")
     return next(iter(case.variants)).blade

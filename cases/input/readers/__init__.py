@@ -24,6 +24,9 @@ __all__ = ["FORMATS", "Mount", "Reading", "Source", "Unused", "read", "reading",
 
 FORMATS = ("ElastoDyn", "BeamDyn", "OpenFAST .fst", "BModes", "HAWC2", "windIO", "Southwell TOML and CSV")
 
+_BY_SUFFIX = {".toml": "southwell_toml", ".csv": "southwell_toml", ".yaml": "windio", ".yml": "windio"}
+"""Module by suffix of a file; files of other formats are recognised by their contents."""
+
 
 def read(path: Path, mount: Mount | None = None) -> Blade:
     """Read the blade in a file of any format.
@@ -44,7 +47,8 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     Raises:
         CaseError: one line with file and line, value, likely cause and remedy.
     """
-    with files.reading(path, *([mount.main] if mount and mount.main else [])):
+    deck = path.suffix.lower() not in _BY_SUFFIX
+    with files.reading(path, *([mount.main] if mount and mount.main else []), deck=deck):
         found = recognise(path)(path, mount)
     if mount is not None:
         for option, given, format in (
@@ -73,9 +77,7 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     Raises:
         CaseError: if the format is unknown or the file does not exist.
     """
-    module = {".toml": "southwell_toml", ".csv": "southwell_toml", ".yaml": "windio", ".yml": "windio"}.get(
-        path.suffix.lower()
-    )
+    module = _BY_SUFFIX.get(path.suffix.lower())
     if module is None:
         from . import beamdyn, bmodes, elastodyn, fst, hawc2, text
 
@@ -83,10 +85,10 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
         signs = (
             ("elastodyn", elastodyn.is_blade),
             ("elastodyn", elastodyn.is_main),
-            ("fst", fst.is_one),
+            ("fst", fst.matches_format),
             ("beamdyn", beamdyn.is_blade),
             ("beamdyn", beamdyn.is_main),
-            ("bmodes", bmodes.is_one),
+            ("bmodes", bmodes.matches_format),
             ("hawc2", hawc2.is_st),
             ("hawc2", hawc2.is_htc),
         )

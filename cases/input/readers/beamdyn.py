@@ -122,7 +122,7 @@ def is_elastodyn(path: Path) -> bool:
 def _main(path: Path, mount: Mount) -> Text | None:
     if mount.main and not is_elastodyn(mount.main):
         return load(mount.main)
-    found = elastodyn.beside(path, is_main, _named)
+    found = elastodyn.sibling_file(path, is_main, _named)
     return load(found) if found else None
 
 

@@ -44,7 +44,7 @@ ROOTS = {1: [np.inf] * 6, 4: [np.inf, np.inf, np.inf, np.inf, 0.0, 0.0]}
 """Root stiffness (6,) by hub_conn: 1 clamped, 4 pinned-free: flap and lag slopes are free."""
 
 
-def is_one(text: Text) -> bool:
+def matches_format(text: Text) -> bool:
     """Whether these are lines of a main file."""
     return {"hub_conn", "sec_props_file"} <= set(keys(text))
 

@@ -70,12 +70,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if is_main(text):
         main, text = path, load(hub(text).blade_file)
     else:
-        main = mount.main or (None if mount.length else beside(path, is_main, blade_file))
+        main = mount.main or (None if mount.length else sibling_file(path, is_main, blade_file))
     stated = hub(load(main)) if main else None
     return _blade(text, mount, stated, main)
 
 
-def beside(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
+def sibling_file(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
     """The only main file in the folder of ``path`` that references ``path``; None if there is none.
 
     Raises:

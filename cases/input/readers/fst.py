@@ -16,7 +16,7 @@ from .source import Mount, Reading
 from .text import Text, keys, load, whole, word
 
 
-def is_one(text: Text) -> bool:
+def matches_format(text: Text) -> bool:
     """Whether these are lines of a primary file."""
     return "edfile" in keys(text)
 

@@ -45,7 +45,7 @@ def is_st(text: Text) -> bool:
 
 def is_htc(text: Text) -> bool:
     """Whether these are lines of an htc file."""
-    return hawc2_htc.is_one(text)
+    return hawc2_htc.matches_format(text)
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:

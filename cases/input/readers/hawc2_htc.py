@@ -71,7 +71,7 @@ class HalfChords(NamedTuple):
     strays: tuple[float, float]
 
 
-def is_one(text: Text) -> bool:
+def matches_format(text: Text) -> bool:
     """Whether these are lines of an htc file with bodies."""
     return any(_BODIES.match(line) for line in text.lines)
 

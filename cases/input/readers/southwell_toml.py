@@ -32,7 +32,7 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
     source: Annotated[str, Meta(description="source of the data")] = ""
 
 
-def is_one(path: Path) -> bool:
+def matches_format(path: Path) -> bool:
     """Whether a TOML file describes a blade, not a case or a mechanism."""
     found = document(path, OR_A_NAME)
     return "blade" in found and "speeds" not in found and "compare" not in found

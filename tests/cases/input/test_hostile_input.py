@@ -3,10 +3,12 @@
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as ss
 
+import southwell
 from southwell.cases.condense import condensed, condensing
 from southwell.cases.input import files, mechanisms, readers, schema, toml
 from southwell.cases.input.errors import CaseError
@@ -17,6 +19,7 @@ from southwell.cases.verify import user_results
 from southwell.core.condense import matrix_files
 from southwell.core.condense.exported import MatrixFileError
 from southwell.core.regular_files import FileRefusedError, read_bytes
+from southwell.reports.cli import app
 from southwell.tests.support import fuzz
 
 
@@ -82,6 +85,76 @@ def test_a_file_names_files_of_its_folder_only(folder: Path, first: str, old: st
     changed(folder / first, f"../{old}", old)
     with pytest.raises(CaseError, match=r"outside .* give --allow-outside"):
         read(folder / first)
+
+
+def deck(folder: Path, blade: str) -> Path:
+    """OpenFAST's layout: a model's folder, and its blade in a folder beside it."""
+    for name in ("model", "5MW_Baseline", ".hidden"):
+        (folder / name).mkdir(parents=True)
+    main = fuzz.seeds(folder / "model")["elastodyn"]
+    for place in ("5MW_Baseline", ".hidden", "."):
+        (folder / place / "blade.dat").write_bytes((folder / "model" / "elastodyn_blade.dat").read_bytes())
+    return changed(main, "elastodyn_blade.dat", blade)
+
+
+def test_a_deck_names_files_in_the_folders_beside_its_own(tmp_path: Path) -> None:
+    main = deck(tmp_path, "../5MW_Baseline/blade.dat")
+    primary = tmp_path / "model" / "Main.fst"
+    primary.write_text('1 CompElast - switch\n"elastodyn_main.dat" EDFile - name\n')
+    shared = readers.read(tmp_path / "5MW_Baseline" / "blade.dat", readers.Mount(main=main))
+    for path in (main, primary):
+        np.testing.assert_array_equal(readers.read(path).mass, shared.mass)
+
+
+@pytest.mark.parametrize("blade", ["../blade.dat", "../.hidden/blade.dat", "../../other/blade.dat", "link/blade.dat"])
+def test_a_deck_names_no_other_files(tmp_path: Path, blade: str) -> None:
+    """Not in the folder above, in a hidden folder, two folders above, or where a link leads."""
+    main = deck(tmp_path / "tree", blade)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "blade.dat").write_bytes((tmp_path / "tree" / "blade.dat").read_bytes())
+    (main.parent / "link").symlink_to(tmp_path / "other")
+    with pytest.raises(CaseError, match=r"outside .* give --root FOLDER .* give --allow-outside"):
+        readers.read(main)
+    with files.root_allowed(tmp_path):
+        readers.read(main)
+
+
+@pytest.mark.parametrize("home", ["tree", "tree/5MW_Baseline"])
+def test_the_folders_of_the_users_home_are_not_those_of_a_deck(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: str
+) -> None:
+    main = deck(tmp_path / "tree", "../5MW_Baseline/blade.dat")
+    monkeypatch.setenv("HOME", str(tmp_path / home))
+    with pytest.raises(CaseError, match=r"outside .* give --root FOLDER"):
+        readers.read(main)
+
+
+def test_a_case_names_no_files_in_the_folders_beside_it(folder: Path) -> None:
+    """Only decks have that layout."""
+    (folder.parent / "beside").mkdir()
+    (folder / "stations.csv").rename(folder.parent / "beside" / "stations.csv")
+    changed(folder / "case.toml", "stations.csv", "../beside/stations.csv")
+    with pytest.raises(CaseError, match=r"outside .* give --root FOLDER"):
+        schema.read(folder / "case.toml")
+
+
+def test_the_root_of_a_deck_is_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = deck(tmp_path / "a" / "tree", "../../blade.dat")
+    (tmp_path / "a" / "blade.dat").write_bytes((tmp_path / "a" / "tree" / "blade.dat").read_bytes())
+    for options, status in (
+        ([], 2),
+        (["--root", str(tmp_path / "a")], 0),
+        ([f"--root={tmp_path / 'a'}"], 0),
+        (["--root", str(main)], 2),
+        (["--root"], 2),
+    ):
+        with pytest.raises(SystemExit, match=f"^{status}$"):
+            app.main(["show", str(main), *options])
+        assert capsys.readouterr().err.count("\n") == bool(status)
+    blades = southwell.read(main, root=tmp_path / "a"), southwell.read(main, allow_outside=True)
+    np.testing.assert_array_equal(*(blade.mass for blade in blades))
+    with pytest.raises(CaseError, match="outside"):
+        southwell.read(main)
 
 
 def test_the_named_file_itself_may_be_a_link(folder: Path) -> None:

@@ -17,7 +17,7 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import about_root
 from southwell.cases.input.readers import Mount, text
-from southwell.cases.input.readers.hawc2_htc import is_one
+from southwell.cases.input.readers.hawc2_htc import matches_format
 from southwell.core.blade import Blade
 from southwell.core.solve import modes
 from southwell.tests.support.blade_files import real
@@ -84,4 +84,4 @@ def test_files_to_go_on_in_that_are_not_there(tmp_path: Path, old: str, new: str
 
 
 def test_a_part_of_an_htc_with_the_bodies_is_one() -> None:
-    assert is_one(text.load(DATA / "iea15_bodies.htc"))
+    assert matches_format(text.load(DATA / "iea15_bodies.htc"))
