@@ -20,9 +20,10 @@ def gravity(azimuth: float, tilt: float = 0.0) -> Array:
 
     Args:
         azimuth: rad, from the blade pointing up, in the direction of rotation.
-        tilt: rad, of the rotor's axis: elevation of +z above the horizontal.
+        tilt: rad, of the rotor's axis, positive with its upwind end raised, as the tilt of an upwind rotor: +z (downwind)
+            points below the horizontal. OpenFAST's ShftTilt has the opposite sign.
     """
-    up = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), np.sin(tilt)])
+    up = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), -np.sin(tilt)])
     return -STANDARD_GRAVITY * up
 
 

@@ -69,7 +69,7 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
     head = ("mode", "kinetic energy", f"{frequency} {at}", f"{frequency} {_at(units, last)}", "± relative", "change")
     note = (
         f"Kinetic energy {at}: flapwise, edgewise and axial motion of the mass centres, torsion about them; blade axes. "
-        "± relative: the largest at any speed. "
+        "± relative: numerical uncertainty, the largest at any speed; the interpretation of a blade file is not included. "
         "φ, residual: ω² = ω₀² + φ Ω², and the fit's largest deviation."
     )
     return Sheet("Modes", (*head, "φ", "residual"), tuple(rows), note)

@@ -108,9 +108,11 @@ def command(
     allow_large_strain
         Accept steady strains above 20 %.
     azimuth
-        Azimuth in degrees, 0 with the blade up, for the gravity load. Default: no gravity.
+        Azimuth in degrees, 0 with the blade up and positive in the direction of rotation: adds gravity as the steady load at
+        this azimuth, where the blade is frozen. Default: no gravity.
     tilt
-        Tilt of the rotor axis above the horizontal, in degrees; with --azimuth.
+        Tilt of the rotor axis in degrees, positive with the upwind end raised, as the tilt of an upwind rotor (OpenFAST's
+        ShftTilt has the opposite sign); with --azimuth.
     load
         CSV table of a steady load: `fraction [-]`, `fx [N/m]`, `fy [N/m]`, `fz [N/m]`, in hub axes (x along the blade, y in
         the direction of motion, z along the rotor axis).
@@ -140,6 +142,8 @@ def command(
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")
     if verify and (azimuth is not None or load is not None):
         raise UsageError("--verify: the other codes solve the blade without gravity and steady loads: leave those out")
+    if pdf:
+        as_pdf.require()
     given = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
     files = [measured.user_results(text, measured.defaults(data_uncertainty, None)) for text in add]
@@ -172,19 +176,19 @@ def command(
         if other:
             found = blade_changes(subject.blade, other.blade, speeds, modes, elements)
             extra.append(changes_table.sheet(found, other.blade.name, units))
+        about = options.loads(azimuth, tilt, load)
+        for text in about:
+            output().print(text, style="bold", markup=False, soft_wrap=True)
         _show(diagram, units, subject, extra)
         kept &= tables.margins_kept(diagram)
         line = shlex.join(["southwell", *sys.argv[1:]])
-        origin = Origin(subject.about, subject.files, not_used.lines(subject.unused))
-        try:
-            with writable(f"--out {out}"):
-                written = page.write(diagram, folder, units, line, origin, extra, files)
-                if html:
-                    written = (*written, as_html.write(written[0]))
-                if pdf:
-                    written = (*written, as_pdf.write(written[0]))
-        except as_pdf.PdfError as error:
-            raise UsageError(str(error)) from error
+        origin = Origin((*about, *subject.about), subject.files, not_used.lines(subject.unused))
+        with writable(f"--out {out}"):
+            written = page.write(diagram, folder, units, line, origin, extra, files)
+            if html:
+                written = (*written, as_html.write(written[0]))
+            if pdf:
+                written = (*written, as_pdf.write(written[0]))
         names = ", ".join(path.name for path in written)
         output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
     return int(strict and not kept)

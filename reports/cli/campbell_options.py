@@ -39,6 +39,19 @@ def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
     return x, y, z
 
 
+def loads(azimuth: float | None, tilt: float, load: Path | None) -> tuple[str, ...]:
+    """What the steady loads mean, one line each; empty without loads."""
+    out = []
+    if azimuth is not None:
+        out.append(
+            f"gravity: steady, with the blade frozen at azimuth {azimuth:g}° (0: up) and the rotor axis tilted by {tilt:g}° "
+            "(positive: upwind end raised); on a turning rotor it varies once per revolution"
+        )
+    if load is not None:
+        out.append(f"steady load of {load.name}: the blade is linearised about the deflection that it causes")
+    return tuple(out)
+
+
 def load(path: Path | None, blade: Blade) -> tuple[tuple[float, float, float], ...]:
     """The load of a file at the blade's stations, N/m in hub axes; empty without a file."""
     return () if path is None else tuple((x, y, z) for x, y, z in prestress.load(path, blade).tolist())

@@ -17,7 +17,7 @@ from ...core.velocity_transformation import MAX_ELEMENTS
 from ..campbell import changes as changes_table
 from ..campbell import tables
 from ..shared import not_used
-from ..shared.certain import remarks
+from ..shared.certain import NUMERICAL, remarks
 from ..shared.console import output
 from ..shared.statuses import PASSED
 from ..shared.units import RAD_S, RPM, Units
@@ -117,6 +117,8 @@ def modes(
             title = f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}"
             for table in terminal.frequencies(computed, title, shown, console.width):
                 console.print(table)
+            if subject.files:
+                console.print(NUMERICAL, style="dim", markup=False, soft_wrap=True)
             for line in (*remarks(by_speed, accuracy if elements is None else None, shown), *_doubts(computed, shown)):
                 console.print(line, markup=False, soft_wrap=True)
             if other:

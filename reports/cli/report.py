@@ -9,7 +9,6 @@ from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
 from .arguments import RESULTS, found, writing
-from .errors import UsageError
 
 
 def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
@@ -26,6 +25,10 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     pdf
         Also write report.pdf; requires the extra `pdf` (Typst).
     """
+    if pdf:
+        from ..shared import pdf as paper
+
+        paper.require()
     run = found(folder if folder.is_dir() else folder / RESULTS)
     with writing(folder):
         written = show(run, folder)
@@ -38,10 +41,7 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     if pdf:
         from ..shared import pdf as paper
 
-        try:
-            print(paper.write(written))
-        except paper.PdfError as error:
-            raise UsageError(str(error)) from error
+        print(paper.write(written))
     return INCOMPLETE if run.unfinished else PASSED
 
 

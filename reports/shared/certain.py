@@ -7,6 +7,12 @@ from ...cases.campbell.sweep import Named
 from ...core.element.measures import LARGE_STRAIN
 from .units import Units
 
+NUMERICAL = (
+    "± relative is numerical: mesh and rounding. How a blade file is read (axes, interpolation, data that it lacks) can change "
+    "frequencies by orders of magnitude more."
+)
+"""The meaning of the uncertainty of a frequency, for a blade from a file."""
+
 DIGITS = 7
 """Largest number of digits of a frequency."""
 

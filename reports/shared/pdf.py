@@ -7,12 +7,27 @@ from tempfile import TemporaryDirectory
 from typing import cast
 
 from ...cases.input import atomic
+from ...cases.input.errors import CaseError
 from ...references.protocol import install
 from . import colours, columns, document, print_nodes
 
 
-class PdfError(RuntimeError):
+class PdfError(CaseError):
     """No PDF can be made; the message has the reason and the remedy."""
+
+
+def require() -> None:
+    """Check that Typst is installed, before minutes of work.
+
+    Raises:
+        PdfError: if it cannot be imported.
+    """
+    try:
+        import typst  # noqa: F401
+    except ImportError as error:
+        raise PdfError(
+            f"--pdf: Typst cannot be used ({error}): {install.extra('pdf')}; or give --html and print that page from a browser"
+        ) from error
 
 
 def write(report: Path) -> Path:
@@ -37,12 +52,9 @@ def render(text: str, folder: Path) -> bytes:
         PdfError: as for ``write``.
         OSError: if a figure cannot be read.
     """
-    try:
-        import typst
-    except ImportError as error:
-        raise PdfError(
-            f"--pdf: Typst cannot be used ({error}): {install.extra('pdf')}; or give --html and print that page from a browser"
-        ) from error
+    require()
+    import typst
+
     read = document.parse(text)
     data = {
         "title": read.title,

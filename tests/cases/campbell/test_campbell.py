@@ -206,8 +206,16 @@ def test_gravity_turns_against_the_rotation_and_with_the_tilt() -> None:
     np.testing.assert_allclose(gravity(0.0), [-g, 0, 0], atol=1e-12)
     np.testing.assert_allclose(gravity(0.5 * np.pi), [0, g, 0], atol=1e-12)
     np.testing.assert_allclose(gravity(np.pi), [g, 0, 0], atol=1e-12)
-    np.testing.assert_allclose(gravity(1.0, 0.5 * np.pi), [0, 0, -g], atol=1e-12)
-    assert np.linalg.norm(gravity(0.7, 0.1)) == pytest.approx(g)
+    np.testing.assert_allclose(gravity(1.0, 0.5 * np.pi), [0, 0, g], atol=1e-12)
+
+
+def test_a_positive_tilt_raises_the_upwind_end_of_the_rotor_axis() -> None:
+    """The upwind rotor of the NREL 5-MW turbine has 5° uptilt (Jonkman et al. 2009, table 1-1): +z, downwind, points 5° below
+    the horizontal, so that gravity has a component g sin 5° along it at every azimuth."""
+    g, tilt = STANDARD_GRAVITY, np.radians(5.0)
+    for azimuth in np.linspace(0.0, 6.0, 7):
+        assert gravity(azimuth, tilt)[2] == pytest.approx(g * np.sin(tilt))
+        assert np.linalg.norm(gravity(azimuth, tilt)) == pytest.approx(g)
 
 
 def texts(figure: Figure) -> list[str]:

@@ -337,11 +337,22 @@ def test_every_table_of_the_page_is_in_the_pdf(beam: Path, tmp_path: Path, capsy
     assert printed.missing(page, printed.read(tmp_path / "campbell.pdf")) == []
 
 
-def test_without_typst_the_page_is_kept(
+def test_without_typst_a_pdf_is_refused_before_the_work(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "typst", None)
     status, _, err = southwell(f"campbell {beam} --rpm 0,50 --modes 1 --elements 4 --pdf -o {tmp_path}", capsys)
     assert status == 2
     assert "pip install '.[pdf]'" in err
-    assert (tmp_path / "campbell.md").exists()
+    assert not (tmp_path / "campbell.md").exists()
+
+
+def test_gravity_and_the_frozen_azimuth_are_stated_first(
+    beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = f"campbell {beam} --rpm 0,50 --modes 1 --elements 4 --azimuth 90 --tilt 5 -o {tmp_path}"
+    status, shown, _ = southwell(line, capsys)
+    assert status == 0
+    first = "gravity: steady, with the blade frozen at azimuth 90° (0: up) and the rotor axis tilted by 5°"
+    assert shown.startswith(first)
+    assert first in (tmp_path / "campbell.md").read_text(encoding="utf-8")
