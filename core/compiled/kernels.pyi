@@ -171,10 +171,10 @@ class Operator:
         """Take block Lanczos steps until the basis has ``look`` vectors or cannot grow.
 
         Args:
-            w: (k, 2n) result of the last step, k = 1 or 2; at the end its first rows are that of the new last step,
+            w: (k, 2n) result of the last step, k at most 8; at the end its first rows are that of the new last step,
                 orthogonal to the basis.
             basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``before`` on; extended in place.
-            projected: (m, m) the operator on the basis, m at least ``look`` + 2 or ``limit``, zero beyond the filled part;
+            projected: (m, m) the operator on the basis, m at least ``look`` + k or ``limit``, zero beyond the filled part;
                 extended in place.
             size, before: see ``basis``; both 0 at the start.
             look: requested number of vectors.

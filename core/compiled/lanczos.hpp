@@ -64,11 +64,11 @@ struct LanczosOperator {
             const auto a = sized_as<D>();
             Rows rows = writable_rows(w, 2 * a.size());
             Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, before};
-            if (rows.count < 1 || rows.count > 2 || before < 0 || size < before || size > grown.vectors.count ||
-                grown.projected.count < std::min(look + 2, grown.vectors.count))
-                throw std::invalid_argument("a block has one or two vectors, and the basis and its projection room");
+            if (rows.count < 1 || rows.count > WIDTH || before < 0 || size < before || size > grown.vectors.count ||
+                grown.projected.count < std::min(look + rows.count, grown.vectors.count))
+                throw std::invalid_argument("a block has at most eight vectors, and the basis and its projection room");
             bool exhausted = false;
-            const Pairs gram = southwell::extend(a, rows, grown, look, exhausted);
+            const Gram gram = southwell::extend(a, rows, grown, look, exhausted);
             Doubles out({gram.count, gram.count});
             for (int i = 0; i < gram.count; ++i)
                 for (int j = 0; j < gram.count; ++j) out.mutable_at(i, j) = gram.item[i][j];

@@ -1,4 +1,4 @@
-// The block Lanczos steps of lanczos.py. Vectors (x, y) are rows of 2n numbers; a block has one or two of them.
+// The block Lanczos steps of lanczos.py. Vectors (x, y) are rows of 2n numbers; a block has at most WIDTH of them.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@ namespace southwell {
 
 constexpr double MAX_OVERLAP = 1e-8;  // tolerated overlap with the basis
 constexpr int MAX_PASSES = 3;         // of orthogonalisation
+constexpr int WIDTH = 8;              // largest number of vectors in a block
 
 // The operator A⁻¹S with A = diag(K, M) and S = [[C, M], [−M, 0]].
 //
@@ -37,10 +38,12 @@ struct Block {
     double* operator[](int v) { return items.data() + static_cast<size_t>(v) * width; }
 };
 
-// Two by two numbers, for blocks of one or two vectors.
-struct Pairs {
+using Row = double[WIDTH];  // products with the vectors of a block
+
+// Products of the vectors of a block with each other.
+struct Gram {
     int count;
-    double item[2][2];
+    Row item[WIDTH];
 };
 
 // Remove the motion of nodes without inertia from vectors y.
@@ -87,36 +90,41 @@ void forward(const Operator<D>& a, Rows v, Rows w, Rows force, Rows My) {
     solve(a.factor, a.links, solved);
 }
 
-// Products a bᵀ of rows of n numbers with the one or two rows of b, into ``out`` (rows of two); four rows of a at a time.
-inline void products(Rows a, Rows b, int n, double (*out)[2]) {
-    const double *first = b[0], *other = b[b.count - 1];
-    for (int i = 0; i < a.count; i += 4) {
-        const int last = a.count - 1;
-        const double *p = a[i], *q = a[std::min(i + 1, last)], *r = a[std::min(i + 2, last)],
-                     *s = a[std::min(i + 3, last)];
-        double p0 = 0.0, p1 = 0.0, q0 = 0.0, q1 = 0.0, r0 = 0.0, r1 = 0.0, s0 = 0.0, s1 = 0.0;
+// Products a bᵀ of rows of n numbers with the rows of a block b, into ``out``; four rows of a and two of b at a time.
+inline void products(Rows a, Rows b, int n, Row* out) {
+    for (int v = 0; v < b.count; v += 2) {
+        const bool pair = v + 1 < b.count;
+        const double *first = b[v], *other = b[pair ? v + 1 : v];
+        for (int i = 0; i < a.count; i += 4) {
+            const int last = a.count - 1;
+            const double *p = a[i], *q = a[std::min(i + 1, last)], *r = a[std::min(i + 2, last)],
+                         *s = a[std::min(i + 3, last)];
+            double p0 = 0.0, p1 = 0.0, q0 = 0.0, q1 = 0.0, r0 = 0.0, r1 = 0.0, s0 = 0.0, s1 = 0.0;
 #pragma omp simd reduction(+ : p0, p1, q0, q1, r0, r1, s0, s1)
-        for (int c = 0; c < n; ++c) {
-            p0 += p[c] * first[c], p1 += p[c] * other[c];
-            q0 += q[c] * first[c], q1 += q[c] * other[c];
-            r0 += r[c] * first[c], r1 += r[c] * other[c];
-            s0 += s[c] * first[c], s1 += s[c] * other[c];
+            for (int c = 0; c < n; ++c) {
+                p0 += p[c] * first[c], p1 += p[c] * other[c];
+                q0 += q[c] * first[c], q1 += q[c] * other[c];
+                r0 += r[c] * first[c], r1 += r[c] * other[c];
+                s0 += s[c] * first[c], s1 += s[c] * other[c];
+            }
+            const double sums[4][2] = {{p0, p1}, {q0, q1}, {r0, r1}, {s0, s1}};
+            for (int m = 0; m < std::min(4, a.count - i); ++m) {
+                out[i + m][v] = sums[m][0];
+                if (pair) out[i + m][v + 1] = sums[m][1];
+            }
         }
-        const double found[4][2] = {{p0, p1}, {q0, q1}, {r0, r1}, {s0, s1}};
-        for (int m = 0; m < std::min(4, a.count - i); ++m)
-            for (int v = 0; v < b.count; ++v) out[i + m][v] = found[m][v];
     }
 }
 
 // w −= overlapᵀ basis for rows w of n numbers; four rows of the basis at a time.
-inline void project_out(Rows w, const double (*overlap)[2], Rows basis, int n) {
+inline void project_out(Rows w, const Row* overlap, Rows basis, int n) {
     for (int i = 0; i < basis.count; i += 4) {
         const double* b[4];
-        double h[4][2];
+        double h[4][WIDTH];
         for (int r = 0; r < 4; ++r) {
-            const bool there = i + r < basis.count;
-            b[r] = basis[there ? i + r : i];
-            for (int v = 0; v < w.count; ++v) h[r][v] = there ? overlap[i + r][v] : 0.0;
+            const bool filled = i + r < basis.count;
+            b[r] = basis[filled ? i + r : i];
+            for (int v = 0; v < w.count; ++v) h[r][v] = filled ? overlap[i + r][v] : 0.0;
         }
         for (int v = 0; v < w.count; ++v) {
             double* out = w[v];
@@ -127,17 +135,40 @@ inline void project_out(Rows w, const double (*overlap)[2], Rows basis, int n) {
     }
 }
 
-// Eigenvalues, ascending, and eigenvectors, as columns, of a symmetric matrix (1, 1) or (2, 2).
-inline void axes(const Pairs& gram, double (&value)[2], double (&turn)[2][2]) {
-    if (gram.count == 1) {
-        value[0] = gram.item[0][0], turn[0][0] = 1.0;
-        return;
+// Eigenvalues, ascending, and eigenvectors, as columns, of a symmetric matrix, which is overwritten: cyclic Jacobi rotations.
+inline void eigh(Gram& gram, double (&value)[WIDTH], double (&vectors)[WIDTH][WIDTH]) {
+    const int n = gram.count;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) vectors[i][j] = i == j ? 1.0 : 0.0;
+    for (int sweep = 0; sweep < 30; ++sweep) {
+        bool rotated = false;
+        for (int p = 0; p < n; ++p) {
+            for (int q = p + 1; q < n; ++q) {
+                const double b = gram.item[p][q];
+                if (std::abs(b) <= 1e-17 * std::sqrt(std::abs(gram.item[p][p] * gram.item[q][q]))) continue;
+                rotated = true;
+                const double angle = 0.5 * std::atan2(2.0 * b, gram.item[q][q] - gram.item[p][p]);
+                const double c = std::cos(angle), s = std::sin(angle);
+                for (int i = 0; i < n; ++i) {  // of the columns
+                    const double x = gram.item[i][p], y = gram.item[i][q], u = vectors[i][p], v = vectors[i][q];
+                    gram.item[i][p] = c * x - s * y, gram.item[i][q] = s * x + c * y;
+                    vectors[i][p] = c * u - s * v, vectors[i][q] = s * u + c * v;
+                }
+                for (int i = 0; i < n; ++i) {  // of the rows
+                    const double x = gram.item[p][i], y = gram.item[q][i];
+                    gram.item[p][i] = c * x - s * y, gram.item[q][i] = s * x + c * y;
+                }
+            }
+        }
+        if (!rotated) break;
     }
-    const double a = gram.item[0][0], b = gram.item[0][1], c = gram.item[1][1];
-    const double angle = 0.5 * std::atan2(2.0 * b, a - c), cosine = std::cos(angle), sine = std::sin(angle);
-    turn[0][0] = -sine, turn[1][0] = cosine, turn[0][1] = cosine, turn[1][1] = sine;
-    value[0] = a * sine * sine - 2.0 * b * sine * cosine + c * cosine * cosine;
-    value[1] = a * cosine * cosine + 2.0 * b * sine * cosine + c * sine * sine;
+    for (int i = 0; i < n; ++i) value[i] = gram.item[i][i];
+    for (int i = 1; i < n; ++i) {
+        for (int j = i; j > 0 && value[j] < value[j - 1]; --j) {
+            std::swap(value[j], value[j - 1]);
+            for (int k = 0; k < n; ++k) std::swap(vectors[k][j], vectors[k][j - 1]);
+        }
+    }
 }
 
 // A growing basis, and the operator on it.
@@ -151,15 +182,15 @@ struct Basis {
 //
 // ``dual`` is overwritten. Returns the Gram matrix of w and, in ``largest``, the largest overlap of the last pass.
 template <int D>
-Pairs orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, Rows dual, double& largest) {
+Gram orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, Rows dual, double& largest) {
     const int n = a.size(), latest = basis.size - basis.before;
     const Rows filled{basis.vectors.data, basis.vectors.stride, basis.size};
-    std::vector<double> memory(2 * static_cast<size_t>(basis.size));
-    auto* overlap = reinterpret_cast<double (*)[2]>(memory.data());
-    Pairs gram{w.count, {}};
+    std::vector<double> memory(WIDTH * static_cast<size_t>(basis.size));
+    auto* overlap = reinterpret_cast<Row*>(memory.data());
+    Gram gram{w.count, {}};
     largest = 0.0;
-    for (int turn = 0; turn < MAX_PASSES; ++turn) {
-        if (turn > 0) times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, My);
+    for (int pass = 0; pass < MAX_PASSES; ++pass) {
+        if (pass > 0) times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, My);
         times(a.K, 1.0, a.links, w, dual);
         for (int m = 0; m < w.count; ++m)
             for (int i = 0; i < n; ++i) dual[m][n + i] = My[m][i];
@@ -173,7 +204,8 @@ Pairs orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, R
             }
         }
         products(w, dual, 2 * n, gram.item);
-        const double smallest = std::min(gram.item[0][0], gram.item[w.count - 1][w.count - 1]);
+        double smallest = gram.item[0][0];
+        for (int i = 1; i < w.count; ++i) smallest = std::min(smallest, gram.item[i][i]);
         if (largest <= MAX_OVERLAP * std::sqrt(std::max(smallest, 0.0))) break;
     }
     return gram;
@@ -184,30 +216,33 @@ Pairs orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, R
 // w holds the result of the last step and, at the end, that of the new last one, orthogonal to the basis. Returns its Gram matrix,
 // and in ``exhausted`` whether the basis cannot grow.
 template <int D>
-Pairs extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhausted) {
+Gram extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhausted) {
     const int n = a.size(), most = w.count;
     Block force(most, 2 * n), of_w(most, n), of_last(most, n), of_these(most, n);
-    std::vector<double> memory(8 * static_cast<size_t>(most));
-    auto* overlap = reinterpret_cast<double (*)[2]>(memory.data());
+    std::vector<double> memory(2 * WIDTH * static_cast<size_t>(most));
+    auto* overlap = reinterpret_cast<Row*>(memory.data());
     of_last.count = basis.size - basis.before;
     times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, of_w);
     times(a.M, 1.0, a.links, Rows{basis.vectors[basis.before] + n, basis.vectors.stride, of_last.count}, of_last);
     while (true) {
-        double largest, value[2], turn[2][2];
-        const Pairs gram = orthogonalise(a, w, of_w, basis, force, largest);
-        axes(gram, value, turn);
+        double largest, value[WIDTH], vectors[WIDTH][WIDTH];
+        const Gram gram = orthogonalise(a, w, of_w, basis, force, largest);
+        Gram diagonal = gram;
+        eigh(diagonal, value, vectors);
         const double least = 1e-20 * std::max({value[gram.count - 1], largest * largest, 1e-300});
         int kept = 0;
         for (int i = 0; i < gram.count; ++i) kept += value[i] > least;
-        exhausted = kept == 0 || basis.size + 2 > basis.vectors.count - 2;
+        exhausted = kept == 0 || basis.size + most > basis.vectors.count - most;
         if (exhausted || basis.size >= look) return gram;
         for (int m = 0; m < kept; ++m) {
             const int column = gram.count - kept + m;
             const double scale = 1.0 / std::sqrt(value[column]);
             double* out = basis.vectors[basis.size + m];
-            for (int i = 0; i < 2 * n; ++i) out[i] = scale * turn[0][column] * w[0][i];
-            if (gram.count == 2)
-                for (int i = 0; i < 2 * n; ++i) out[i] += scale * turn[1][column] * w[1][i];
+            std::fill_n(out, 2 * n, 0.0);
+            for (int v = 0; v < gram.count; ++v) {
+                const double *from = w[v], factor = scale * vectors[v][column];
+                for (int i = 0; i < 2 * n; ++i) out[i] += factor * from[i];
+            }
         }
         w.count = force.count = of_w.count = of_these.count = kept;
         const Rows these{basis.vectors[basis.size], basis.vectors.stride, kept};

@@ -1,9 +1,9 @@
 """The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve per step.
 
 A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
-and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of two
-vectors find the double frequencies of symmetric blades. (Lanczos 1950; Golub and Underwood 1977; Parlett, *The Symmetric
-Eigenvalue Problem*, 1998, ch. 13.)
+and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of
+two vectors find the double frequencies of symmetric blades, wider ones the multiple frequencies of equal branches. (Lanczos
+1950; Golub and Underwood 1977; Parlett, *The Symmetric Eigenvalue Problem*, 1998, ch. 13.)
 """
 
 from dataclasses import dataclass
@@ -25,9 +25,11 @@ Array = NDArray[np.float64]
 
 _VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
 _MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
-_FIRST_LOOK, _LOOK_EVERY = 26, 12  # numbers of vectors between checks of convergence
+_FIRST_LOOK, _LOOK_EVERY = 13, 12  # numbers of vectors, for each of a block, before the first check; between checks
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
+MAX_WIDTH = 8
+"""Largest number of vectors in a block; see ``krylov.hpp``."""
 
 
 class EigensolverError(ArithmeticError):
@@ -39,7 +41,7 @@ class Start:
     """Start of the basis for a similar pencil.
 
     Attributes:
-        vectors: (2, 2n) combinations of the lowest modes.
+        vectors: (w, 2n) combinations of the lowest modes, the width of a block.
         size: number of vectors of the basis at which convergence is first checked.
     """
 
@@ -68,8 +70,20 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
         EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
         MissedModesError: if a mode is missing; see ``completeness``.
     """
+    width = len(near.vectors) if near else _width(p)
+    while True:
+        try:
+            return _lowest(p, count, near, width)
+        except completeness.MissedModesError:  # of a frequency with more modes than a block has vectors
+            if near or width >= MAX_WIDTH:
+                raise
+            width = min(2 * width, MAX_WIDTH)
+
+
+def _lowest(p: ChainPencil, count: int, near: Start | None, width: int) -> Lowest:
+    """``lanczos`` with this number of vectors in a block."""
     a = _operator(p)
-    w = _start_vectors(p, a, near)
+    w = _start_vectors(p, a, near, width)
     found = _converged(a, w, count, near.size if near else None)
     z = found.vectors.T
     x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ found.basis[:, : w.shape[1] // 2]
@@ -80,7 +94,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
     order = np.argsort(frequencies)
     completeness.check(p, frequencies[order], 1.0 / found.next_values)
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
-    combined = (_phases(len(z)) @ z).real @ found.basis
+    combined = (_phases(len(w), len(z)) @ z).real @ found.basis
     start = Start(combined, len(found.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
     return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
@@ -95,15 +109,15 @@ def _operator(p: ChainPencil) -> kernels.Operator:
     )
 
 
-def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None) -> Array:
-    """The first block (2, 2n) of the basis.
+def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None, width: int) -> Array:
+    """The first block (w, 2n) of the basis.
 
     Raises:
         UnstableError: if K is not positive definite.
         EigensolverError: if K is lost to rounding.
     """
     n = len(p.residual)
-    w = _start(2 * n).copy() if near is None else near.vectors.copy()
+    w = _start(width, 2 * n).copy() if near is None else near.vectors.copy()
     y = w[:, n:].copy()
     y = allowed(p.links, y)
     a.keep_massive(y)
@@ -143,9 +157,9 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
     Raises:
         EigensolverError: if the basis is full before, or there is no mode.
     """
-    limit = min(w.shape[1], max(200, 8 * count))
-    look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK, _LOOK_EVERY)
-    basis, projected = np.empty((limit + 2, w.shape[1])), np.zeros((look + 2, look + 2))
+    limit, width = min(w.shape[1], max(200, 8 * count)), len(w)
+    look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
+    basis, projected = np.empty((limit + width, w.shape[1])), np.zeros((look + width, look + width))
     size, before = 0, 0
     while True:
         gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
@@ -160,7 +174,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
         look = size + every
-        projected = np.pad(projected, (0, look + 2 - len(projected)))
+        projected = np.pad(projected, (0, look + width - len(projected)))
     smallest = 1e-12 * mu.max(initial=0.0)
     positive = mu > smallest
     if not positive.any() or not np.isfinite(mu).all():
@@ -212,14 +226,20 @@ def solve_error(p: ChainPencil, v: Array) -> float:
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
 
 
+def _width(p: ChainPencil) -> int:
+    """Number of vectors in a block: one more than the tree has tips, at most ``MAX_WIDTH``."""
+    tips = len(p.links.parent) - len(np.unique(p.links.parent[p.links.parent > 0]))
+    return min(1 + tips, MAX_WIDTH)
+
+
 @lru_cache(maxsize=4)
-def _start(size: int) -> Array:
-    """Two random start vectors (2, size), the same in every run."""
-    return np.random.default_rng(1921).normal(size=(2, size))
+def _start(width: int, size: int) -> Array:
+    """Random start vectors (width, size), the same in every run."""
+    return np.random.default_rng(1921).normal(size=(width, size))
 
 
 @lru_cache(maxsize=16)
-def _phases(modes: int) -> NDArray[np.complex128]:
-    """Random coefficients (2, modes) of modes in start vectors, the same in every run."""
+def _phases(width: int, modes: int) -> NDArray[np.complex128]:
+    """Random coefficients (width, modes) of modes in start vectors, the same in every run."""
     rng = np.random.default_rng(1950)
-    return rng.normal(size=(2, modes)) + 1j * rng.normal(size=(2, modes))
+    return rng.normal(size=(width, modes)) + 1j * rng.normal(size=(width, modes))

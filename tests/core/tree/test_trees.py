@@ -109,3 +109,11 @@ def test_a_branch_with_other_elements_is_refused() -> None:
     beam = uniform_blade("u", 2.0, 0.1, EA=1e8, GJ=1e5, EI_y=1e5, EI_z=2e5, mass=4.0)
     with pytest.raises(ValueError, match="another strain measure or mass"):
         attached(discretize(beam, 2), 1, discretize(beam, 2, "half_end"), np.eye(4))
+
+
+@pytest.mark.parametrize("count", [3, 10, 13])
+def test_frequencies_with_more_modes_than_a_block_has_vectors_are_complete(count: int) -> None:
+    """Three blades with equal flap and lag stiffness at rest: each frequency six times."""
+    beam = uniform_blade("u", 4.0, 0.5, EA=1e9, GJ=1e6, EI_y=1e5, EI_z=1e5, mass=4.0)
+    alone, rotor = frequencies(discretize(beam, 6), 0.0, 6), frequencies(around_hub(discretize(beam, 6), 3), 0.0, count)
+    np.testing.assert_allclose(rotor, alone.repeat(3)[:count], rtol=1e-10)
