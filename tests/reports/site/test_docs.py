@@ -1,4 +1,4 @@
-"""The site: every page is in it, it builds without a warning, nothing is fetched to read it, and what it says to type works."""
+"""The site: every page is in it, it builds without a warning, the files it names exist, nothing is fetched to read it, and what it says to type works."""
 
 import importlib.util
 import json
@@ -51,6 +51,13 @@ def leaves(part: object) -> list[str]:
 
 
 # ----------------------------------------------------------------------------------------------------------- the pages
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_files_named_on_a_page_exist(page: str) -> None:
+    text = (DOCS / page).read_text(encoding="utf-8")
+    named = set(re.findall(r"`((?:core|references|cases|reports|tests)/[\w/]+\.(?:py|hpp|cpp|toml))`", text))
+    assert sorted(name for name in named if not (ROOT / name).is_file()) == []
 
 
 def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
