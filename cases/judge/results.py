@@ -3,7 +3,7 @@
 The file has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
 the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
 without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
-settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, bisections, and one
+settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, and one
 line about the run itself.
 """
 
@@ -18,7 +18,6 @@ import msgspec
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..input import atomic
 from . import checks
-from .releases import Bisection
 
 Verdict = Literal[
     "pass", "fail", "inconclusive", "known difference", "estimate", "measured", "not applicable", "not run"
@@ -228,7 +227,6 @@ class Run:
         origins: origin of the answers of each column.
         plan: every planned column.
         unfinished: one sentence on what is missing; empty if the run is complete.
-        bisections: first releases that differ from another release of the run.
     """
 
     cells: tuple[Cell, ...]
@@ -241,7 +239,6 @@ class Run:
     origins: tuple[Origin, ...] = ()
     plan: tuple[Planned, ...] = ()
     unfinished: str = ""
-    bisections: tuple[Bisection, ...] = ()
 
 
 KINDS: dict[str, type] = {
@@ -251,7 +248,6 @@ KINDS: dict[str, type] = {
     "control": Control,
     "budget": BudgetEntry,
     "origin": Origin,
-    "bisection": Bisection,
 }
 """Kind of line → its type, in the order of the file."""
 

@@ -19,14 +19,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...references.protocol.interface import CORE
-from . import releases
 from .results import Cell, Origin, Run
 from .verdict import judge
 
 FINE = 1e-4
 """Relative difference within which independent models should agree after extrapolation."""
 
-Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared", "other release"]
+Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
 Standing = Literal["agrees", "known difference", "estimate", "open", "disagrees"]
 
 INDEPENDENT: tuple[Kind, ...] = ("code", "closed form", "printed source")
@@ -92,8 +91,6 @@ def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float 
 
 
 def _kind(cell: Cell, origin: Origin | None) -> Kind:
-    if releases.other(cell.code):
-        return "other release"
     if cell.shares != "nothing" or (origin and CORE in (*_key(origin), origin.sections)):
         return "core's model"
     if not origin:

@@ -1,4 +1,4 @@
-"""The cache folder: isolated environments, other releases of codes, and stored answers."""
+"""The cache folder: isolated environments and stored answers."""
 
 import os
 from pathlib import Path

@@ -34,7 +34,7 @@ from .interface import (
 )
 from .mechanism_interface import takes_mechanisms
 from .process import Failure, Limits, converse, one_line, raised
-from .registry import RELEASE, UnknownCodeError, release_of
+from .registry import UnknownCodeError
 from .wire import decode_blade, encode
 
 TOGETHER = 2
@@ -50,7 +50,7 @@ class Description:
 
     Attributes:
         asked: the name or import path given to ``describe``; ``worker.answers`` accepts it too.
-        name: as declared; at another release followed by it, as in ``exudyn-ancf@1.10.0``.
+        name: as declared.
         title, shares, effects, hint, levels, order, motions, digits, bracket, independence, distribution: as declared.
         blades, mechanisms: whether the code solves them.
         version: None if it is not installed.
@@ -95,14 +95,14 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
     where = {name: registry.address(name) for name in names}
     packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}
     shown = [encode(blade) for blade in blades]
-    bundled = {name: at for name, at in where.items() if at["code"] in packaged and not at["overlay"]}
+    bundled = {name: at for name, at in where.items() if at["code"] in packaged}
     found = {one.asked: one for one in _asked(bundled, shown, limits)}
     alone = [name for name in where if name not in found or found[name].failure]
     with ThreadPoolExecutor(TOGETHER) as threads:
         again = threads.map(lambda name: _asked({name: where[name]}, shown, limits)[0], alone)
         found |= zip(alone, again, strict=True)
     for one in found.values():
-        mistyped = ":" in one.asked and RELEASE not in one.asked  # at another release its imports may be missing
+        mistyped = ":" in one.asked
         if one.failure and one.failure.kind == "unknown" and mistyped:
             raise UnknownCodeError(one.failure.reason)
     return tuple(found[name] for name in names)
@@ -127,14 +127,7 @@ def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits:
 def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
     """A description with a failure only; ``name`` is used if it is valid, ``asked`` otherwise."""
     proper = isinstance(name, str) and re.fullmatch(r"[^\W_][\w.+-]{0,59}", name)
-    return Description(
-        asked, _released(asked, name if proper else one_line(asked.partition(RELEASE)[0])), failure=failure
-    )
-
-
-def _released(asked: str, name: str) -> str:
-    """The name of a code, with the release if another one than the installed was asked for."""
-    return f"{name}{RELEASE}{release_of(asked)}" if RELEASE in asked else name
+    return Description(asked, name if proper else one_line(asked), failure=failure)
 
 
 def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
@@ -150,7 +143,7 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
     except NonsenseError as error:
         return _failed(asked, Failure("nonsense", one_line(error)), name)
     facts = {field: getattr(said, field) for field in said.__struct_fields__}
-    facts["name"] = _released(asked, said.name)
+    facts["name"] = said.name
     origin = (
         Independence(**{f: getattr(said.independence, f) for f in said.independence.__struct_fields__})
         if (said.independence)

@@ -77,7 +77,7 @@ class Code(Protocol):
     * ``motions: tuple[Motion, ...]``, the motions in its shapes, if not all four. Modes dominated by another motion are
       not compared; any other mode must have a partner;
     * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket, which refinement does not narrow;
-    * ``distribution: str``, the installed package whose release is ``version()``; it allows ``verify --against-version``;
+    * ``distribution: str``, the installed package whose release is ``version()``; workers of a cluster must have the same;
     * ``digits: int``, for a code that prints, or converges to, fewer than nine significant digits of its frequencies.
       Results that should be equal, such as those of a blade in other units, are then compared to this precision.
     """

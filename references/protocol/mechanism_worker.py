@@ -30,7 +30,6 @@ class Request:
     folder: str | None
     guess: dict[str, float]
     mechanisms: list[Mechanism]
-    overlay: str | None = None
 
 
 def answers(

@@ -10,10 +10,8 @@ import sys
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.metadata import entry_points
-from pathlib import Path
 from typing import Any, Protocol, TypedDict
 
-from . import overlay
 from .mechanism_interface import takes_mechanisms
 from .process import Failure, one_line, raised
 
@@ -44,11 +42,10 @@ OURS = {
 
 
 class Address(TypedDict):
-    """Where a worker process finds a code: its import path, and folders that are searched last and first."""
+    """Where a worker process finds a code: its import path, and a folder that is searched last."""
 
     code: str
     folder: str | None
-    overlay: str | None
 
 
 ADVICE = "is it module:attribute, and installed or in this folder?"
@@ -71,30 +68,15 @@ def names() -> tuple[str, ...]:
     return (*OURS, *FOR_MECHANISMS, *theirs)
 
 
-RELEASE = "@"
-"""Between a code and another release: ``exudyn-ancf@exudyn==1.10.0``, and in the name of its column: ``exudyn-ancf@1.10.0``."""
-
-
-def at_release(name: str, distribution: str, release: str) -> str:
-    """The name of a code that uses another release of its distribution."""
-    return f"{name}{RELEASE}{distribution}=={release}"
-
-
-def release_of(name: str) -> str:
-    """The release in such a name; empty for the installed one."""
-    return name.partition(RELEASE)[2].partition("==")[2]
-
-
 def locate(name: str) -> str:
     """Import path ``module:attribute`` of a code.
 
     Args:
-        name: a name from ``names()``, or an import path (of a code that is not registered); the release is ignored.
+        name: a name from ``names()``, or an import path (of a code that is not registered).
 
     Raises:
         UnknownCodeError: if the name is unknown; the nearest is suggested.
     """
-    name, _, _ = name.partition(RELEASE)
     if ":" in name:
         return name
     if name in OURS or name in FOR_MECHANISMS:
@@ -107,29 +89,18 @@ def locate(name: str) -> str:
 
 
 def address(name: str) -> Address:
-    """Where a worker process finds a code: its import path, and folders that may contain its modules.
+    """Where a worker process finds a code: its import path, and a folder that may contain its modules.
 
-    ``folder`` is the current one, searched last, for a code given by its import path; None otherwise. ``overlay`` is
-    that of another release (``overlay.install``), searched first; None for the installed one.
+    ``folder`` is the current one, searched last, for a code given by its import path; None otherwise.
 
     Raises:
         UnknownCodeError: as ``locate``.
     """
-    base, other, pin = name.partition(RELEASE)
-    distribution, _, release = pin.partition("==")
-    try:
-        first = str(overlay.folder(distribution, release)) if other else None
-    except ValueError as error:
-        raise UnknownCodeError(f"code: {name!r}: no release: give another release with --against-version") from error
-    return {"code": locate(base), "folder": os.getcwd() if ":" in base else None, "overlay": first}
+    return {"code": locate(name), "folder": os.getcwd() if ":" in name else None}
 
 
 def loaded(request: dict[str, Any]) -> Any:
     """Import the code at an ``address``; a failure if that raises anything."""
-    if first := request["overlay"]:
-        if not overlay.complete(Path(first)):
-            return Failure("not installed", "this release is not in the cache: --against-version installs it")
-        overlay.search_first(Path(first))
     if (folder := request["folder"]) and folder not in sys.path:
         sys.path.append(folder)  # last, so that no file in it shadows an installed module
     try:
@@ -194,4 +165,4 @@ class Refinable(Protocol):
 
 def cap(code: Refinable) -> int:
     """The finest refinement at which a code is run."""
-    return CAPS.get(code.name.partition(RELEASE)[0], 8 * code.levels[-1])
+    return CAPS.get(code.name, 8 * code.levels[-1])

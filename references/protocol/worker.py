@@ -2,7 +2,7 @@
 
 The process reads one request ::
 
-    {"code": "module:attribute", "folder": …, "overlay": …, "blade": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
 
 imports the code, checks its version and ``unsupported``, and writes one line per run as soon as it is solved:
 ``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished runs are kept.
@@ -33,7 +33,7 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, versio
     """A code's modes for each run, or a failure, in the order of ``runs``.
 
     Args:
-        name: of the code, or its import path (see ``registry.locate``), or one of them at another release.
+        name: of the code, or its import path (see ``registry.locate``).
         blade: the blade to solve.
         runs: solved in this order; put the most important first.
         limits: for each run.

@@ -30,7 +30,7 @@ from ..ci import junit as xml
 from ..shared import summary
 from ..shared.statuses import INCOMPLETE
 from ..shared.writing import writable
-from . import campbell_options, measured, versions
+from . import campbell_options, measured
 from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
 from .errors import UsageError
 from .mounting import Mounting
@@ -54,7 +54,6 @@ def command(
     junit: Path | None = None,
     faults: str = "fast",
     witnesses: Count | None = None,
-    against_version: tuple[str, ...] = (),
     time_limit: Positive | None = None,
     memory_limit: Positive = Limits.memory / 2**30,
     rpm: str | None = None,
@@ -98,11 +97,6 @@ def command(
         Seeded faults to run: `fast` (seven), `all`, `none`, or names separated by commas.
     witnesses
         Number of independent groups that must confirm each blade. Default: as the case says; none with `--codes`.
-    against_version
-        `NAME==VERSION`: another release of a package, such as `exudyn==1.11.0` or `exudyn==newest`, is run next to the
-        installed one, as one more column for each code that uses it; may be repeated. The release is installed in the cache.
-        The report compares both. If a frequency moves beyond its uncertainty, or only one release answers, bisection finds
-        the first release that differs. This does not change the status; a failing cell of either release does.
     time_limit
         Seconds for one solution by another code. Default: as the case says, otherwise 300.
     memory_limit
@@ -118,10 +112,6 @@ def command(
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
     count = cluster_workers(workers, scheduler)
-    if scheduler and against_version:
-        raise UsageError(
-            f"--against-version {against_version[0]}: with --scheduler: workers have one release: leave it out"
-        )
     kept_before = _store(fresh)
     with ExitStack() as early:
         if kept_before:
@@ -138,8 +128,6 @@ def command(
         names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
         blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
         known = describe(names, [v.blade for v in blades])
-        pins = versions.pinned(against_version, known)
-        known += versions.described(pins, known, [v.blade for v in blades])
         defaults = measured.defaults(data_uncertainty, input_uncertainty)
         files = [measured.user_results(text, defaults) for text in add]
         measured.check(files, data_uncertainty, input_uncertainty)
@@ -148,7 +136,6 @@ def command(
         options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
         options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
         options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
-        options += [word for name, release in pins for word in ("--against-version", f"{name}=={release}")]
         plain = not (rpm or omega or changes or decks.mount != Mount())
         line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
         about = Run(

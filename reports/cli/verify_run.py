@@ -14,7 +14,7 @@ from ...cases.faults import table
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Level, Planned, Run
-from ...cases.verify import bisection, journal, lumping, matrix
+from ...cases.verify import journal, lumping, matrix
 from ...cases.verify.cached import Cached
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
@@ -78,13 +78,10 @@ def solve(
         scratch.mkdir()
         with watch:
             done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
-            moved = bisection.bisections(
-                done, chosen, codes, fresh, lambda case: matrix.limits(case, **limits), watch.report
-            )
             levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
         controls = tuple(found[name] for part in seeded for name in part)
-        run = replace(done, levels=levels, controls=controls, bisections=moved)
+        run = replace(done, levels=levels, controls=controls)
         run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 
-from ...cases.judge import releases
 from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
 from ...cases.judge.witnesses import INDEPENDENT, witnesses
@@ -12,7 +11,6 @@ from ..shared.units import BY_KEY, RAD_S, Units
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
     "measured data (neither confirm nor contradict)": lambda c: c.role == "measured",
-    "other releases of the codes below": lambda c: releases.other(c.code),
     "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
     "printed tables": lambda c: c.role == "table",
     "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",

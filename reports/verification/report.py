@@ -18,7 +18,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import case_tables, controls, error_budget, evidence, lumped, releases, witnesses
+from . import case_tables, controls, error_budget, evidence, lumped, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -105,9 +105,7 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[
-            plain(line) for line in (witnesses.headline(run), controls.headline(run), *releases.found(run)) if line
-        ],
+        remarks=[plain(line) for line in (witnesses.headline(run), controls.headline(run)) if line],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -117,8 +115,6 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
         short=[plain(line) for line in witnesses.missing(run)],
         controls=_plainly(controls.overview(run)),
         lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
-        releases=_plainly(releases.rows(run)),
-        moved=[plain(line) for line in releases.found(run)],
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",
@@ -137,7 +133,7 @@ def headline(run: Run) -> list[str]:
     for verdict, what in LARGEST.items():
         if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
             lines.append(f"{what}: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
-    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run), *releases.headline(run)]
+    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
     return [line for line in lines if line]
 
 

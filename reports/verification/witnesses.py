@@ -35,7 +35,7 @@ def table(run: Run) -> list[dict[str, str]]:
                 "not counted": ", ".join(
                     f"{w.name} ({w.standing if w.standing != 'agrees' else w.kind}, to {unsigned(w.target)})"
                     for w in rest
-                    if w.standing != "agrees" or w.kind in ("undeclared", "coarse source", "other release")
+                    if w.standing != "agrees" or w.kind in ("undeclared", "coarse source")
                 ),
             }
         )

@@ -236,7 +236,6 @@ BESIDE = {
 
 
 def _run():
-    from southwell.cases.judge.releases import Bisection
     from southwell.cases.judge.results import BudgetEntry, Cell, Control, Level, Origin, Planned, Run, Setting
 
     def cell(mode: int, code: str, **more: Any) -> Cell:
@@ -284,11 +283,6 @@ def _run():
         (BudgetEntry("beam", 10.0, "flapwise 1", "discretisation", "lumped mass", 1e-3),),
         (Origin("beam", "a", "e", "t", "r", "s", "q"),),
         (Planned("beam", "a", 1, 2), Planned("beam", "b", 1, 1), Planned("beam", "c", 1, 2)),
-        bisections=(
-            Bisection(
-                "a", "a@2", "d", "beam", 10.0, 1, "1.9", "1.8", "1", 0.01, 1e-6, True, "", 2, {"1.8.5": "no wheel"}
-            ),
-        ),
     )
 
 
