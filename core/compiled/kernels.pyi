@@ -98,38 +98,11 @@ def displaced(parent: NDArray[np.int64], relative: Array, step: Array) -> Array:
 def placed(parent: NDArray[np.int64], first: Array, relative: Array) -> Array:
     """The poses (n+1, 4, 4) of the nodes from that of node 0 and the relative ones (n, 4, 4)."""
 
-def degree(x: Array, values: Array) -> int:
-    """Degree of the polynomial with which to extrapolate values (k, …) at abscissae x (k,), the latest last, to x = 0.
-
-    The terms of Newton's interpolation decrease up to the degree at which rounding errors dominate. The polynomial ends before
-    the smallest term.
-    """
-
-def extrapolated(x: Array, values: Array, degree: int) -> Array:
-    """The value (…) at x = 0 of the polynomial fitted by least squares to values (k, …) at abscissae x (k,)."""
-
 def product(matrix: Array, sign: float, links: Links, x: Array) -> Array:
     """``matrices.product``."""
 
-def quadratic_forms(K: Array, C: Array, M: Array, links: Links, x: Array) -> Array:
-    """(m, 3) x*Kx, ½i x*Cx and x*Mx of complex vectors x (m, 2, dn), by real and imaginary parts."""
-
 def twists(links: Links, x: Array) -> None:
     """Replace ρ by ξ_b in vectors x (k, n, d), in place."""
-
-def sampled(
-    laws: StrainLaws,
-    nodes: Array,
-    corner: Array,
-    beta: Array,
-    parent: NDArray[np.int64],
-    element: NDArray[np.int64],
-    zeta0: Array,
-    shape: Array,
-    bubble: Array,
-    twists: Array,
-) -> Array:
-    """(m, q, 4, 2) real and imaginary parts of ``mode_shapes.mode_shapes`` at q points of the elements ``element`` (q,)."""
 
 def factor(K: Array, links: Links) -> tuple[int, Array, Array, Array]:
     """The parts of ``elimination.Factor``; before them 2 if all pivots are positive, 1 if not, 0 if K is singular."""

@@ -45,12 +45,8 @@ inline void define(py::module_& m) {
     m.def("tree_sum", &tree_sum);
     m.def("displaced", &displaced);
     m.def("placed", &placed);
-    m.def("degree", &degree);
-    m.def("extrapolated", &extrapolated);
     m.def("product", &product);
-    m.def("quadratic_forms", &quadratic_forms);
     m.def("twists", &twists);
-    m.def("sampled", &sampled);
     m.def("factor", &factor);
     m.def("solve", &solve_in_place);
     m.def("negative_pivots", &negative);

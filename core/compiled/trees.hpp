@@ -3,10 +3,7 @@
 
 #include <algorithm>
 
-#include "../spectrum/energies.hpp"
-#include "../steady/extrapolation.hpp"
 #include "../tree/elimination.hpp"
-#include "../tree/shapes.hpp"
 #include "../tree/tree.hpp"
 #include "elements.hpp"
 
@@ -146,29 +143,6 @@ inline Doubles placed(const Indices& parent, const py::array& first, const py::a
     return nodes;
 }
 
-// Values (k, …) as rows.
-inline Rows given(const py::array& values) {
-    if (values.ndim() < 1 || !values.shape(0)) throw std::invalid_argument("there are no values");
-    check(values, values.size());
-    return {const_cast<double*>(static_cast<const double*>(values.data())),
-            static_cast<long>(values.size() / values.shape(0)), static_cast<int>(values.shape(0))};
-}
-
-// Degree of the polynomial to extrapolate to zero from values (k, …) at abscissae (k,), the latest last.
-inline int degree(const py::array& x, const py::array& values) {
-    return degree_of(items<double>(x, values.shape(0)), given(values));
-}
-
-// Values (…) at zero of the polynomial of this degree through values (k, …) at abscissae (k,), in the sense of least squares.
-inline Doubles extrapolated(const py::array& x, const py::array& values, int degree) {
-    const Rows rows = given(values);
-    if (degree < 0 || degree >= rows.count)
-        throw std::invalid_argument("the degree must be below the number of values");
-    Doubles out(Shape(values.shape() + 1, values.shape() + values.ndim()));
-    at_zero(items<double>(x, rows.count), rows, degree, out.mutable_data());
-    return out;
-}
-
 // Products (k, dn) of a symmetric (sign 1) or skew (−1) matrix with the rows of x (k, dn).
 inline Doubles product(const py::array& matrix, double sign, const LinkArrays& links, const py::array& x) {
     return sized(matrix, [&](auto D) {
@@ -180,54 +154,12 @@ inline Doubles product(const py::array& matrix, double sign, const LinkArrays& l
     });
 }
 
-// x*Kx, ½i x*Cx and x*Mx (m, 3) of complex vectors x (m, 2, dn), by real and imaginary parts.
-inline Doubles quadratic_forms(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links,
-                               const py::array& x) {
-    return sized(K, [&](auto D) {
-        const auto n = K.shape(0);
-        const auto stiffness = elements_of<D>(K, n), gyroscopic = elements_of<D>(C, n), mass = elements_of<D>(M, n);
-        if (x.ndim() != 3 || x.shape(1) != 2) throw std::invalid_argument("vectors must be (m, 2, dn)");
-        const int modes = static_cast<int>(x.shape(0)), size = stiffness.n * (D - 6);
-        double* from = const_cast<double*>(items<double>(x, py::ssize_t{2} * modes * size));
-        Doubles out({modes, 3});
-        std::fill_n(out.mutable_data(), out.size(), 0.0);
-        add_energies(mass, gyroscopic, stiffness, links_of(links, n), {from, size, 2 * modes}, fill<Energies>(out));
-        return out;
-    });
-}
-
 // Replace ρ by ξ_b in vectors x (k, n, d), in place.
 inline void twists(const LinkArrays& links, py::array& x) {
     if (x.ndim() != 3) throw std::invalid_argument("vectors must be (k, n, d)");
     const auto n = x.shape(1), d = x.shape(2);
     double* data = writable<double>(x, x.size());
     to_twists(links_of(links, n), static_cast<int>(d), {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
-}
-
-// Complex displacements and rotations (m, q, 4, 2) of q points, by real and imaginary parts, from the twists (2m, n, d) of m modes.
-inline Doubles sampled(const LawArrays& law, const py::array& nodes, const py::array& corner, const py::array& beta,
-                       const Indices& parent, const Indices& element, const py::array& zeta0, const py::array& shape,
-                       const py::array& bubble, const py::array& twists) {
-    if (twists.ndim() != 3 || twists.shape(0) % 2) throw std::invalid_argument("twists must be (2m, n, d)");
-    const py::ssize_t n = law.n, q = element.size(), rows = twists.shape(0), d = twists.shape(2);
-    const Pose *pose = items<Pose>(nodes, n + 1), *end = items<Pose>(corner, n);
-    const double* from = items<double>(twists, rows * n * d);
-    check(beta, n * (d - 6));
-    if (parent.size() != n) throw std::invalid_argument("the tree has another number of links than elements");
-    const Samples of{static_cast<int>(q), element.data(), items<Vector6>(zeta0, q), items<Matrix6>(shape, q),
-                     items<Matrix6>(bubble, q)};
-    Doubles out({rows / 2, q, py::ssize_t{4}, py::ssize_t{2}});
-    for (int p = 0; p < of.count; ++p) {
-        const auto k = of.element[p];
-        if (k < 0 || k >= n) throw std::invalid_argument("a point belongs to no element");
-        const auto a = parent.at(k);
-        const Matrix<4, 18> at =
-            sampling_matrix(of, p, pose[a], pose[k + 1], end[k], law.law.eta[k], coordinates(beta, k));
-        for (py::ssize_t v = 0; v < rows; ++v)
-            sample(at, from + v * n * d, static_cast<int>(d), static_cast<int>(k), static_cast<int>(a),
-                   out.mutable_data() + 8 * (v / 2 * q + p) + v % 2, 2);
-    }
-    return out;
 }
 
 // Factors of K: the worst pivot (see ``invert``), flexibility, ride, reaction.

@@ -209,7 +209,10 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
 def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
-    kappa, half, inertia = kernels.quadratic_forms(p.K, p.C, p.M, p.links.arrays, np.ascontiguousarray(x)).T
+    m, n = len(x), x.shape[2]
+    rows = x.reshape(2 * m, n)
+    kappa, inertia = ((rows * product(a, 1.0, p.links, rows)).reshape(m, -1).sum(1) for a in (p.K, p.M))  # x*Kx, x*Mx
+    half = (x[:, 1] * product(p.C, -1.0, p.links, np.ascontiguousarray(x[:, 0]))).sum(1)  # ½i x*Cx, as C is skew
     return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
 
 

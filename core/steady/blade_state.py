@@ -16,6 +16,7 @@ from ..space import spatial as sp
 from ..tree import elimination, joint_links
 from ..tree.links import twists
 from ..tree.pencil import ChainPencil, Shape, assembled, linearize, undeformed
+from . import extrapolation
 
 Array = NDArray[np.float64]
 
@@ -173,7 +174,7 @@ def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Sha
     found = known.get(omega**2)
     if found is None:
         at, values = np.array(list(known)) - omega**2, np.array(list(known.values()))
-        found = kernels.extrapolated(at, values, kernels.degree(at, values))
+        found = extrapolation.at_zero(at, values)
     relative = chain.between @ sp.exp(np.ascontiguousarray(found[:, :6]))
     return assembled(chain, relative, found[:, 6:], found[[joint.link for joint in chain.joints], :6])
 

@@ -8,7 +8,6 @@ import pytest
 
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
-from southwell.core.compiled import kernels
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
 from southwell.core.spectrum import completeness, lanczos
@@ -17,6 +16,7 @@ from southwell.core.spectrum.completeness import MissedModesError
 from southwell.core.spectrum.lanczos import Start
 from southwell.core.spectrum.mesh_solver import MeshSolver
 from southwell.core.steady import blade_state as steady
+from southwell.core.steady import extrapolation
 from southwell.core.steady.blade_state import Steady
 
 FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
@@ -154,7 +154,7 @@ def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> Non
     rng = np.random.default_rng(true)
     at = np.linspace(-8.0, -1.0, 8)
     exact = np.polynomial.polynomial.polyval(at, rng.normal(size=(true + 1, 20))).T
-    assert kernels.degree(at, exact * (1.0 + 1e-14 * rng.normal(size=exact.shape))) == true
+    assert extrapolation.degree(at, exact * (1.0 + 1e-14 * rng.normal(size=exact.shape))) == true
 
 
 def test_a_known_speed_is_not_extrapolated() -> None:

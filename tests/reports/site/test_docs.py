@@ -1,4 +1,4 @@
-"""The site: every page is in it, it builds without a warning, the files it names exist, nothing is fetched to read it, and what it says to type works."""
+"""The site: pages, links and names of files are complete, it builds without a warning and offline, and its commands work."""
 
 import importlib.util
 import json
