@@ -1,6 +1,6 @@
 """What the conformance checks share: their errors, comparisons within a tolerance, and the questions put to a code."""
 
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import Modes
-from ...references.protocol.interface import Code, Shares, digits
-from ...references.protocol.mechanism_interface import MechanismCode
+from ...references.protocol.interface import Adapter, BladeAdapter, Independence
 
 Array = NDArray[np.float64]
 
@@ -44,38 +43,43 @@ def close(found: Any, exact: Any, what: str, within: float) -> None:
     keep(off <= within, f"{said}: {off:.1e} apart, at most {within:.0e}")
 
 
-def named(code: Code | MechanismCode) -> None:
+def named(code: Adapter) -> None:
     """Check the declarations that codes for blades and for mechanisms have in common."""
     keep(
         code.name and not set(code.name) & set(" ,:/\n"),
         f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
     )
     keep(code.title.strip(), "title: empty")
-    keep(code.shares in get_args(Shares), f"shares: {code.shares!r}: not one of {', '.join(get_args(Shares))}")
+    keep(
+        code.independence is None or isinstance(code.independence, Independence),
+        f"independence: {code.independence!r}: not a references.protocol.interface.Independence",
+    )
     keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
     version = code.version()
     keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
     keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
 
 
-def rounding(code: Code) -> float:
+def rounding(code: BladeAdapter) -> float:
     """Relative rounding of two answers: half a unit of the last digit each, for a first digit of 1."""
-    return 10.0 ** (1 - digits(code))
+    return 10.0 ** (1 - code.digits)
 
 
-def same(code: Code) -> float:
+def same(code: BladeAdapter) -> float:
     """The same for answers to the same numbers, which conditioning does not affect."""
     return min(rounding(code), ROUNDING)
 
 
-def ask(code: Code, blade: Blade, omega: float, level: int, count: int = 4) -> Modes:
+def ask(code: BladeAdapter, blade: Blade, omega: float, level: int, count: int = 4) -> Modes:
     """The modes at one level of refinement, or the reason why the code declines the blade."""
     if reason := code.unsupported(blade):
         raise NotForItError(reason)
     return code.solve(blade, omega, code.levels[level], count)
 
 
-def limit_of(code: Code, blade: Blade, omega: float, levels: tuple[int, int] = (0, 1)) -> tuple[Array, Modes, float]:
+def limit_of(
+    code: BladeAdapter, blade: Blade, omega: float, levels: tuple[int, int] = (0, 1)
+) -> tuple[Array, Modes, float]:
     """Frequencies (m,) extrapolated by the declared order from two levels, the finer modes, and their error bound."""
     coarse, fine = (ask(code, blade, omega, level) for level in levels)
     m = min(len(coarse.frequencies), len(fine.frequencies))
@@ -94,7 +98,7 @@ def along(modes: Modes, axis: int) -> int:
     return int(found[0])
 
 
-def agrees(code: Code, blade: Blade, omega: float, exact: float, axis: int | None = None) -> None:
+def agrees(code: BladeAdapter, blade: Blade, omega: float, exact: float, axis: int | None = None) -> None:
     """Compare the lowest frequency, or the lowest one along ``axis`` of y, z, with the exact one (rad/s)."""
     limit, fine, bracket = limit_of(code, blade, omega)
     k = 0 if axis is None else along(fine, axis)

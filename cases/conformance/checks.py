@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core.blade import AXIAL
 from ...core.modes import STATIONS, Modes
-from ...references.protocol.interface import Code, CodeError, digits
+from ...references.protocol.interface import BladeAdapter, CodeError
 from . import blades as known
 from .asking import (
     TOLERANCE,
@@ -28,14 +28,13 @@ FEWEST = 5
 """Fewest digits of a code's answers with which ``TOLERANCE`` can be checked."""
 
 
-def declares(code: Code) -> None:
+def declares(code: BladeAdapter) -> None:
     """The declarations of the adapter are valid."""
     named(code)
     keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: not a whole number (0: spectral)")
-    declared = digits(code)
     keep(
-        isinstance(declared, int) and declared >= FEWEST,
-        f"digits: {declared!r}: not a whole number of at least {FEWEST}",
+        isinstance(code.digits, int) and code.digits >= FEWEST,
+        f"digits: {code.digits!r}: not a whole number of at least {FEWEST}",
     )
     steps = np.divide(code.levels[1:], code.levels[:-1])
     keep(
@@ -47,7 +46,7 @@ def declares(code: Code) -> None:
     )
 
 
-def refuses(code: Code) -> None:
+def refuses(code: BladeAdapter) -> None:
     """``unsupported`` and ``solve`` agree."""
     reasons = [(p, code.unsupported(p.having)) for p in PROPERTIES]
     for p, reason in reasons:
@@ -63,20 +62,20 @@ def refuses(code: Code) -> None:
         raise NotForItError("the code accepts all these blades")
 
 
-def at_rest(code: Code) -> None:
+def at_rest(code: BladeAdapter) -> None:
     """A uniform cantilever, two modes in each plane."""
     limit, _, bracket = limit_of(code, BEAM, 0.0)
     close(limit, np.repeat(CANTILEVER[:2], 2), "beam at rest, in pairs", max(bracket, TOLERANCE))
 
 
-def turning(code: Code) -> None:
+def turning(code: BladeAdapter) -> None:
     """Stiffened by tension, softened in the plane of rotation."""
     omega = known.WRIGHT_SPEED
     agrees(code, BEAM, omega, known.WRIGHT, axis=2)
     agrees(code, BEAM, omega, float(np.sqrt(known.WRIGHT**2 - omega**2)), axis=1)
 
 
-def counts(code: Code) -> None:
+def counts(code: BladeAdapter) -> None:
     """The requested number of modes is returned."""
     few, many = (ask(code, BEAM, known.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
@@ -88,7 +87,7 @@ def counts(code: Code) -> None:
     close(many.frequencies, few.frequencies, "the first three of eight modes, and three modes", same(code))
 
 
-def repeats(code: Code) -> None:
+def repeats(code: BladeAdapter) -> None:
     """No state remains from another call."""
     first = ask(code, BEAM, known.SPEED, 0)
     ask(code, replace(BEAM, hub_radius=1.0), 1.0, 1)
@@ -100,7 +99,7 @@ def repeats(code: Code) -> None:
     )
 
 
-def shapes(code: Code) -> None:
+def shapes(code: BladeAdapter) -> None:
     """The first shape, nearly that at rest."""
     shape = ask(code, BEAM, known.SPEED, 1).shapes[0]
     keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"the root moves: {shape[0].tolist()}")
@@ -114,7 +113,7 @@ def shapes(code: Code) -> None:
     keep(stray < 0.05, f"first shape: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
 
 
-def order(code: Code) -> None:
+def order(code: BladeAdapter) -> None:
     """Observed order at the three coarsest levels."""
     if not code.order:
         raise NotForItError("spectral: no order")
@@ -131,7 +130,7 @@ def order(code: Code) -> None:
     )
 
 
-def units(code: Code) -> None:
+def units(code: BladeAdapter) -> None:
     """Lengths in feet, masses in pounds, times in minutes: the same to the declared digits of the code."""
     length, mass, rate = 1 / 0.3048, 1 / 0.45359237, 60.0
     power = np.add.outer([0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1])
@@ -146,7 +145,7 @@ def units(code: Code) -> None:
     close(there.frequencies / rate, here.frequencies, "the same beam in ft, lb and min", rounding(code))
 
 
-def quarter_pitch(code: Code) -> None:
+def quarter_pitch(code: BladeAdapter) -> None:
     """A pitch of 90° exchanges the planes."""
     pitched, plain = (ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
     close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with exchanged planes", same(code))
@@ -155,7 +154,7 @@ def quarter_pitch(code: Code) -> None:
         keep(alike, f"a plank pitched by 90°: its modes along {'xyz'[axis]} are not those of one with exchanged planes")
 
 
-def pitch_sense(code: Code) -> None:
+def pitch_sense(code: BladeAdapter) -> None:
     """Flapwise motion leans to −y."""
     found = _lean(ask(code, replace(PLANK, pitch=0.3), 0.0, 1))
     keep(
@@ -163,7 +162,7 @@ def pitch_sense(code: Code) -> None:
     )
 
 
-def twist_sense(code: Code) -> None:
+def twist_sense(code: BladeAdapter) -> None:
     """The same by twist."""
     found = _lean(ask(code, replace(PLANK, twist=np.array([0.3, 0.3])), 0.0, 1))
     keep(
@@ -176,7 +175,7 @@ def _lean(modes: Modes) -> float:
     return float((tip[1] / tip[2]).real)
 
 
-def coriolis_sense(code: Code) -> None:
+def coriolis_sense(code: BladeAdapter) -> None:
     """The Coriolis force stretches a blade that moves along +y: ``EA u″ + m (ω² + Ω²) u = −2 i m Ω ω v`` for exp(iωt)."""
     blade, omega = known.STUBBY, known.FAST
     if not code.effects.coriolis:
@@ -198,7 +197,7 @@ def coriolis_sense(code: Code) -> None:
     )
 
 
-def torsion(code: Code) -> None:
+def torsion(code: BladeAdapter) -> None:
     """π/2 √(GJ / I) / L, a quarter of a sine; or no such mode at all."""
     blade, exact = known.shaft()
     limit, fine, _ = limit_of(code, blade, 0.0)
@@ -217,32 +216,32 @@ def torsion(code: Code) -> None:
     keep(wrong < 0.01, f"soft shaft: its rotation differs from a quarter sine by {wrong:.3f} of the tip's")
 
 
-def tip_mass_weighs(code: Code) -> None:
+def tip_mass_weighs(code: BladeAdapter) -> None:
     """At rest."""
     agrees(code, known.WITH_TIP_MASS, 0.0, known.TIP_AT_REST)
 
 
-def tip_mass_pulls(code: Code) -> None:
+def tip_mass_pulls(code: BladeAdapter) -> None:
     """Rotating: its centrifugal force is the tip's tension."""
     agrees(code, known.WITH_TIP_MASS, known.TIP_SPEED, known.TIP_TURNING, axis=2)
 
 
-def coupled_planes(code: Code) -> None:
+def coupled_planes(code: BladeAdapter) -> None:
     """Bending stiffness with a product EI_yz."""
     agrees(code, known.coupled_plank(), 0.0, float(CANTILEVER[0]))
 
 
-def corner(code: Code) -> None:
+def corner(code: BladeAdapter) -> None:
     """Two straight pieces at right angles, at rest."""
     blade, exact = known.cornered()
     agrees(code, blade, 0.0, exact, axis=1)
 
 
-def hinged_root(code: Code) -> None:
+def hinged_root(code: BladeAdapter) -> None:
     """With a flap hinge at the rotor's axis the first flapwise mode is a straight line at Ω, whatever the stiffness."""
     agrees(code, known.HINGED, known.SPEED, known.SPEED, axis=2)
 
 
-def shear(code: Code) -> None:
+def shear(code: BladeAdapter) -> None:
     """A short beam, soft in shear, at rest."""
     agrees(code, known.short_beam(known.SHEAR), 0.0, known.timoshenko())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...core import solve
 from ...core.effects import Effects
 from ...core.spectrum.eigen import UnstableError
-from ...references.protocol.interface import Code, CodeError
+from ...references.protocol.interface import BladeAdapter, CodeError
 from . import blades as known
 from .asking import NotForItError, keep, limit_of
 from .blades import PROPERTIES, Property
@@ -37,7 +37,7 @@ def _far(found: Array, other: Array) -> float:
     return float(np.abs(np.log(found[: len(other)] / other[: len(found)])).max())
 
 
-def effects(code: Code) -> None:
+def effects(code: BladeAdapter) -> None:
     """Each effect in turn, at a speed where its omission shows; not every code can reach this speed."""
     try:
         found, _, bracket = limit_of(code, known.STUBBY, known.FAST, (-2, -1))
@@ -59,7 +59,7 @@ def effects(code: Code) -> None:
         )
 
 
-def keeps(one: Property, code: Code) -> None:
+def keeps(one: Property, code: BladeAdapter) -> None:
     """A property is not silently dropped; checked with two coarse levels."""
     found, _, bracket = limit_of(code, one.having, one.omega)
     having, lacking = _with_and_without(one.name, code.effects)

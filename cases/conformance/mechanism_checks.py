@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from ...core import multibody as mb
 from ...references.protocol.interface import CodeError
-from ...references.protocol.mechanism_interface import MechanismCode, MechanismModes
+from ...references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
 from .asking import BrokenError, NotForItError, keep, named
 
 Array = NDArray[Any]
-Ask = Callable[[MechanismCode], None]
+Ask = Callable[[MechanismAdapter], None]
 
 TOLERANCE = 1e-7
 """Tolerance on eigenvalues, relative to the largest: no discretisation error, but a code may use finite differences."""
@@ -26,7 +26,7 @@ DOWN = (0.0, -G, 0.0)
 POINT = mb.inertia(MASS, 0.0, (0.0, -LENGTH, 0.0))
 
 
-def _ask(code: MechanismCode, mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> MechanismModes:
+def _ask(code: MechanismAdapter, mechanism: mb.Mechanism, guess: Mapping[str, float] | None = None) -> MechanismModes:
     if reason := code.unsupported_mechanism(mechanism):
         raise NotForItError(reason)
     return code.solve_mechanism(mechanism, guess or {})
@@ -75,14 +75,14 @@ def hinged(kind: str) -> mb.Mechanism:
     )
 
 
-def declares(code: MechanismCode) -> None:
+def declares(code: MechanismAdapter) -> None:
     """The declarations of the adapter are valid."""
     named(code)
     reason = code.unsupported_mechanism(pendulum())
     keep(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
 
 
-def refuses(code: MechanismCode) -> None:
+def refuses(code: MechanismAdapter) -> None:
     """``unsupported_mechanism`` and ``solve_mechanism`` agree."""
     base = pendulum()
     bushing = mb.Beam("ground", "bob", mb.bushing(np.eye(4), np.eye(6)))
@@ -107,7 +107,7 @@ def refuses(code: MechanismCode) -> None:
         raise NotForItError("the code accepts all these mechanisms")
 
 
-def hangs(code: MechanismCode) -> None:
+def hangs(code: MechanismAdapter) -> None:
     """√(g/l), and the steady state from a guess near it."""
     found = _ask(code, pendulum(), {"hinge.rz": 0.3})
     _are(found, [1j * np.sqrt(G / LENGTH)], "pendulum")
@@ -115,7 +115,7 @@ def hangs(code: MechanismCode) -> None:
     keep(abs(found.steady[0]) < 1e-9, f"pendulum: it hangs at {found.steady[0]:.3g} rad, expected 0")
 
 
-def oscillates(code: MechanismCode) -> None:
+def oscillates(code: MechanismAdapter) -> None:
     """A damped slide, preloaded: m λ² + c λ + k = 0 about m g/k."""
     k, c = 200.0, 12.0
     slide = mb.Mechanism(
@@ -131,14 +131,14 @@ def oscillates(code: MechanismCode) -> None:
     keep(abs(found.steady[0] - at) < 1e-9, f"damped slide: it settles at {found.steady[0]:.9g} m, expected {at:.9g}")
 
 
-def flaps(code: MechanismCode) -> None:
+def flaps(code: MechanismAdapter) -> None:
     """Ω √(1 + e S/I) on a flap hinge, Ω √(e S/I) on a lag hinge (W. Johnson, *Helicopter Theory*, 1980, sec. 9-2)."""
     ratio = (LENGTH / 2) * (LENGTH / 2) / (LENGTH**2 / 3)
     _are(_ask(code, hinged("flap")), [5j * np.sqrt(1 + ratio)], "flap hinge at 5 rad/s")
     _are(_ask(code, hinged("lag")), [5j * np.sqrt(ratio)], "lag hinge at 5 rad/s")
 
 
-def gyrates(code: MechanismCode) -> None:
+def gyrates(code: MechanismAdapter) -> None:
     """A spinning disc on two gimbals with springs: I λ² ± H λ + k coupled, eigenvalues ±i (√(H² + 4 I k) ± H)/(2 I)."""
     across, polar, k, spin = 0.4, 0.5, 30.0, 20.0
     gimbals = mb.Mechanism(
@@ -156,7 +156,7 @@ def gyrates(code: MechanismCode) -> None:
     _are(_ask(code, gimbals), [0.5j * (root - H) / across, 0.5j * (root + H) / across], "disc on gimbals")
 
 
-def stretched(code: MechanismCode) -> None:
+def stretched(code: MechanismAdapter) -> None:
     """A mass on a rail across a stretched spring between points: √(T/(m l)) by its tension alone, and damped along it."""
     k, free, far = 90.0, 0.4, 1.0
     rail = mb.Mechanism(
@@ -167,7 +167,7 @@ def stretched(code: MechanismCode) -> None:
     _are(_ask(code, rail), [1j * np.sqrt(k * (far - free) / far / MASS)], "mass across a stretched spring")
 
 
-def branches(code: MechanismCode) -> None:
+def branches(code: MechanismAdapter) -> None:
     """A sprung slide from which a pendulum and a double pendulum hang, its joints given level by level."""
     k, l, m = 150.0, LENGTH, MASS
     sled = mb.Body("sled", mb.inertia(2 * m))
@@ -208,13 +208,13 @@ def _parallelogram(springs: bool = False) -> mb.Mechanism:
     )
 
 
-def closes(code: MechanismCode) -> None:
+def closes(code: MechanismAdapter) -> None:
     """The bar of a parallelogram moves without rotation: √(g/l), for any position of its mass centre."""
     found = _ask(code, _parallelogram(), {"A.rz": 0.2, "B.rz": 0.2, "C.rz": -0.2})
     _are(found, [1j * np.sqrt(G / LENGTH)], "parallelogram")
 
 
-def curves(code: MechanismCode) -> None:
+def curves(code: MechanismAdapter) -> None:
     """A bar free in a plane, pinned by a loop joint: all its stiffness is the constraints' curvature, m g l/(I + m l²)."""
     moment = 0.5
     pinned = mb.Mechanism(
@@ -229,7 +229,7 @@ def curves(code: MechanismCode) -> None:
     _are(found, [1j * np.sqrt(MASS * G * LENGTH / (moment + MASS * LENGTH**2))], "bar on a loop joint")
 
 
-def reversed_joint(code: MechanismCode) -> None:
+def reversed_joint(code: MechanismAdapter) -> None:
     """A joint from child to parent and a different order of bodies: the coordinate changes sign, λ is the same."""
     ways = []
     for ends in (("ground", "bob"), ("bob", "ground")):
@@ -246,7 +246,7 @@ def reversed_joint(code: MechanismCode) -> None:
     )
 
 
-def repeats(code: MechanismCode) -> None:
+def repeats(code: MechanismAdapter) -> None:
     """No state remains from another call."""
     first = _ask(code, hinged("flap"))
     _ask(code, hinged("lag"))
@@ -255,7 +255,7 @@ def repeats(code: MechanismCode) -> None:
     keep(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
 
 
-def periodic(code: MechanismCode) -> None:
+def periodic(code: MechanismAdapter) -> None:
     """Gravity across the rotor's axis: no steady state, and no answer."""
     sagging = replace(hinged("lag"), gravity=DOWN)
     if code.unsupported_mechanism(sagging):
@@ -269,7 +269,7 @@ def periodic(code: MechanismCode) -> None:
     )
 
 
-def falls(code: MechanismCode) -> None:
+def falls(code: MechanismAdapter) -> None:
     """An unsupported mass under gravity has no steady state."""
     loose = mb.Mechanism(
         (mb.Body("mass", mb.inertia(MASS, 0.1)),),

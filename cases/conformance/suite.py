@@ -19,8 +19,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-from ...references.protocol.interface import Code
-from ...references.protocol.mechanism_interface import MechanismCode
+from ...references.protocol.interface import Adapter
 from . import checks, dropped
 from . import mechanism_checks as mechanism
 from .asking import BrokenError, NotForItError
@@ -56,7 +55,7 @@ class Outcome:
     reason: str = ""
 
 
-def judge(code: Code | MechanismCode, check: Check) -> Outcome:
+def judge(code: Adapter, check: Check) -> Outcome:
     """Run one check on a code. Any exception is a failure, unless the code declines the blade with a reason."""
     if check.runs and code.version() is None:
         return Outcome(check, "not run", f"not installed: {code.hint}")
@@ -74,7 +73,7 @@ def judge(code: Code | MechanismCode, check: Check) -> Outcome:
 CHECKS = (
     Check(
         "declarations",
-        "name, title, shares, effects, levels, order, digits, and a version or a hint",
+        "name, title, independence, effects, levels, order, digits, and a version or a hint",
         checks.declares,
         runs=False,
     ),
@@ -113,7 +112,7 @@ CHECKS = (
 FOR_MECHANISMS = (
     Check(
         "mechanism declarations",
-        "name, title, shares, effects, and a version or a hint",
+        "name, title, independence, effects, and a version or a hint",
         mechanism.declares,
         runs=False,
     ),

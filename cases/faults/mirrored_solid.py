@@ -15,8 +15,8 @@ class Mirrored(ScikitFemSolid):
     def __init__(self, solid: CurvedSolid):
         self._solid = solid
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """See ``interface.Code``; the blade is not used."""
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """See ``interface.BladeAdapter``; the blade is not used."""
         return modes(self._solid, omega, elements, count)
 
 

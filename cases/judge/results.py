@@ -51,8 +51,8 @@ class Cell:
         verdict: see ``cases.judge.verdict``.
         reason: reason for any verdict other than a plain pass; names and quantifies the cause of a known difference.
         full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks effects).
-        shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``everything`` (core
-            with its other method); empty for core itself.
+        shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``undeclared``,
+            ``everything`` (core with its other method); empty for core itself.
         elements: number of elements of the finest refinement used.
         order: observed order of convergence, if available.
         mac: mass-weighted MAC of the pairing.

@@ -91,7 +91,7 @@ def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float 
 
 
 def _kind(cell: Cell, origin: Origin | None) -> Kind:
-    if cell.shares != "nothing" or (origin and CORE in (*_key(origin), origin.sections)):
+    if cell.shares not in ("nothing", "undeclared") or (origin and CORE in (*_key(origin), origin.sections)):
         return "core's model"
     if not origin:
         return "undeclared"

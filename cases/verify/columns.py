@@ -16,7 +16,6 @@ from ...core.modes import Modes
 from ...references.protocol.description import Description
 from ...references.protocol.interface import CORE, Independence
 from ...references.protocol.process import Failure, Limits
-from ...references.protocol.registry import cap
 from ...references.protocol.worker import Answer, answers
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Case, Discretisation, Variant
@@ -135,7 +134,7 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
             head,
             partial(_same, head, name, blade, code.levels[-1], code.effects, limits),
         )
-    refining = Refining(code.levels, code.order, cap(code), bracket=code.bracket)
+    refining = Refining(code.levels, code.order, code.finest or 8 * code.levels[-1], bracket=code.bracket)
     return Column(code.name, effects, head, partial(_refined, head, name, blade, refining, limits))
 
 

@@ -12,7 +12,6 @@ Exudyn provides M, the steady state and the tangent stiffness there; this module
 frame from M.
 """
 
-import time
 from itertools import pairwise
 from typing import Any
 
@@ -23,7 +22,7 @@ from scipy.interpolate import CubicHermiteSpline
 from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Independence, Motion, Shares
+from ..protocol.interface import BladeAdapter, Independence, Motion
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
 
@@ -36,12 +35,11 @@ CLAMPED = [0, 1, 2, 4, 5]
 SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
-class ExudynAncf:
+class ExudynAncf(BladeAdapter):
     """See the module; one bending stiffness, no torsion, no rotary inertia, no shear."""
 
     name = "exudyn-ancf"
     title = "Exudyn, ANCF cable"
-    shares: Shares = "nothing"
     independence = Independence("Exudyn", "ANCF cable", "exudyn-ancf's adapter")
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(rotary_inertia=False)
@@ -49,10 +47,6 @@ class ExudynAncf:
     order = 4
     hint = ex.HINT
     distribution = ex.DISTRIBUTION
-
-    def version(self) -> str | None:
-        """Version of Exudyn."""
-        return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason unless the blade is uniform, straight, extensible and rigid in shear, with one bending stiffness."""
@@ -71,15 +65,12 @@ class ExudynAncf:
             return "finite shear stiffness: an ANCF cable is rigid in shear (Euler–Bernoulli)"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``.
 
         Raises:
-            CodeError: an unsupported blade, or no stable steady state at this speed.
+            CodeError: no stable steady state at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         matrices: list[Any] = [sparse.csc_array(matrix) for matrix in _matrices(blade, omega, elements)]
         size = matrices[0].shape[0]
         free = np.delete(np.arange(size), CLAMPED)
@@ -87,7 +78,7 @@ class ExudynAncf:
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         q = np.zeros((size, vectors.shape[1]), complex)
         q[free] = vectors
-        return Modes(omega, frequencies, _shapes(q, blade.length), elements, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, _shapes(q, blade.length), elements)
 
 
 def _matrices(blade: Blade, omega: float, elements: int):

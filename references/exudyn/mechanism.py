@@ -9,7 +9,6 @@ analysis needs it (a hanging pendulum on a joint would have no stiffness), so it
 Exudyn's constraint Jacobian. Modes are those in the null space of the constraints (García de Jalón and Bayo 1994, ch. 5).
 """
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -22,8 +21,8 @@ from ...core.rank import ranked
 from ...core.tree.spanning import compile_tree
 from ...core.tree.topology import Tree
 from ..protocol.damped import damped_modes
-from ..protocol.interface import CORE, CodeError, Independence, Shares
-from ..protocol.mechanism_interface import MechanismModes
+from ..protocol.interface import CORE, CodeError, Independence
+from ..protocol.mechanism_interface import MechanismAdapter, MechanismModes
 from . import system as ex
 from .loops import System, own_coordinates, system, velocity
 
@@ -67,12 +66,11 @@ class Stages:
         return M, C, K
 
 
-class ExudynMechanism:
+class ExudynMechanism(MechanismAdapter):
     """See the module: rigid bodies, any joints, springs on the tree's coordinates and between points, steady rotation."""
 
     name = "exudyn-loops"
     title = "Exudyn, kinematic tree with loop joints"
-    shares: Shares = "mechanical model"
     effects = ALL_EFFECTS
     hint = ex.HINT
     distribution = ex.DISTRIBUTION
@@ -83,10 +81,6 @@ class ExudynMechanism:
         sections=CORE,
         eigensolver="the adapters' own, with damping",
     )
-
-    def version(self) -> str | None:
-        """Version of Exudyn."""
-        return ex.version()
 
     def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
         """A reason if there are beams, accelerations, or springs or motions on a cut joint."""
@@ -101,22 +95,19 @@ class ExudynMechanism:
                 return f"{what.coordinate}: a spring or motion on a joint that closes a loop: cut another joint"
         return None
 
-    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
-        """All modes; see ``mechanism_interface.MechanismCode``.
+    def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        """All modes; see ``mechanism_interface.MechanismAdapter``.
 
         Raises:
-            CodeError: an unsupported or periodic mechanism, no steady state near the guess, or loops that move in it.
+            CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.
         """
-        if reason := self.unsupported_mechanism(mechanism):
-            raise CodeError(reason)
-        begun = time.perf_counter()
         stages = linearize(compile_tree(mechanism), guess)
         _check_constant(compile_tree(mechanism), stages)
         null = stages.null
         values, x = damped_modes(*stages.reduced(null))
         shapes = np.zeros((len(values), len(stages.q)), np.complex128)
         shapes[:, stages.free] = (null @ x).T
-        return MechanismModes(stages.coordinates, stages.q, values, shapes, time.perf_counter() - begun)
+        return MechanismModes(stages.coordinates, stages.q, values, shapes)
 
 
 def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:

@@ -7,7 +7,6 @@ Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multib
 import io
 import sys
 from contextlib import redirect_stdout
-from importlib import metadata
 from typing import Any
 
 import numpy as np
@@ -22,14 +21,6 @@ Array = NDArray[np.float64]
 HINT = install.extra("codes")
 
 DISTRIBUTION = "exudyn"
-
-
-def version() -> str | None:
-    """Version of Exudyn, without importing it; None if it is not installed."""
-    try:
-        return metadata.version(DISTRIBUTION)
-    except metadata.PackageNotFoundError:
-        return None
 
 
 def system() -> tuple[Any, Any, Any]:

@@ -7,7 +7,6 @@ If the blade has no moments of inertia, the segments have none about their axis,
 then semi-definite, which the eigensolver allows.
 """
 
-import time
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
-from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.interface import BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
 from . import system as ex
@@ -35,22 +34,18 @@ RAMPS = (1, 4, 16)
 """Numbers of equal increments of the squared speed, tried in turn."""
 
 
-class ExudynTree:
+class ExudynTree(BladeAdapter):
     """See the module; coupled, curved, twisted, tapered blades with shear, precone, pitch, tip mass and root joint."""
 
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
-    shares: Shares = "nothing"
     independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
     effects = ALL_EFFECTS
     levels = (12, 24, 36)
     order = 2
+    finest = 768  # the matrices are dense
     hint = ex.HINT
     distribution = ex.DISTRIBUTION
-
-    def version(self) -> str | None:
-        """Version of Exudyn."""
-        return ex.version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if the curve has kinks or the blade is rigid in bending."""
@@ -60,21 +55,18 @@ class ExudynTree:
             return "rigid in bending: a hinge needs finite EI_y and EI_z"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``.
 
         Raises:
-            CodeError: an unsupported blade, or no stable steady state at this speed.
+            CodeError: no stable steady state at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         tree = plant(blade, elements, omega)
         M, C, K, q = linearize(tree, omega)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(blade, tree, q, vectors)
         refinement = len(tree.ends) - 1 - steps(blade)
-        return Modes(omega, frequencies, shapes, refinement, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, refinement)
 
 
 def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:

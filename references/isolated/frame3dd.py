@@ -12,8 +12,6 @@ increased by a factor of ten thousand, which does not affect bending, and there 
 Elements have the mean compliance and mass of their part of the blade: second order.
 """
 
-import time
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
@@ -21,7 +19,7 @@ from scipy.interpolate import CubicSpline
 from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Independence, Motion, Shares
+from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion
 from ..theories.grading import element_ends
 from ..theories.spectral import gauss, intervals
 from . import FRAME3DD, ask
@@ -45,23 +43,20 @@ TIMEOUT = 300.0
 STIFFNESSES = ("EA", "EI_y", "EI_z", "GJ")
 
 
-class Frame3DD:
+class Frame3DD(BladeAdapter):
     """See the module; straight blades, uncoupled, shear-free and clamped; twist, taper, pitch, a point mass at the tip."""
 
     name = "frame3dd"
     title = "Frame3DD, frame elements"
-    shares: Shares = "nothing"
     independence = Independence("Frame3DD", "frame elements", "frame3dd's adapter", eigensolver="Frame3DD")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (2 * SECTIONS, 3 * SECTIONS, 9 * SECTIONS // 2)
     order = 2
+    finest = 100
+    max_elements = MAX_ELEMENTS
+    hint = FRAME3DD.hint
     digits = 8  # it iterates on equations that ``STIFF`` makes ill-conditioned
-
-    @property
-    def hint(self) -> str:
-        """How to install what is missing."""
-        return FRAME3DD.hint
 
     def version(self) -> str | None:
         """Version of WISDEM in its environment."""
@@ -89,19 +84,15 @@ class Frame3DD:
                 return f"{name} is infinite: the elements need it finite"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. Elements end at kinks; ``Modes.elements`` gives their number.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``. Elements end at kinks; ``Modes.elements`` gives their number.
 
         Raises:
-            CodeError: an unsupported blade, too many elements, Frame3DD missing or failing, or no stable steady state.
+            CodeError: too many elements, Frame3DD missing or failing, or no stable steady state.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         ends = element_ends(blade, elements, elements)
         n = len(ends) - 1
-        if n > MAX_ELEMENTS:
-            raise CodeError(f"elements: {n}: the time grows as their cube; at most {MAX_ELEMENTS}")
+        self.limit(n)
         answer = ask(FRAME3DD, request(blade, omega, ends, count), TIMEOUT)
         squares, shapes = np.array(answer["frequencies"]) ** 2 - omega**2, np.array(answer["shapes"])
         if not (np.isfinite(squares).all() and (squares > 0).all()):
@@ -111,9 +102,7 @@ class Frame3DD:
         order = np.argsort(squares)
         shapes[:, [0, 3]] = 0.0  # along and about the axis it is nearly rigid: only rounding
         at_stations = CubicSpline(ends / blade.length, shapes, axis=2)(STATIONS).transpose(0, 2, 1)
-        return Modes(
-            omega, np.sqrt(squares[order]), at_stations[order].astype(complex), n, seconds=time.perf_counter() - begun
-        )
+        return Modes(omega, np.sqrt(squares[order]), at_stations[order].astype(complex), n)
 
 
 def request(blade: Blade, omega: float, ends: Array, count: int) -> dict[str, object]:

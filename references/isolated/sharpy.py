@@ -12,7 +12,6 @@ does not allow axes to jump between elements, and a blade's may. Rigid shears ar
 """
 
 import base64
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -26,7 +25,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
-from ..protocol.interface import CORE, CodeError, Independence, Shares
+from ..protocol.interface import CORE, BladeAdapter, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.spectral import gauss, intervals
 from . import SHARPY, ask
@@ -42,28 +41,22 @@ INTERVALS = 12
 JUMP = 1e-4
 """Relative to the length: stations closer than this are the two sides of a jump, with no element between them."""
 
-MAX_ELEMENTS = 200
-"""Largest number of elements: the matrices are dense, with 12 rows per element."""
-
 TIMEOUT = 120.0
 
 
-class Sharpy:
+class Sharpy(BladeAdapter):
     """See the module; coupled, curved, twisted blades with shear, precone, pitch and tip mass."""
 
     name = "sharpy"
     title = "SHARPy, geometrically exact beam"
-    shares: Shares = "nothing"
     independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=CORE)
     effects = ALL_EFFECTS
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
+    finest = 96
+    max_elements = 200  # the matrices are dense, with 12 rows per element
+    hint = SHARPY.hint
     digits = 8  # its steady state converges to a tolerance
-
-    @property
-    def hint(self) -> str:
-        """How to install what is missing."""
-        return SHARPY.hint
 
     def version(self) -> str | None:
         """Version of SHARPy in its environment."""
@@ -80,26 +73,22 @@ class Sharpy:
             return f"infinite stiffness of strain {min(rigid)}: only shears can be rigid here"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. Elements end at kinks; ``Modes.elements`` gives their number.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``. Elements end at kinks; ``Modes.elements`` gives their number.
 
         Raises:
-            CodeError: an unsupported blade, too many elements, SHARPy missing or failing, or no stable steady state.
+            CodeError: too many elements, SHARPy missing or failing, or no stable steady state.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         spans = _spans(blade, elements)
         n = len(spans)
-        if n > MAX_ELEMENTS:
-            raise CodeError(f"elements: {n}: the matrices are dense; at most {MAX_ELEMENTS}")
+        self.limit(n)
         s = nodes(spans)
         answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
         q = _unpacked(answer["q"])
         M, C, K = (_unpacked(answer[name]).reshape(len(q), -1) for name in "MCK")
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(s / blade.length, q, vectors)
-        return Modes(omega, frequencies, shapes, n, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, n)
 
 
 def _spans(blade: Blade, elements: int) -> Array:

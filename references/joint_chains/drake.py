@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, places, rigid
+from .joint_chain import JointChain, bodies, check, from_core, places, rigid
 
 Array = NDArray[np.float64]
-
-MAX_ELEMENTS = 80
-"""Largest number of elements: every number in the recursion over 6·elements joints has 12·elements derivatives."""
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest relative asymmetry of Drake's derivatives attributed to rounding."""
@@ -131,8 +128,8 @@ CODE = JointChain(
     name="drake",
     title="Drake, chain of joints",
     hint=install.extra("more-codes"),
-    engine="Drake",
+    independence=from_core("Drake"),
     distribution="drake",
-    max_elements=MAX_ELEMENTS,
+    max_elements=80,  # each number in the recursion over 6·elements joints has 12·elements derivatives
     plant=plant,
 )

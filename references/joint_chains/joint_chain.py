@@ -7,10 +7,8 @@ computes kinematics, dynamics and the derivatives of the inertial forces. Agreem
 its model correctly, not that the model is right.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
 from typing import Protocol, cast
 
 import numpy as np
@@ -19,13 +17,12 @@ from scipy.linalg import block_diag
 
 from ...core import curve
 from ...core.blade import Blade, clamped
-from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import discretize, divide
 from ...core.element.mesh import Chain
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
-from ..protocol.interface import CORE, CodeError, Independence, Shares
+from ..protocol.interface import CORE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 
 Array = NDArray[np.float64]
@@ -79,15 +76,20 @@ def refusal(blade: Blade) -> str | None:
     return None
 
 
-@dataclass(frozen=True)
-class JointChain:
-    """A code that solves core's lumped discretisation as a chain of joints; see ``interface.Code``.
+def from_core(engine: str) -> Independence:
+    """The origins of a code that has only the equations of motion, everything else from core."""
+    return Independence(engine, CORE, engine, sections=CORE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointChain(BladeAdapter):
+    """A code that solves core's lumped discretisation as a chain of joints; see ``interface.BladeAdapter``.
 
     It supports every blade that core can discretise, including coupled and curved ones, if the root is clamped.
 
     Attributes:
-        name, title, hint: see ``interface.Code``.
-        engine: the code's name in ``Independence``.
+        name, title, hint: see ``interface.BladeAdapter``.
+        independence: equations of motion from the code, everything else from core; see ``from_core``.
         distribution: the installed package that gives the version.
         max_elements: largest number of elements, limited by the code's time or memory.
         plant: builds the chain in the code.
@@ -96,44 +98,24 @@ class JointChain:
     name: str
     title: str
     hint: str
-    engine: str
+    independence: Independence
     distribution: str
     max_elements: int
     plant: Callable[[Chain], Plant]
-    shares: Shares = "discretisation"
-    effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (10, 20, 30)
     order: int = 2
-
-    @property
-    def independence(self) -> Independence:
-        """Equations of motion from the code, everything else from core."""
-        return Independence(self.engine, CORE, self.engine, sections=CORE)
-
-    def version(self) -> str | None:
-        """Version of the code, without importing it."""
-        try:
-            return metadata.version(self.distribution)
-        except metadata.PackageNotFoundError:
-            return None
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if the root is not clamped or the inertias are not those of rigid bodies."""
         return refusal(blade)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``.
 
         Raises:
-            CodeError: an unsupported blade, more than ``max_elements`` elements, or no stable steady state at this speed.
+            CodeError: more than ``max_elements`` elements, or no stable steady state at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        if elements > self.max_elements:
-            raise CodeError(
-                f"elements: {elements}: the code's time or memory grows as their cube; at most {self.max_elements}"
-            )
-        begun = time.perf_counter()
+        self.limit(elements)
         chain = discretize(blade, elements, "half_end", "body_fixed")
         body = self.plant(chain)
         elastic = cast(Array, block_diag(*chain.beams.stiffness))
@@ -144,8 +126,7 @@ class JointChain:
         error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
         at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
         shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
-        seconds = time.perf_counter() - begun
-        return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error, seconds=seconds)
+        return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error)
 
 
 def rounding(

@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, places, rigid
+from .joint_chain import JointChain, bodies, check, from_core, places, rigid
 
 Array = NDArray[np.float64]
-
-MAX_ELEMENTS = 80
-"""Largest number of elements: the time of the differences grows as its square, of the eigenproblem as its cube."""
 
 STEP = 2e-3
 """Step of a coordinate in a central difference, rad or element lengths; the truncation error is of fourth order in it."""
@@ -141,8 +138,8 @@ CODE = JointChain(
     name="mujoco",
     title="MuJoCo, chain of joints",
     hint=install.extra("more-codes"),
-    engine="MuJoCo",
+    independence=from_core("MuJoCo"),
     distribution="mujoco",
-    max_elements=MAX_ELEMENTS,
+    max_elements=80,  # the time of the differences grows as its square, of the eigenproblem as its cube
     plant=plant,
 )

@@ -13,12 +13,9 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, places
+from .joint_chain import JointChain, bodies, check, from_core, places
 
 Array = NDArray[np.float64]
-
-MAX_ELEMENTS = 60
-"""Largest number of elements: Pinocchio's workspace has four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60."""
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest relative asymmetry of Pinocchio's derivatives attributed to rounding."""
@@ -115,8 +112,8 @@ CODE = JointChain(
     name="pinocchio",
     title="Pinocchio, chain of joints",
     hint=install.extra("codes"),
-    engine="Pinocchio",
+    independence=from_core("Pinocchio"),
     distribution="pin",
-    max_elements=MAX_ELEMENTS,
+    max_elements=60,  # its workspace has four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60
     plant=tree,
 )

@@ -8,10 +8,8 @@ by core's partition into independent and dependent coordinates. The curvature of
 is analytical. The eigensolver is ``protocol.damped``, as for ``exudyn-loops``.
 """
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 import scipy.linalg
@@ -21,8 +19,8 @@ from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import Mechanism
 from ..protocol import install
 from ..protocol.damped import damped_modes
-from ..protocol.interface import CodeError, Independence, Shares
-from ..protocol.mechanism_interface import MechanismModes
+from ..protocol.interface import CodeError, Independence
+from ..protocol.mechanism_interface import MechanismAdapter, MechanismModes
 from .plant import Plant, Tangent
 from .spanning import spanning
 
@@ -60,12 +58,11 @@ class Reduced:
     K: Array
 
 
-class PinocchioMechanism:
+class PinocchioMechanism(MechanismAdapter):
     """See the module: rigid bodies, any joints, springs, dampers, loads and gravity, in steady rotation."""
 
     name = "pinocchio-loops"
     title = "Pinocchio, loops by null space"
-    shares: Shares = "nothing"
     effects = ALL_EFFECTS
     hint = install.extra("codes")
     distribution = "pin"
@@ -75,13 +72,6 @@ class PinocchioMechanism:
         rotation="Pinocchio, derivatives of recursive Newton-Euler",
         eigensolver="the adapters' own, with damping",
     )
-
-    def version(self) -> str | None:
-        """Version of Pinocchio."""
-        try:
-            return version(self.distribution)
-        except PackageNotFoundError:
-            return None
 
     def unsupported_mechanism(self, mechanism: Mechanism) -> str | None:
         """A reason if there are beams, accelerations, or springs or motions on a joint that must close a loop."""
@@ -100,20 +90,17 @@ class PinocchioMechanism:
                 return f"{what.coordinate}: every joint of its loop has a spring or a motion: leave one without"
         return None
 
-    def solve_mechanism(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
-        """All modes; see ``mechanism_interface.MechanismCode``.
+    def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        """All modes; see ``mechanism_interface.MechanismAdapter``.
 
         Raises:
-            CodeError: an unsupported or periodic mechanism, no steady state near the guess, or loops that move in it.
+            CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.
         """
-        if reason := self.unsupported_mechanism(mechanism):
-            raise CodeError(reason)
-        begun = time.perf_counter()
         found = linearize(mechanism, guess)
         values, x = damped_modes(found.M, found.C, found.K)
         shapes = np.zeros((len(values), len(found.q)), np.complex128)
         shapes[:, found.free] = (found.null @ x).T
-        return MechanismModes(found.names, found.q, values, shapes, time.perf_counter() - begun)
+        return MechanismModes(found.names, found.q, values, shapes)
 
 
 def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:

@@ -14,7 +14,7 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
-from .interface import Motion, Shares
+from .interface import DIGITS, MOTIONS, Motion
 from .mechanism_interface import MechanismModes
 from .process import Failure, one_line
 from .wire import decode_complex, decode_modes
@@ -66,24 +66,24 @@ class Origin(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Declared(Struct, frozen=True, forbid_unknown_fields=True):
-    """Declarations of a code; see ``interface.Code``."""
+    """Declarations of an adapter; see ``interface``. A code that solves only mechanisms has the defaults of the others."""
 
     name: Name
     title: Line
-    shares: Shares
     effects: Effects
     hint: Line
     blades: bool
     mechanisms: bool
-    levels: Annotated[tuple[Elements, ...], Meta(max_length=20)]
-    order: Annotated[int, Meta(ge=0, le=100)]
-    motions: Annotated[tuple[Motion, ...], Meta(min_length=1, max_length=4)]
-    digits: Annotated[int, Meta(ge=1, le=17)]
-    bracket: bool
     independence: Origin | None
     distribution: Line
     version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
     page: str
+    levels: Annotated[tuple[Elements, ...], Meta(max_length=20)] = ()
+    order: Annotated[int, Meta(ge=0, le=100)] = 0
+    finest: Elements | None = None
+    motions: Annotated[tuple[Motion, ...], Meta(min_length=1, max_length=4)] = MOTIONS
+    digits: Annotated[int, Meta(ge=1, le=17)] = DIGITS
+    bracket: bool = False
 
 
 class _Complex(Struct, frozen=True, forbid_unknown_fields=True):

@@ -20,19 +20,8 @@ from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
 from .child import Reply, blunder, failed, serve
-from .interface import (
-    DIGITS,
-    MOTIONS,
-    Independence,
-    Motion,
-    Shares,
-    brackets,
-    digits,
-    distribution,
-    independence,
-    motions,
-)
-from .mechanism_interface import takes_mechanisms
+from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, Motion, Shares, shares
+from .mechanism_interface import MechanismAdapter
 from .process import Failure, Limits, converse, one_line, raised
 from .registry import UnknownCodeError
 from .wire import decode_blade, encode
@@ -46,12 +35,12 @@ ASKING = Limits(seconds=120.0)
 
 @dataclass(frozen=True)
 class Description:
-    """A code, as ``interface.Code`` and ``mechanism_interface.MechanismCode`` declare it.
+    """A code, as its adapter declares it (``interface.BladeAdapter``, ``mechanism_interface.MechanismAdapter``).
 
     Attributes:
         asked: the name or import path given to ``describe``; ``worker.answers`` accepts it too.
         name: as declared.
-        title, shares, effects, hint, levels, order, motions, digits, bracket, independence, distribution: as declared.
+        title, effects, hint, levels, order, finest, motions, digits, bracket, independence, distribution: as declared.
         blades, mechanisms: whether the code solves them.
         version: None if it is not installed.
         refused: for each blade, the reason why the code does not support it; None if it does, or if the reason is
@@ -63,11 +52,11 @@ class Description:
     asked: str
     name: str
     title: str = ""
-    shares: Shares | str = ""
     effects: Effects = ALL_EFFECTS
     hint: str = ""
     levels: tuple[int, ...] = ()
     order: int = 0
+    finest: int | None = None
     motions: tuple[Motion, ...] = MOTIONS
     digits: int = DIGITS
     bracket: bool = False
@@ -79,6 +68,11 @@ class Description:
     refused: tuple[str | None, ...] = ()
     page: str = ""
     failure: Failure | None = None
+
+    @property
+    def shares(self) -> Shares:
+        """What it shares with core."""
+        return shares(self.independence)
 
 
 def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits = ASKING) -> tuple[Description, ...]:
@@ -162,25 +156,21 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
     return replace(known, failure=Failure("nonsense", one_line(trouble))) if trouble else known
 
 
+BLADE_DECLARATIONS = ("levels", "order", "finest", "motions", "digits", "bracket")
+
+
 def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
     """The declarations of a code as plain data; exceptions of the code propagate."""
-    solves, origin = hasattr(code, "solve"), independence(code)
+    solves, origin = isinstance(code, BladeAdapter), code.independence
     facts = {
         "name": code.name,
-        "title": getattr(code, "title", ""),
-        "shares": getattr(code, "shares", "nothing"),
-        "effects": {f: getattr(code.effects, f) for f in Effects.__dataclass_fields__}
-        if type(code.effects) is Effects
-        else code.effects,
-        "hint": getattr(code, "hint", ""),
+        "title": code.title,
+        "effects": vars(code.effects) if type(code.effects) is Effects else code.effects,
+        "hint": code.hint,
         "blades": solves,
-        "mechanisms": takes_mechanisms(code),
-        "levels": code.levels if solves else (),
-        "order": code.order if solves else 0,
-        "motions": motions(code),
-        "digits": digits(code),
-        "bracket": brackets(code),
-        "distribution": distribution(code),
+        "mechanisms": isinstance(code, MechanismAdapter),
+        **({name: getattr(code, name) for name in BLADE_DECLARATIONS} if solves else {}),
+        "distribution": code.distribution,
         "independence": vars(origin) if isinstance(origin, Independence) else origin,
         "version": None,
         "page": (inspect.getdoc(sys.modules.get(type(code).__module__)) or "").encode("utf-8", "replace").decode(),

@@ -1,21 +1,24 @@
-"""The interface of a code: name, version, declarations and modes.
+"""The interface of a code: the base class of every adapter.
 
-Rules for every code:
+An adapter declares class attributes and implements ``unsupported`` and ``modes``. The base class adds the version and the
+refusal. Rules for every adapter:
 
 * it represents every property of a blade, or ``unsupported`` returns the reason why it cannot; no property is ignored;
 * ``effects`` declares the effects it lacks by construction, and core is then compared without them;
-* the adapter converts axes and units; results are in the axes of ``core.blade`` and in SI units;
-* ``solve`` is a pure function of its arguments: the same call gives the same result in any order and any process.
+* it converts axes and units; results are in the axes of ``core.blade`` and in SI units;
+* ``modes`` is a pure function of its arguments: the same call gives the same result in any order and any process.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Literal, Protocol, get_args
+from importlib import metadata
+from typing import Literal, get_args
 
 from ...core.blade import Blade
-from ...core.effects import Effects
+from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
 
-Shares = Literal["nothing", "mechanical model", "discretisation"]
+Shares = Literal["nothing", "mechanical model", "discretisation", "undeclared"]
 
 Motion = Literal["axial", "edgewise", "flapwise", "torsion"]
 
@@ -24,6 +27,9 @@ MOTIONS: tuple[Motion, ...] = get_args(Motion)
 
 DIGITS = 9
 """Significant digits of a code that declares none."""
+
+CORE = "core"
+"""An origin in ``Independence`` that is core."""
 
 
 @dataclass(frozen=True)
@@ -51,82 +57,100 @@ class Independence:
     eigensolver: str = "the adapters' own"
 
 
-CORE = "core"
-"""An origin in ``Independence`` that is core."""
+def shares(independence: Independence | None) -> Shares:
+    """What a code with these origins shares with core."""
+    if independence is None:
+        return "undeclared"
+    if independence.theory == CORE:
+        return "discretisation"
+    return "mechanical model" if CORE in vars(independence).values() else "nothing"
 
 
 class CodeError(RuntimeError):
-    """A code could not solve the blade; the message gives the reason."""
+    """A code could not solve the problem; the message gives the reason."""
 
 
-class Code(Protocol):
-    """One source of natural frequencies.
+class Adapter(ABC):
+    """What adapters for blades and for mechanisms have in common.
 
     Attributes:
         name: short and stable, as typed on the command line, e.g. ``exudyn-ancf``.
         title: as printed in tables, e.g. ``Exudyn, ANCF cable``.
-        shares: what it shares with core.
+        independence: the origins of its results; without them it does not count as confirmation.
         effects: the physical effects it includes.
-        levels: refinements, coarse to fine (elements, or terms); each at least 1.4 times the one before.
-        order: theoretical order of convergence of its frequencies (0: spectral).
         hint: how to install what it needs.
-
-    Optional attributes:
-
-    * ``independence: Independence``; without it the code does not count as confirmation;
-    * ``motions: tuple[Motion, ...]``, the motions in its shapes, if not all four. Modes dominated by another motion are
-      not compared; any other mode must have a partner;
-    * ``bracket: bool``, true if ``Modes.uncertainty`` is a rigorous bracket, which refinement does not narrow;
-    * ``distribution: str``, the installed package whose release is ``version()``; workers of a cluster must have the same;
-    * ``digits: int``, for a code that prints, or converges to, fewer than nine significant digits of its frequencies.
-      Results that should be equal, such as those of a blade in other units, are then compared to this precision.
+        distribution: the installed package whose release is the version; workers of a cluster must have the same.
     """
 
     name: str
     title: str
-    shares: Shares
-    effects: Effects
-    levels: tuple[int, ...]
-    order: int
-    hint: str
+    independence: Independence | None = None
+    effects: Effects = ALL_EFFECTS
+    hint: str = ""
+    distribution: str = ""
 
     def version(self) -> str | None:
-        """Version of the foreign code, or None if it is not installed."""
-        ...
+        """Version of the code, without importing it; None if it is not installed."""
+        try:
+            return metadata.version(self.distribution)
+        except metadata.PackageNotFoundError:
+            return None
 
+
+class BladeAdapter(Adapter):
+    """A source of a blade's modes.
+
+    Attributes:
+        levels: refinements, coarse to fine (elements, or terms); each at least 1.4 times the one before.
+        order: theoretical order of convergence of its frequencies (0: spectral).
+        motions: the motions in its shapes. Modes dominated by another motion are not compared; any other mode must have a
+            partner.
+        digits: significant digits of its frequencies that are printed or converged. Results that should be equal, such as
+            those of a blade in other units, are compared to this precision.
+        bracket: whether ``Modes.uncertainty`` is a rigorous bracket, which refinement does not narrow.
+        finest: the finest refinement at which it is run, limited by its time or memory; None: eight times the last level.
+        max_elements: the largest number of elements of its mesh, of which a blade with many kinks needs more than the
+            refinement asked for; None: no limit.
+    """
+
+    levels: tuple[int, ...]
+    order: int
+    motions: tuple[Motion, ...] = MOTIONS
+    digits: int = DIGITS
+    bracket: bool = False
+    finest: int | None = None
+    max_elements: int | None = None
+
+    @abstractmethod
     def unsupported(self, blade: Blade) -> str | None:
-        """The reason why this code cannot solve this blade; None if it can."""
-        ...
+        """The reason, in one line, why this code cannot solve this blade; None if it can."""
+
+    @abstractmethod
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The ``count`` lowest modes of a supported blade (fewer only if there are fewer) at ``omega`` (rad/s).
+
+        Raises:
+            CodeError: no steady state, or no convergence.
+        """
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The ``count`` lowest modes (fewer only if there are fewer) at rotor speed ``omega`` (rad/s).
+        """The modes, or a refusal; arguments as for ``modes``.
 
         Raises:
             CodeError: unsupported blade, no steady state, or no convergence.
         """
-        ...
+        if reason := self.unsupported(blade):
+            raise CodeError(f"{blade.name}: {reason}")
+        return self.modes(blade, omega, elements, count)
 
+    def limit(self, elements: int) -> None:
+        """Check the number of elements of a mesh.
 
-def digits(code: Code) -> int:
-    """Significant digits of its frequencies: as declared, or ``DIGITS``."""
-    return getattr(code, "digits", DIGITS)
-
-
-def motions(code: Code) -> tuple[Motion, ...]:
-    """Motions in its shapes: as declared, or all."""
-    return getattr(code, "motions", MOTIONS)
-
-
-def brackets(code: Code) -> bool:
-    """Whether it declares that its uncertainty is a rigorous bracket."""
-    return bool(getattr(code, "bracket", False))
-
-
-def distribution(code: object) -> str:
-    """The installed package that gives its version; empty if it declares none."""
-    return getattr(code, "distribution", "")
-
-
-def independence(code: object) -> Independence | None:
-    """Its declared origins; None if it declares none."""
-    return getattr(code, "independence", None)
+        Raises:
+            CodeError: more than ``max_elements``.
+        """
+        if self.max_elements and elements > self.max_elements:
+            raise CodeError(
+                f"elements: {elements}: {self.name} allows {self.max_elements}, since its time or memory grows as their "
+                "square or cube; use fewer"
+            )

@@ -1,14 +1,14 @@
-"""The interface of a code that solves mechanisms. A code may solve blades (``interface.Code``), mechanisms, or both."""
+"""The base class of adapters that solve mechanisms. A code may solve blades (``interface.BladeAdapter``) as well."""
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.effects import Effects
-from .interface import Shares
+from .interface import Adapter, CodeError
 
 if TYPE_CHECKING:
     from ...core.mechanism.description import Mechanism
@@ -42,36 +42,27 @@ class MechanismModes:
             raise ValueError("eigenvalues, shapes or steady state are not finite")
 
 
-class MechanismCode(Protocol):
-    """One source of a mechanism's modes; the rules of ``interface`` apply.
+class MechanismAdapter(Adapter):
+    """A source of a mechanism's modes; the rules of ``interface`` apply."""
 
-    Attributes:
-        name, title, shares, effects, hint: as for ``interface.Code``.
-    """
-
-    name: str
-    title: str
-    shares: Shares
-    effects: Effects
-    hint: str
-
-    def version(self) -> str | None:
-        """Version of the foreign code, or None if it is not installed."""
-        ...
-
+    @abstractmethod
     def unsupported_mechanism(self, mechanism: "Mechanism") -> str | None:
-        """The reason why this code cannot solve this mechanism; None if it can."""
-        ...
+        """The reason, in one line, why this code cannot solve this mechanism; None if it can."""
 
-    def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
-        """All modes about the steady state near ``guess``.
+    @abstractmethod
+    def mechanism_modes(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
+        """All modes of a supported mechanism about the steady state near ``guess``.
 
         Raises:
             CodeError: no steady state, or no convergence.
         """
-        ...
 
+    def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
+        """The modes, or a refusal; arguments as for ``mechanism_modes``.
 
-def takes_mechanisms(code: Any) -> bool:
-    """Whether a code solves mechanisms."""
-    return hasattr(code, "solve_mechanism")
+        Raises:
+            CodeError: unsupported mechanism, no steady state, or no convergence.
+        """
+        if reason := self.unsupported_mechanism(mechanism):
+            raise CodeError(reason)
+        return self.mechanism_modes(mechanism, guess)

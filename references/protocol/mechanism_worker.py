@@ -15,7 +15,7 @@ from ...core.mechanism.description import Mechanism
 from . import boundary, registry, wire
 from .child import Reply, blunder, failed, serve
 from .interface import CodeError
-from .mechanism_interface import MechanismCode, MechanismModes
+from .mechanism_interface import MechanismAdapter, MechanismModes
 from .process import Failure, Limits, one_line
 from .worker import declined, exchange
 
@@ -69,13 +69,13 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot be sent to another process: {value!r}")
 
 
-def _solve(code: MechanismCode, mechanism: Mechanism, guess: Mapping[str, float]) -> Reply:
+def _solve(code: MechanismAdapter, mechanism: Mechanism, guess: Mapping[str, float]) -> Reply:
     if no := declined(code, "unsupported_mechanism", mechanism):
         return no
     try:
         modes = code.solve_mechanism(mechanism, guess)
         if not isinstance(modes, MechanismModes):
-            return failed("nonsense", f"solve_mechanism(): {type(modes).__name__}, not MechanismModes")
+            return failed("nonsense", f"mechanism_modes(): {type(modes).__name__}, not MechanismModes")
         return {"modes": wire.encode(modes)}
     except CodeError as error:
         return failed("refused", one_line(error))

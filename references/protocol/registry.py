@@ -10,15 +10,13 @@ import sys
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.metadata import entry_points
-from typing import Any, Protocol, TypedDict
+from typing import Any, TypedDict
 
-from .mechanism_interface import takes_mechanisms
+from .interface import BladeAdapter
+from .mechanism_interface import MechanismAdapter
 from .process import Failure, one_line, raised
 
 GROUP = "southwell.codes"
-
-BLADE_CODE = ("name", "effects", "levels", "order", "version", "unsupported", "solve")
-"""Required attributes of a code that solves blades."""
 
 OURS = {
     "exudyn-ancf": "southwell.references.exudyn.ancf:CODE",
@@ -112,7 +110,7 @@ def loaded(request: dict[str, Any]) -> Any:
 
 
 def code(name: str) -> Any:
-    """Import the code called ``name`` (as for ``locate``): an ``interface.Code``, a ``MechanismCode``, or both.
+    """Import the code called ``name`` (as for ``locate``): a ``BladeAdapter``, a ``MechanismAdapter``, or both.
 
     Raises:
         UnknownCodeError: if the name is unknown, or there is no code at the path.
@@ -129,40 +127,10 @@ def code(name: str) -> Any:
     if not hasattr(holder, attribute):
         message = f"module {module!r} has no attribute {attribute!r}"
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {message}: {ADVICE}")
-    found = getattr(holder, attribute)
-    needed = ("name", "effects", "version", "unsupported_mechanism") if takes_mechanisms(found) else BLADE_CODE
-    missing = [a for a in needed if not hasattr(found, a)]
-    if missing:
-        raise UnknownCodeError(f"code: {path} lacks {', '.join(missing)}: see references.protocol.interface.Code")
-    return found
-
-
-CAPS = {
-    "exudyn-tree": 768,
-    "pinocchio": 40,
-    "drake": 80,
-    "mujoco": 80,
-    "pybmodes": 320,
-    "sharpy": 96,
-    "frame3dd": 100,
-    "scikit-fem-reissner": 96,
-    "scikit-fem-solid": 80,
-}
-"""Finest refinement of codes limited by memory or time: Pinocchio stores dense n×n×n arrays, pyBModes,
-scikit-fem-reissner and exudyn-tree dense n×n matrices; the time of Drake, MuJoCo, SHARPy and Frame3DD grows as n³ (n: number of
-coordinates); solids have hundreds of freedoms per layer of nodes."""
-
-
-class Refinable(Protocol):
-    """A code, or its description."""
-
-    @property
-    def name(self) -> str: ...  # noqa: D102
-
-    @property
-    def levels(self) -> tuple[int, ...]: ...  # noqa: D102
-
-
-def cap(code: Refinable) -> int:
-    """The finest refinement at which a code is run."""
-    return CAPS.get(code.name, 8 * code.levels[-1])
+    adapter = getattr(holder, attribute)
+    if not isinstance(adapter, BladeAdapter | MechanismAdapter):
+        bases = "southwell.references.protocol: interface.BladeAdapter or mechanism_interface.MechanismAdapter"
+        raise UnknownCodeError(
+            f"code: {path} is {type(adapter).__name__}, not an adapter: derive its class from {bases}"
+        )
+    return adapter

@@ -17,7 +17,7 @@ from ...core.modes import Modes
 from . import boundary, registry, stored_answers
 from .boundary import NonsenseError
 from .child import Reply, blunder, failed, serve
-from .interface import Code, CodeError
+from .interface import BladeAdapter, CodeError
 from .process import Failure, Limits, converse, one_line
 from .wire import decode_blade, encode
 
@@ -130,12 +130,12 @@ def declined(code: Any, asked: str, question: object) -> Reply | None:
         return blunder(error, "version()")
 
 
-def _solve(code: Code, blade: Blade, run: Run) -> Reply:
+def _solve(code: BladeAdapter, blade: Blade, run: Run) -> Reply:
     omega, elements, count = run
     try:
         modes = code.solve(blade, omega, elements, count)
         if not isinstance(modes, Modes):
-            return failed("nonsense", f"solve(): {type(modes).__name__}, not Modes")
+            return failed("nonsense", f"modes(): {type(modes).__name__}, not Modes")
         return {"modes": encode(modes)}
     except CodeError as error:
         return failed("refused", one_line(error))

@@ -16,10 +16,8 @@ correct at zero speed, but in rotation their steady moment is missing, up to 2.7
 (``defects/pybmodes_shear_centre.py``).
 """
 
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -32,7 +30,7 @@ from ...core.blade import Blade, clamped, coupled, sample, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
-from ..protocol.interface import CodeError, Independence, Motion, Shares
+from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion
 from ..theories.grading import element_ends
 from .input_file import write
 
@@ -61,26 +59,19 @@ ZERO_SHAPE = 1e-9
 return."""
 
 
-class PyBModes:
+class PyBModes(BladeAdapter):
     """See the module; straight blades, uncoupled, shear-free and clamped, with twist, taper and pitch."""
 
     name = "pybmodes"
     title = "pyBModes, linear beam"
-    shares: Shares = "nothing"
     independence = Independence("pyBModes", "BModes", "pyBModes", eigensolver="pyBModes")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise", "torsion")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
+    finest = 320  # the matrices are dense
     hint = install.extra("codes")
     distribution = "pybmodes"
-
-    def version(self) -> str | None:
-        """Version of pyBModes, without importing it."""
-        try:
-            return metadata.version(self.distribution)
-        except metadata.PackageNotFoundError:
-            return None
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if pyBModes's beam or its input file does not support a property of the blade."""
@@ -107,23 +98,20 @@ class PyBModes:
                 return f"{name} is infinite: the section table needs it finite"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes of bending and torsion; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes of bending and torsion; see ``interface.BladeAdapter``.
 
         A blade with more than ``SECTIONS`` intervals between kinks has proportionally more elements (see ``grading``);
         ``Modes.elements`` gives the number.
 
         Raises:
-            CodeError: an unsupported blade, or a stiffness that is not positive at this speed.
+            CodeError: a stiffness that is not positive at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         s = element_ends(blade, elements, SECTIONS)
         with _rotor(blade, omega, s, count) as rotor:
             doubted = FREEDOMS * (len(s) - 1) > ITERATED and _doubled(blade, omega, count)
             frequencies, shapes = _moving(rotor, blade, count, doubted, _most(blade, len(s) - 1))
-        return Modes(omega, frequencies, shapes, len(s) - 1, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, len(s) - 1)
 
 
 def _pybmodes() -> Any:

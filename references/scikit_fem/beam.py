@@ -5,9 +5,7 @@ derivation. The steady stretch and twist are computed first, then the matrices a
 scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
 """
 
-import time
 from dataclasses import dataclass, fields
-from importlib import metadata
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sam
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
-from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.interface import BladeAdapter, CodeError, Independence
 from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
@@ -38,25 +36,17 @@ NEWTON = 30
 """Largest number of Newton steps for the steady twist."""
 
 
-class ScikitFemBeam:
+class ScikitFemBeam(BladeAdapter):
     """See the module; straight blades, uncoupled and shear-free, with twist, taper, pitch and a centred tip mass."""
 
     name = "scikit-fem"
     title = "scikit-fem, prestressed beam"
-    shares: Shares = "nothing"
     independence = Independence("scikit-fem", "prestressed beam", "scikit-fem's adapter")
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
     hint = install.extra("codes")
     distribution = "scikit-fem"
-
-    def version(self) -> str | None:
-        """Version of scikit-fem, without importing it."""
-        try:
-            return metadata.version(self.distribution)
-        except metadata.PackageNotFoundError:
-            return None
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if the blade's steady state is not straight, its sections couple or shear, or a strain is rigid."""
@@ -86,8 +76,8 @@ class ScikitFemBeam:
                 return f"{name} is infinite: the weak form needs it finite"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``.
 
         Every interval between the blade's kinks is divided into the same number of elements, so that properties are
         smooth within each and the order of convergence is preserved. There are at least ``elements``;
@@ -95,11 +85,8 @@ class ScikitFemBeam:
         that refinements stay distinct.
 
         Raises:
-            CodeError: an unsupported blade, or no stable steady state at this speed.
+            CodeError: no stable steady state at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
         basis, parts, readings = _mesh(blade, elements)
         matrices = _matrices(blade, omega, parts)
         clamp = basis.get_dofs("root").flatten()
@@ -109,7 +96,7 @@ class ScikitFemBeam:
         q = np.zeros((basis.N, len(frequencies)), complex)
         q[free] = vectors
         shapes = np.stack([read @ q[of] for of, read in readings], axis=-1).transpose(1, 0, 2)
-        return Modes(omega, frequencies, shapes, basis.mesh.nelements, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, basis.mesh.nelements)
 
 
 def _skfem() -> Any:

@@ -9,8 +9,6 @@ converge with the fourth power of the element size. scikit-fem: T. Gustafsson, G
 Software 5 (2020) 2369.
 """
 
-import time
-from importlib import metadata
 from typing import Any
 
 import numpy as np
@@ -22,7 +20,7 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
-from ..protocol.interface import CodeError, Independence, Shares
+from ..protocol.interface import BladeAdapter, Independence
 from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
@@ -36,9 +34,6 @@ Array = NDArray[np.float64]
 COARSEST = 8
 """Elements of the coarsest level, and the largest number of intervals between stations that needs no more."""
 
-MAX_ELEMENTS = 300
-"""Largest number of elements: the matrices are dense, with up to 12 rows per element."""
-
 FORMED = 600
 """Largest number of coordinates for which forming M and C is faster than applying their factors in each iteration."""
 
@@ -46,25 +41,19 @@ RIGID_BODY = 1e-6
 """Departure from a rigid body's mass matrix attributed to rounding, relative to its masses and moments of inertia."""
 
 
-class ScikitFemReissner:
+class ScikitFemReissner(BladeAdapter):
     """See the module; all blades except those whose mass matrix is not that of a rigid body."""
 
     name = "scikit-fem-reissner"
     title = "scikit-fem, geometrically exact beam"
-    shares: Shares = "nothing"
     independence = Independence("scikit-fem", "geometrically exact beam", "scikit-fem-reissner's adapter")
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4
+    finest = 96
+    max_elements = 300  # the matrices are dense, with up to 12 rows per element
     hint = install.extra("codes")
     distribution = "scikit-fem"
-
-    def version(self) -> str | None:
-        """Version of scikit-fem, without importing it."""
-        try:
-            return metadata.version(self.distribution)
-        except metadata.PackageNotFoundError:
-            return None
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason if a mass matrix is not that of a rigid body, or all strains are rigid."""
@@ -80,18 +69,16 @@ class ScikitFemReissner:
             return "stiffness: all strains are rigid: this code uses the strains as coordinates"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``.
 
         Every interval between stations where a property or the line has a kink is divided into the same number of
         elements, at least ``elements`` in total; ``Modes.elements`` gives the number, without those at steps.
 
         Raises:
-            CodeError: an unsupported blade, too many elements, or no stable steady state at this speed.
+            CodeError: too many elements, or no stable steady state at this speed.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
-        begun = time.perf_counter()
+        self.limit(len(element_ends(blade, elements, COARSEST)) - 1)
         beam = _beam(blade, elements)
         state = steady(beam, omega)
         motions = _motions(beam, state)
@@ -100,15 +87,12 @@ class ScikitFemReissner:
         shapes = _shapes(beam, motions @ vectors.real + 1j * (motions @ vectors.imag))
         largest = float(np.linalg.norm(strain(beam, state)[..., :3], axis=-1).max())
         refinement = beam.elements - steps(blade)
-        return Modes(omega, frequencies, shapes, refinement, strain=largest, seconds=time.perf_counter() - begun)
+        return Modes(omega, frequencies, shapes, refinement, strain=largest)
 
 
 @latest
 def _beam(blade: Blade, elements: int) -> Beam:
-    ends = element_ends(blade, elements, COARSEST)
-    if len(ends) - 1 > MAX_ELEMENTS:
-        raise CodeError(f"elements: {len(ends) - 1}: the matrices are dense; at most {MAX_ELEMENTS}")
-    return beam_of(blade, ends)
+    return beam_of(blade, element_ends(blade, elements, COARSEST))
 
 
 def _motions(beam: Beam, state: State) -> spla.LinearOperator:

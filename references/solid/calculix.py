@@ -11,7 +11,6 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -78,7 +77,6 @@ def modes(
         raise CodeError(
             f"across: {bricks.counts[1:]} elements: with reduced integration a section needs at least two each way"
         )
-    begun = time.perf_counter()
     places, nodes = numbered(bricks)
     fixed = _fixed(clamp, nodes) if callable(clamp) else _restrained(clamp, places)
     steps = [*fixed, "*STEP"]
@@ -95,7 +93,7 @@ def modes(
         layers = places[:: (len(places) - 1) // (len(STATIONS) - 1)]
         sections = [(layer[layer >= 0], point) for layer, point in zip(layers, points, strict=True)]
         shapes = means(nodes, even, u, sections)
-    return Modes(omega, frequencies, shapes, bricks.counts[0], seconds=time.perf_counter() - begun)
+    return Modes(omega, frequencies, shapes, bricks.counts[0])
 
 
 def _fixed(clamp: Clamp, nodes: Array) -> list[str]:

@@ -8,7 +8,7 @@ orientation for each layer of elements: second order. Coriolis forces are missin
 
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Independence, Motion, Shares
+from ..protocol.interface import BladeAdapter, Independence, Motion
 from . import bar, calculix, hexahedra
 from .curved import with_root_forces
 from .known import ACROSS, recognised
@@ -16,12 +16,11 @@ from .materials import Orthotropic
 from .mesh import Bricks, clamped
 
 
-class Calculix:
+class Calculix(BladeAdapter):
     """See the module."""
 
     name = "calculix"
     title = "CalculiX, solid elements"
-    shares: Shares = "nothing"
     independence = Independence("CalculiX", "solid elements", "CalculiX", eigensolver="CalculiX")
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = calculix.EFFECTS
@@ -43,14 +42,12 @@ class Calculix:
             )
         return f"{other}; {reason}" if (other := bar.unsupported(blade)) else None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. ``elements`` are rounded up to a multiple of ten.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``. ``elements`` are rounded up to a multiple of ten.
 
         Raises:
-            CodeError: an unsupported blade, too large a strain, ``ccx`` missing or failing, or no stable steady state.
+            CodeError: too large a strain, ``ccx`` missing or failing, or no stable steady state.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
         solid, _ = recognised(blade)
         if solid:
             bricks, root = with_root_forces(solid, bar.LAYERS * -(-elements // bar.LAYERS), ACROSS)

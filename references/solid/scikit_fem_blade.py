@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import CodeError, Independence, Motion, Shares
+from ..protocol.interface import BladeAdapter, Independence, Motion
 from . import bar, hexahedra
 from .curved import CurvedSolid, layer, with_root_forces
 from .known import ACROSS, recognised
@@ -25,12 +25,11 @@ from .mesh import Bricks, clamped
 Array = NDArray[np.float64]
 
 
-class ScikitFemSolid:
+class ScikitFemSolid(BladeAdapter):
     """See the module."""
 
     name = "scikit-fem-solid"
     title = "scikit-fem, solid elements"
-    shares: Shares = "nothing"
     independence = Independence(
         "scikit-fem", "three-dimensional solid", "scikit-fem-solid's adapter", sections="the solid's geometry"
     )
@@ -38,12 +37,10 @@ class ScikitFemSolid:
     effects = ALL_EFFECTS
     levels = (10, 20, 30)
     order = 4
+    finest = 80  # a layer of nodes has hundreds of freedoms
+    distribution = "scikit-fem"
     digits = 5  # the equations of slender solids are ill-conditioned
     hint = hexahedra.HINT
-
-    def version(self) -> str | None:
-        """Version of scikit-fem, without importing it."""
-        return hexahedra.version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """A reason unless the blade is the beam of a known solid, or uniform and equivalent to a bar."""
@@ -52,14 +49,12 @@ class ScikitFemSolid:
             return f"{other}; {reason}"
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The lowest modes; see ``interface.Code``. ``elements`` are rounded up to a multiple of ten.
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        """The lowest modes; see ``interface.BladeAdapter``. ``elements`` are rounded up to a multiple of ten.
 
         Raises:
-            CodeError: an unsupported blade, too large a strain of a bar, or no stable steady state.
+            CodeError: too large a strain of a bar, or no stable steady state.
         """
-        if reason := self.unsupported(blade):
-            raise CodeError(f"{blade.name}: {reason}")
         solid, _ = recognised(blade)
         if solid:
             return modes(solid, omega, bar.LAYERS * -(-elements // bar.LAYERS), count)

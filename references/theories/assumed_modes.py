@@ -12,7 +12,6 @@ modes are the polynomials of ``spectral``.
 """
 
 from dataclasses import dataclass
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +19,11 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, Independence, Motion, Shares
+from ..protocol.interface import Independence, Motion
 from ..protocol.latest import latest
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
 from .spectral import clamped
-from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
+from .straight_beam import ClosedForm, line, refusal, tension, terms
 
 Array = NDArray[np.float64]
 
@@ -83,7 +82,7 @@ def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
     return (together((Y, Z)),) if angle.any() else (together((Y,)), together((Z,)))
 
 
-class AssumedModes:
+class AssumedModes(ClosedForm):
     """The inextensible straight beam, twisted or untwisted, uniform or varying.
 
     It neglects rotary inertia and stretch: the steady stretch (prestretch) and the oscillating one, through which alone
@@ -92,31 +91,21 @@ class AssumedModes:
 
     name = "assumed-modes"
     title = "Putter and Manor, assumed modes"
-    shares: Shares = "nothing"
     independence = Independence("Southwell's Ritz method", "Putter and Manor 1978", "assumed-modes")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
-    levels = LEVELS
-    order = 0
-    hint = ""
-
-    def version(self) -> str | None:
-        """Version of this package."""
-        return version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=True, stretch=False, tip_inertia=False)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest bending modes with ``elements`` polynomials in each interval (see ``protocol.interface``)."""
-        refuse(self.unsupported(blade))
-        start = perf_counter()
         parts = [
             part(bending.shape, *stationary_modes(bending.mass, bending.stiffness(omega)))
             for bending in bendings(blade, terms(blade, elements))
         ]
-        return union(parts, omega, elements, count, perf_counter() - start)
+        return union(parts, omega, elements, count)
 
 
-CODE: Code = AssumedModes()
+CODE = AssumedModes()

@@ -4,7 +4,6 @@ From second-order Lagrangians, derived by hand. About the hinge at radius e: S =
 forward (along the motion), θ pitch with the leading edge up about the blade's axis, outboard of the flap hinge.
 """
 
-import time
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -114,7 +113,6 @@ def solve(formula: str, omega: float, parameters: Mapping[str, float]) -> Mechan
         KeyError: if the formula is unknown.
         TypeError: if parameters are missing or unknown.
     """
-    begun = time.perf_counter()
     names, M, C, K = FORMULAE[formula](omega, **parameters)
     values, x = damped_modes(M, C, K)
-    return MechanismModes(names, np.zeros(len(names)), values, x.T, time.perf_counter() - begun)
+    return MechanismModes(names, np.zeros(len(names)), values, x.T)

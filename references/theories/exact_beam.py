@@ -22,7 +22,6 @@ The solution is by Galerkin's method with the polynomials of ``spectral``, for u
 """
 
 from dataclasses import dataclass
-from time import perf_counter
 
 import numpy as np
 import scipy.linalg
@@ -31,10 +30,10 @@ from numpy.typing import NDArray
 from ...core.blade import TORSION, Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, CodeError, Independence, Shares
+from ..protocol.interface import CodeError, Independence
 from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
 from .spectral import clamped, pinned
-from .straight_beam import LEVELS, Line, line, refusal, refuse, terms, version
+from .straight_beam import ClosedForm, Line, line, refusal, terms
 
 Array = NDArray[np.float64]
 
@@ -144,7 +143,7 @@ def out_of_plane(beam: Beam, torsion: bool) -> Problem:
     return apart(integral(at.I_x, beam.u), M), C, apart(twisting, K), shape
 
 
-class ExactBeam:
+class ExactBeam(ClosedForm):
     """The beam with every effect of ``core.effects``: modes of bending in both planes, stretch and torsion.
 
     Straight, untwisted, uncoupled and shear-rigid blades, uniform or varying along the span. Torsional modes exist if
@@ -153,34 +152,24 @@ class ExactBeam:
 
     name = "exact-beam"
     title = "Exact extensible beam, spectral"
-    shares: Shares = "nothing"
     independence = Independence("Southwell's Ritz method", "Kirchhoff rod", "exact-beam")
     effects = ALL_EFFECTS
-    levels = LEVELS
-    order = 0
-    hint = ""
-
-    def version(self) -> str | None:
-        """Version of this package."""
-        return version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=False, stretch=True, tip_inertia=True)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes with ``elements`` polynomials per field in each interval (see ``protocol.interface``).
 
         Raises:
             CodeError: unsupported blade, or no stable steady state at this speed.
         """
-        refuse(self.unsupported(blade))
-        start = perf_counter()
         beam = stretched(blade, omega, terms(blade, elements))
         torsion = bool(beam.at.I_x.any() and np.isfinite(blade.stiffness[:, TORSION, TORSION]).all())
         problems = (in_plane(beam), out_of_plane(beam, torsion))
         parts = [part(shape, *coupled_modes(M, C, K, count)) for M, C, K, shape in problems]
-        return union(parts, omega, elements, count, perf_counter() - start)
+        return union(parts, omega, elements, count)
 
 
-CODE: Code = ExactBeam()
+CODE = ExactBeam()

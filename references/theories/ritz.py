@@ -87,7 +87,7 @@ def part(shape: Array, frequencies: Array, q: Array | NDArray[np.complex128], un
     )
 
 
-def union(parts: Iterable[Part], omega: float, terms: int, count: int, seconds: float) -> Modes:
+def union(parts: Iterable[Part], omega: float, terms: int, count: int) -> Modes:
     """The ``count`` lowest modes of all parts together."""
     frequencies, shapes, uncertainty = (np.concatenate(column) for column in zip(*parts, strict=True))
     order = np.argsort(frequencies, kind="stable")[:count]
@@ -97,5 +97,4 @@ def union(parts: Iterable[Part], omega: float, terms: int, count: int, seconds: 
         shapes=shapes[order],
         elements=terms,
         uncertainty=uncertainty[order] if len(uncertainty) else uncertainty,
-        seconds=seconds,
     )

@@ -16,19 +16,17 @@ within its plane of bending, or within both together if twist couples them). α,
 like ``assumed_modes``, to rounding at the finer levels. For k > 1 the value itself is not a bound, but lies inside the bracket.
 """
 
-from time import perf_counter
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import Modes
-from ..protocol.interface import Code, Independence, Motion, Shares
+from ..protocol.interface import Independence, Motion
 from .assumed_modes import Bending, bendings
 from .ritz import Y, integral, part, stationary_modes, union
 from .spectral import pinned
-from .straight_beam import LEVELS, line, refusal, refuse, tension, terms, version
+from .straight_beam import ClosedForm, line, refusal, tension, terms
 
 Array = NDArray[np.float64]
 
@@ -56,32 +54,22 @@ def squared(bending: Bending, beta: Array, omega: float, count: int) -> tuple[Ar
     return np.diag(ritz), lower, upper, phi
 
 
-class SouthwellEquation:
+class SouthwellEquation(ClosedForm):
     """Southwell's equation for each bending mode, with its bracket; for the blades that ``assumed-modes`` supports."""
 
     name = "southwell-equation"
     title = "Southwell's equation"
-    shares: Shares = "nothing"
     independence = Independence("Southwell's Ritz method", "Putter and Manor 1978", "assumed-modes")
     motions: tuple[Motion, ...] = ("edgewise", "flapwise")
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
-    levels = LEVELS
-    order = 0
     bracket = True
-    hint = ""
-
-    def version(self) -> str | None:
-        """Of this package."""
-        return version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=True, stretch=False, tip_inertia=False)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest bending modes from ``elements`` polynomials in each interval; ``Modes.uncertainty`` is the bracket."""
-        refuse(self.unsupported(blade))
-        start = perf_counter()
         parts = []
         number = terms(blade, elements)
         for bending in bendings(blade, number):
@@ -90,7 +78,7 @@ class SouthwellEquation:
             frequency, low, high = np.sqrt(value), np.sqrt(lower), np.sqrt(upper)
             reach = np.maximum(high - frequency, frequency - low) / frequency
             parts.append(part(bending.shape, frequency, phi, reach))
-        return union(parts, omega, elements, count, perf_counter() - start)
+        return union(parts, omega, elements, count)
 
 
-CODE: Code = SouthwellEquation()
+CODE = SouthwellEquation()

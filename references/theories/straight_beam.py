@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, clamped, coupled, sample, straight
-from ..protocol.interface import CodeError
+from ..protocol.interface import BladeAdapter
 from .spectral import gauss, intervals
 
 Array = NDArray[np.float64]
@@ -124,12 +124,12 @@ def refusal(blade: Blade, *, twist: bool, stretch: bool, tip_inertia: bool) -> s
     return next((reason for applies, reason in reasons if applies), None)
 
 
-def refuse(reason: str | None) -> None:
-    """Raise ``CodeError`` with this reason, if there is one."""
-    if reason:
-        raise CodeError(reason)
+class ClosedForm(BladeAdapter):
+    """An adapter of this package's own series solution; its version is that of the package."""
 
+    levels = LEVELS
+    order = 0
 
-def version() -> str:
-    """Version of the closed forms: that of this package, since they need no foreign code."""
-    return f"southwell {installed('southwell')}"
+    def version(self) -> str:
+        """Version of this package, which needs no foreign code."""
+        return f"southwell {installed('southwell')}"

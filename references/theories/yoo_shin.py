@@ -14,19 +14,17 @@ The theory is linear in s and neglects the steady stretch. No steady state exist
 the axial stiffness (``γ = α π/2`` for a uniform beam); the code then raises an error.
 """
 
-from time import perf_counter
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol.interface import Code, Independence, Motion, Shares
+from ..protocol.interface import Independence, Motion
 from .assumed_modes import bendings
 from .ritz import X, Y, apart, coupled_modes, integral, part, shape_of, skew, stationary_modes, union
 from .spectral import clamped, pinned
-from .straight_beam import LEVELS, line, refusal, refuse, terms, version
+from .straight_beam import ClosedForm, line, refusal, terms
 
 Array = NDArray[np.float64]
 
@@ -48,7 +46,7 @@ def edgewise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Arra
     )
 
 
-class YooShin:
+class YooShin(ClosedForm):
     """Edgewise bending with stretch, and flapwise bending; uniform or varying, untwisted.
 
     It neglects rotary inertia, and the effect of the steady stretch on radius and tension.
@@ -56,30 +54,20 @@ class YooShin:
 
     name = "yoo-shin"
     title = "Yoo and Shin (1998), Rayleigh–Ritz"
-    shares: Shares = "nothing"
     independence = Independence("Southwell's Ritz method", "Yoo and Shin 1998", "assumed-modes")
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = Effects(prestretch=False, rotary_inertia=False)
-    levels = LEVELS
-    order = 0
-    hint = ""
-
-    def version(self) -> str | None:
-        """Version of this package."""
-        return version()
 
     def unsupported(self, blade: Blade) -> str | None:
         """The reason why the blade is outside this theory; None if it is not."""
         return refusal(blade, twist=False, stretch=True, tip_inertia=False)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes with ``elements`` polynomials per field in each interval (see ``protocol.interface``).
 
         Raises:
             CodeError: unsupported blade, or a speed above which no steady state exists.
         """
-        refuse(self.unsupported(blade))
-        start = perf_counter()
         number = terms(blade, elements)
         M, C, K, shape = edgewise(blade, omega, number)
         _, flap = bendings(blade, number)
@@ -87,7 +75,7 @@ class YooShin:
             part(shape, *coupled_modes(M, C, K, count)),
             part(flap.shape, *stationary_modes(flap.mass, flap.stiffness(omega))),
         )
-        return union(parts, omega, elements, count, perf_counter() - start)
+        return union(parts, omega, elements, count)
 
 
-CODE: Code = YooShin()
+CODE = YooShin()

@@ -12,7 +12,7 @@ from southwell.core.blade import Blade, sample
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import modes as core_modes
-from southwell.references.protocol.interface import Shares
+from southwell.references.protocol.interface import CORE, MOTIONS, BladeAdapter, Independence, Motion
 
 ROOTS = [
     root_scalar(lambda x: np.cos(x) + 1.0 / np.cosh(x), bracket=((k + 0.5) * np.pi - 1.0, (k + 0.5) * np.pi + 1.0)).root
@@ -28,7 +28,7 @@ def shape(root: float) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Analytic:
+class Analytic(BladeAdapter):
     """Exact frequencies times ``factor`` times ``1 + error / elements**order``."""
 
     name: str
@@ -39,14 +39,14 @@ class Analytic:
     levels: tuple[int, ...] = (10, 20, 40)
     columns: tuple[int, ...] = (1, 2)
     backwards: bool = False
-    bracket: float | None = None
+    bracket: bool = False
+    width: float = 0.0
     reason: str | None = None
     installed: bool = True
     title: str = "Closed form"
-    shares: Shares = "nothing"
     effects: Effects = ALL_EFFECTS
     hint: str = "pip install nothing"
-    motions: tuple[str, ...] = ("axial", "edgewise", "flapwise", "torsion")
+    motions: tuple[Motion, ...] = MOTIONS
 
     def version(self) -> str | None:
         return "1.0" if self.installed else None
@@ -54,7 +54,7 @@ class Analytic:
     def unsupported(self, blade: Blade) -> str | None:
         return self.reason
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         section = sample(blade, 0.0)
         rate = np.sqrt(section.EI_y[0] / section.mass[0]) / blade.length**2
         wrong = self.factor * (1.0 + self.error / elements**self.true_order)
@@ -63,7 +63,7 @@ class Analytic:
         for k, root in enumerate(ROOTS):
             for i, column in enumerate(self.columns):
                 shapes[len(self.columns) * k + i, :, column] = shape(root)[:: -1 if self.backwards else 1]
-        bracket = np.zeros(0) if self.bracket is None else np.full(count, self.bracket)
+        bracket = np.full(count, self.width) if self.bracket else np.zeros(0)
         return Modes(omega, frequencies[:count], shapes[:count], elements, uncertainty=bracket)
 
 
@@ -71,10 +71,10 @@ class Analytic:
 class Twin(Analytic):
     """Core's own discretisation, in other words: half masses at element ends, stiffness in the parent's frame."""
 
-    shares: Shares = "discretisation"
+    independence: Independence = Independence("twin", CORE, "twin")  # noqa: RUF009
     levels: tuple[int, ...] = (10,)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed", effects=self.effects)
         return Modes(omega, modes.frequencies * self.factor, modes.shapes, elements)
 
@@ -84,8 +84,8 @@ SPECTRAL = Analytic("spectral", error=1e-3, order=0, true_order=4.0)
 WRONG = Analytic("wrong", factor=1.002)
 ROUGH = Analytic("rough", error=5.0, true_order=2.5)
 SLOW = Analytic("slow", true_order=0.2)
-CRUDE = Analytic("crude", factor=1.03, bracket=0.04)
-LYING = Analytic("lying", factor=1.03, bracket=0.02)
+CRUDE = Analytic("crude", factor=1.03, bracket=True, width=0.04)
+LYING = Analytic("lying", factor=1.03, bracket=True, width=0.02)
 PLANAR = Analytic("planar", columns=(2,), motions=("flapwise",))
 SIDEWAYS = Analytic("sideways", columns=(0, 3))
 BACKWARDS = Analytic("backwards", backwards=True)

@@ -4,20 +4,19 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from southwell.core import solve
 from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
-from southwell.core.solve import modes
-from southwell.references.protocol.interface import Shares
+from southwell.references.protocol.interface import BladeAdapter
 
 
 @dataclass(frozen=True)
-class Counted:
+class Counted(BladeAdapter):
     """Core under another name."""
 
     name: str
     title: str = "Counted"
-    shares: Shares = "nothing"
     effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (10, 20)
     order: int = 4
@@ -29,11 +28,11 @@ class Counted:
     def unsupported(self, blade: Blade) -> str | None:
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         if (elements, omega) == (self.levels[0], 0.0) and (folder := os.environ.get("SOUTHWELL_TEST")):
             with Path(folder, "asked.txt").open("a") as file:
                 file.write(f"{self.name} {blade.name}\n")
-        return modes(blade, omega, elements, count)
+        return solve.modes(blade, omega, elements, count)
 
 
 FIRST, SECOND = Counted("first"), Counted("second")

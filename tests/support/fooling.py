@@ -8,12 +8,12 @@ import numpy as np
 from southwell.core.blade import Blade
 from southwell.core.effects import Effects
 from southwell.core.modes import Modes
-from southwell.references.protocol.interface import Shares
+from southwell.references.protocol.interface import BladeAdapter
 from southwell.references.theories.exact_beam import CODE as EXACT
 
 
 @dataclass(frozen=True)
-class Fooling:
+class Fooling(BladeAdapter):
     """The exact beam, with something done to its answer."""
 
     name: str
@@ -23,7 +23,6 @@ class Fooling:
     raises: str = ""
     order: int = EXACT.order
     title: str = "Exact beam, altered"
-    shares: Shares = "nothing"
     effects: Effects = EXACT.effects
     hint: str = ""
 
@@ -37,7 +36,7 @@ class Fooling:
             raise RuntimeError("licence server\nnot reached")
         return EXACT.unsupported(blade)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         return self.alter(EXACT.solve(blade, omega, elements, count))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
-from southwell.references.protocol.interface import CodeError, Shares
+from southwell.references.protocol.interface import BladeAdapter, CodeError
 
 
 def answer(omega: float, elements: int, count: int) -> Modes:
@@ -52,7 +52,7 @@ def leave() -> None:
 
 
 @dataclass(frozen=True)
-class Misbehaving:
+class Misbehaving(BladeAdapter):
     """Solves properly below 1 rad/s, and does ``deed`` first above."""
 
     deed: Callable[[], None]
@@ -60,7 +60,6 @@ class Misbehaving:
     installed: bool = True
     name: str = "misbehaving"
     title: str = "Misbehaving"
-    shares: Shares = "nothing"
     effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (1, 2, 4)
     order: int = 2
@@ -72,7 +71,7 @@ class Misbehaving:
     def unsupported(self, blade: Blade) -> str | None:
         return None
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         if omega >= 1.0:
             self.deed()
             return self.answer(omega, elements, count)

@@ -8,6 +8,7 @@ import numpy as np
 
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes
+from southwell.references.protocol.interface import BladeAdapter
 
 When = Literal["import", "version", "unsupported", "solve"]
 Lost = Literal["none", "one", "rest", "all"]
@@ -26,7 +27,7 @@ class Code(Base):
     def unsupported(self, blade):
         {at_unsupported}
         return None
-    def solve(self, blade, omega, elements, count):
+    def modes(self, blade, omega, elements, count):
         if omega == 2.0:
             {at_solve}
         return good(omega, elements, count)
@@ -34,12 +35,11 @@ CODE = Code()
 """
 
 
-class Base:
+class Base(BladeAdapter):
     """Declarations that are right."""
 
     name = "misdeed"
     title = "Misdeed"
-    shares = "nothing"
     effects = ALL_EFFECTS
     levels = (10, 20)
     order = 2
@@ -185,7 +185,6 @@ DECLARATIONS = {
     "name = '../../x'": "name: '../../x'",
     "title = None": "title: None",
     "title = 'a\\nb'": "title: ",
-    "shares = 'everything'": "shares: 'everything'",
     "effects = None": "effects: None",
     "effects = {'prestretch': 1}": "effects: ",
     "levels = ()": "levels: ()",
@@ -269,7 +268,7 @@ def declaring(folder: Path) -> dict[str, str]:
     """Import path of each code of ``DECLARATIONS``, by its line."""
     lines, paths = "", {}
     for number, line in enumerate(DECLARATIONS):
-        head = f"class C{number}(Base):\n    version = unsupported = lambda self, blade=None: None\n    solve = good\n"
+        head = f"class C{number}(Base):\n    version = unsupported = lambda self, blade=None: None\n    modes = good\n"
         lines += f"{head}    {line}\nCODE{number} = C{number}()\n"
         paths[line] = f"misdeclared:CODE{number}"
     module(folder, "misdeclared", lines)
@@ -279,7 +278,7 @@ def declaring(folder: Path) -> dict[str, str]:
 def answering(folder: Path) -> str:
     """Import path of a code that gives answer k of ``ANSWERS`` at 10 + k rad/s, and a good one at any other speed."""
     lines = "class Code(Base):\n    version = lambda self: '1'\n    unsupported = lambda self, blade: None\n"
-    lines += "    def solve(self, blade, omega, elements, count):\n        def made(**change):\n"
+    lines += "    def modes(self, blade, omega, elements, count):\n        def made(**change):\n"
     lines += "            modes = good(omega, elements, count)\n"
     lines += "            [object.__setattr__(modes, *item) for item in change.items()]\n            return modes\n"
     for number, line in enumerate(ANSWERS):

@@ -15,7 +15,7 @@ from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import DIGITS, CodeError, Shares
+from southwell.references.protocol.interface import CORE, DIGITS, BladeAdapter, CodeError, Independence
 
 
 @pytest.mark.slow
@@ -34,7 +34,7 @@ def test_ours_conform(name: str) -> None:
 
 
 @dataclass
-class Core:
+class Core(BladeAdapter):
     """Core as a code, with a fault if wanted: in the blade it is given, in the modes it returns, in what it says."""
 
     given: Callable[[Blade], Blade] = lambda blade: blade
@@ -44,7 +44,7 @@ class Core:
     kept: Effects = ALL_EFFECTS
     name: str = "core"
     title: str = "Core"
-    shares: Shares = "discretisation"
+    independence: Independence = Independence("core", CORE, "core")  # noqa: RUF009
     effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (8, 12, 18)
     order: int = 4
@@ -58,7 +58,7 @@ class Core:
     def unsupported(self, blade: Blade) -> str | None:
         return self.refused(blade)
 
-    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         if reason := self.solved(blade):
             raise CodeError(reason)
         return self.returned(solve.modes(self.given(blade), omega, elements, count, effects=self.kept))

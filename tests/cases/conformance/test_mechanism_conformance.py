@@ -11,8 +11,8 @@ from southwell.cases.conformance.suite import CHECKS, EVERY, FOR_MECHANISMS, jud
 from southwell.cases.conformance.worker import outcomes
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import CodeError, Shares
-from southwell.references.protocol.mechanism_interface import MechanismModes
+from southwell.references.protocol.interface import CodeError
+from southwell.references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
 
 from ...reports.cli.test_cli import southwell
 
@@ -26,7 +26,7 @@ def test_ours_conform(name: str) -> None:
 
 
 @dataclass
-class Core:
+class Core(MechanismAdapter):
     """Core as a code for mechanisms, with a fault if wanted: in what it is given, or in what it returns."""
 
     given: Callable[[mb.Mechanism], mb.Mechanism] = lambda mechanism: mechanism
@@ -34,7 +34,6 @@ class Core:
     refused: Callable[[mb.Mechanism], str | None] = lambda _: None
     name: str = "core"
     title: str = "Core"
-    shares: Shares = "mechanical model"
     effects: Effects = ALL_EFFECTS
     hint: str = ""
     answers_all: bool = False
@@ -45,7 +44,7 @@ class Core:
     def unsupported_mechanism(self, mechanism: mb.Mechanism) -> str | None:
         return self.refused(mechanism)
 
-    def solve_mechanism(self, mechanism: mb.Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    def mechanism_modes(self, mechanism: mb.Mechanism, guess: Mapping[str, float]) -> MechanismModes:
         try:
             found = mb.solve(self.given(mechanism), guess)
         except mb.MechanismError as error:

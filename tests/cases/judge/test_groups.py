@@ -12,7 +12,7 @@ from southwell.cases.input.toml import document
 from southwell.cases.judge.results import Origin, Run, Setting
 from southwell.cases.judge.witnesses import groups, short, witnesses
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import CORE, Independence, independence
+from southwell.references.protocol.interface import CORE, Independence, shares
 from southwell.references.protocol.quadratic import gyroscopic_modes
 from southwell.reports.shared import summary
 from southwell.reports.verification import witnesses as reported
@@ -37,14 +37,14 @@ def count(run: Run) -> list[tuple[str, ...]]:
 
 @pytest.mark.parametrize("name", registry.OURS)
 def test_every_code_declares_all_of_its_origin(name: str) -> None:
-    declared = independence(registry.code(name))
+    declared = registry.code(name).independence
     assert declared
     assert all(getattr(declared, f.name) for f in fields(declared))
-    assert (registry.code(name).shares == "nothing") == (declared.theory != CORE)
+    assert (shares(declared) == "discretisation") == (declared.theory == CORE)
 
 
 def test_known_overcounts_are_one_group() -> None:
-    declared = {name: independence(registry.code(name)) for name in registry.OURS}
+    declared = {name: registry.code(name).independence for name in registry.OURS}
     made = [Origin("beam", name, **asdict(d)) for name, d in declared.items() if d]
     found = count(run(*made))
     assert ("exudyn-ancf", "exudyn-tree") in found

@@ -19,7 +19,7 @@ from southwell.cases.verify.mechanism_columns import cells
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import boundary, mechanism_worker, registry, wire
 from southwell.references.protocol.description import describe
-from southwell.references.protocol.mechanism_interface import MechanismModes
+from southwell.references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
@@ -168,11 +168,11 @@ def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
     np.testing.assert_array_equal(again.values, modes.values)
 
 
-class Wild:
+class Wild(MechanismAdapter):
     """A code that raises what it likes."""
 
     name = title = "wild"
-    shares, effects, hint = "nothing", ALL_EFFECTS, "pip install wild"
+    hint = "pip install wild"
 
     def version(self) -> str:
         return "1"
@@ -180,25 +180,25 @@ class Wild:
     def unsupported_mechanism(self, mechanism: mb.Mechanism) -> None:
         return None
 
-    def solve_mechanism(self, mechanism: mb.Mechanism, guess) -> MechanismModes:
+    def mechanism_modes(self, mechanism: mb.Mechanism, guess) -> MechanismModes:
         raise RuntimeError("out of\n  cheese")
 
 
 CODE = Wild()
 
 
-class Torso:
-    """Half a code."""
+class Unadapted:
+    """Has the methods of an adapter, without its base class."""
 
     solve_mechanism = None
 
 
-TORSO = Torso()
+UNADAPTED = Unadapted()
 
 
-def test_a_code_for_mechanisms_that_is_not_whole_is_refused() -> None:
-    with pytest.raises(registry.UnknownCodeError, match="lacks name, effects, version, unsupported_mechanism"):
-        registry.code("southwell.tests.cases.verify.test_mechanism_matrix:TORSO")
+def test_a_code_for_mechanisms_without_the_base_class_is_refused() -> None:
+    with pytest.raises(registry.UnknownCodeError, match="is Unadapted, not an adapter"):
+        registry.code("southwell.tests.cases.verify.test_mechanism_matrix:UNADAPTED")
 
 
 def test_a_code_that_raises_is_one_cells_outcome() -> None:

@@ -41,6 +41,6 @@ def test_it_does_not_serve_a_start_in_other_surroundings(
 ) -> None:
     (tmp_path / "elsewhere.py").write_text("CODE = 1\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    with pytest.raises(UnknownCodeError, match="lacks name"):  # and not: no module named elsewhere
+    with pytest.raises(UnknownCodeError, match="not an adapter"):  # and not: no module named elsewhere
         describe(["elsewhere:CODE"])
     assert prepared.process.returncode is not None

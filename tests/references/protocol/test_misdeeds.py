@@ -101,7 +101,7 @@ def test_invalid_answers_are_quoted_and_affect_no_other(folder: Path) -> None:
 def test_a_path_without_a_code_is_an_error(folder: Path) -> None:
     module(folder, "nothing_here", "CODE = 42\n")
     for path, reported in (
-        ("nothing_here:CODE", "lacks name, effects"),
+        ("nothing_here:CODE", "is int, not an adapter"),
         ("nothing_here:NO", "no attribute 'NO'"),
         ("nowhere:CODE", "No module"),
     ):
@@ -121,7 +121,7 @@ def test_no_file_of_the_current_folder_shadows_a_module(folder: Path) -> None:
         folder,
         "lawful",
         lines
-        + "    unsupported = lambda self, blade: None\n    solve = lambda self, *a: good(*a[1:])\nCODE = Code()\n",
+        + "    unsupported = lambda self, blade: None\n    modes = lambda self, *a: good(*a[1:])\nCODE = Code()\n",
     )
     (ours, mine) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
     assert (ours.failure, mine.failure, mine.name) == (None, None, "by-my-neighbour")

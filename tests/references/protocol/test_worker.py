@@ -111,7 +111,7 @@ def test_an_unknown_code_is_an_error_that_suggests_the_nearest() -> None:
     [
         ("no_such_module:CODE", "No module named 'no_such_module'"),
         ("misbehaving:NOTHING_HERE", "no attribute 'NOTHING_HERE'"),
-        ("misbehaving:NOT_A_CODE", "lacks name, effects"),
+        ("misbehaving:NOT_A_CODE", "is int, not an adapter"),
     ],
 )
 def test_a_path_without_a_code_is_an_error(path: str, reported: str) -> None:
