@@ -16,22 +16,28 @@ _LAPACK: Any = lapack
 TOLERANCE = 1e-9
 """Singular values below this fraction of the largest count as zero."""
 
+_TIE = (
+    1e-8  # relative difference of columns' lengths, above rounding, by which pivots choose the later of equal columns
+)
+
 
 @dataclass(frozen=True)
 class Ranked:
-    """A matrix (m, n) with its numerical rank r and the parts of its singular value decomposition.
+    """A matrix A (m, n) with its numerical rank r, from the singular values of ``U_e⁻¹ A U_x``.
+
+    U_e and U_x contain the units of the equations A x = b and of the unknowns x. In these units, norms are of like quantities.
 
     Attributes:
-        range: (m, r) orthonormal basis of the columns' span.
+        left: (m, r) left singular vectors, divided by the equations' units.
         sizes: (r,) singular values above ``TOLERANCE``.
-        rows: (r, n) orthonormal basis of the rows' span.
-        null: (n, n − r) orthonormal basis of the null space.
-        left_null: (m, m − r) orthonormal basis of the null space of the transpose.
+        right: (r, n) right singular vectors, times the unknowns' units.
+        null: (n, n − r) basis of the null space, orthonormal in these units.
+        left_null: (m, m − r) basis of the null space of the transpose, likewise.
     """
 
-    range: Array
+    left: Array
     sizes: Array
-    rows: Array
+    right: Array
     null: Array
     left_null: Array
 
@@ -41,26 +47,34 @@ class Ranked:
         return len(self.sizes)
 
     def solve(self, b: Array, damping: float = 0.0) -> Array:
-        """The least-norm x (n,) or (n, k) that minimises |A x − b|, or |A x − b|² + damping |x|²."""
-        scaled = (self.range.T @ b).T * self.sizes / (self.sizes**2 + damping)
-        return self.rows.T @ scaled.T
+        """The x (n,) or (n, k) of least norm that minimises |A x − b|, or |A x − b|² + damping |x|²; norms in the units."""
+        scaled = (self.left.T @ b).T * self.sizes / (self.sizes**2 + damping)
+        return self.right.T @ scaled.T
 
 
-def ranked(A: Array) -> Ranked:
+def ranked(A: Array, equations: Array | float = 1.0, unknowns: Array | float = 1.0) -> Ranked:
     """Decompose a matrix (m, n); any size may be 0.
+
+    Args:
+        A: the matrix.
+        equations: (m,) units of its rows.
+        unknowns: (n,) units of the unknowns that it multiplies.
 
     Raises:
         ValueError: an entry is not finite.
     """
     m, n = A.shape
+    row, column = np.broadcast_to(equations, m)[:, None], np.broadcast_to(unknowns, n)[:, None]
     if not A.size:
-        return Ranked(np.zeros((m, 0)), np.zeros(0), np.zeros((0, n)), np.eye(n), np.eye(m))
+        return Ranked(np.zeros((m, 0)), np.zeros(0), np.zeros((0, n)), np.eye(n) * column, np.eye(m) / row)
+    scaled = A * column.T / row
     try:
-        u, s, vt = scipy.linalg.svd(A)
+        u, s, vt = scipy.linalg.svd(scaled)
     except np.linalg.LinAlgError:  # divide and conquer, six times as fast, may fail to converge
-        u, s, vt = scipy.linalg.svd(A, lapack_driver="gesvd")
+        u, s, vt = scipy.linalg.svd(scaled, lapack_driver="gesvd")
     r = int((s > TOLERANCE * s[0]).sum())
-    return Ranked(u[:, :r], s[:r], vt[:r], vt[r:].T, u[:, r:])
+    u, v = u / row, vt.T * column
+    return Ranked(u[:, :r], s[:r], v[:, :r].T, v[:, r:], u[:, r:])
 
 
 @dataclass(frozen=True)
@@ -100,11 +114,15 @@ def factored(A: Array) -> Regular | Ranked:
 
 
 def pivots(A: Array) -> tuple[Index, Index]:
-    """Indices of columns of A that span its range, chosen by QR with column pivoting, and of the other columns."""
+    """Indices of columns of A that span its range, chosen by QR with column pivoting, and of the other columns.
+
+    Among columns of equal length, the last is chosen.
+    """
     if not len(A):
         return np.zeros(0, np.intp), np.arange(A.shape[1])
     r = ranked(A).rank
     if r == 0:
         return np.zeros(0, np.intp), np.arange(A.shape[1])
-    order = cast(tuple[Array, Index], scipy.linalg.qr(A, mode="r", pivoting=True))[1].astype(np.intp)
+    preference = 1.0 + _TIE * np.arange(A.shape[1])
+    order = cast(tuple[Array, Index], scipy.linalg.qr(A * preference, mode="r", pivoting=True))[1].astype(np.intp)
     return np.sort(order[:r]), np.sort(order[r:])

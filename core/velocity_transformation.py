@@ -26,10 +26,10 @@ from .spectrum.rotating import Rotating, rotating
 from .steady import equilibrium
 from .steady.blade_state import SteadyStateError
 from .tree import as_mechanism
-from .tree.closure import size_of
 from .tree.dynamics import unbalanced
 from .tree.mode_shapes import mode_shapes
 from .tree.pencil import Shape
+from .tree.scales import coordinate_units, length_at
 from .tree.spanning import compile_tree
 from .tree.state import State, state_at
 from .tree.strained import out_of_range
@@ -175,7 +175,7 @@ def _corrected(tree: Tree, q: Array, effects: Effects) -> _Linear | None:
     while True:
         found = _linear(tree, state_at(tree, q), effects)
         k, free = found.state.kinematics, found.pencil.free
-        unit = np.where(tree.screw[free, 3:].any(1), 1.0, size_of(k.poses))
+        unit = coordinate_units(tree, length_at(tree, k.poses))[free]
         size = float(np.abs(found.correction / unit).max(initial=0.0))
         if not size <= 0.5 * last or out_of_range(tree, k.poses):
             return None

@@ -6,15 +6,18 @@ import numpy as np
 
 from ..mechanism.description import Mechanism, MechanismError, at_time
 from ..steady import periodic
-from ..steady.equilibrium import steady, unresisted
+from ..steady.equilibrium import null_motions, steady
 from ..tree.closure import assemble
 from ..tree.kinematics import kinematics
 from ..tree.linearization import Linearization, about
 from ..tree.partition import freedom, partition
+from ..tree.scales import coordinate_units, length_at
 from ..tree.spanning import compile_tree
-from ..tree.state import State, moving
+from ..tree.state import State, driven_by_loops
 from ..tree.topology import Tree
 from . import eigen
+
+_NUDGE = 1e-3  # distance of the nearby configuration, rad or fraction of the mechanism's length
 
 
 def linearize(
@@ -53,15 +56,17 @@ def _check_regular(tree: Tree, state: State) -> None:
     if not tree.welds:
         return
     here = partition(tree, state.kinematics)
-    nudge = here.R @ np.random.default_rng(1921).normal(size=here.R.shape[1])
+    units = coordinate_units(tree, length_at(tree, state.kinematics.poses))
+    count = len(here.independent)
+    nudge = here.R @ (units[here.independent] * np.random.default_rng(1921).normal(size=count))
     q = state.q.copy()
-    q[here.free] += 1e-3 * nudge / max(float(np.abs(nudge).max(initial=0.0)), 1e-300)
+    q[here.free] += _NUDGE * nudge / max(float(np.abs(nudge / units[here.free]).max(initial=0.0)), _NUDGE)
     near = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
-    nearby = freedom(tree, kinematics(tree, near, state.v, state.a).B)
-    if nearby < len(here.independent):
+    nearby = freedom(tree, kinematics(tree, near, state.v, state.a))
+    if nearby < count:
         raise MechanismError(
-            f"joints {', '.join(tree.weld_names)}: singular configuration: {len(here.independent)} degrees of freedom here but "
-            f"{nearby} nearby, so no linear model is valid; start the assembly from another guess"
+            f"joints {', '.join(tree.weld_names)}: singular configuration: {count} degrees of freedom here but {nearby} "
+            "nearby, so no linear model is valid; start the assembly from another guess"
         )
 
 
@@ -78,10 +83,10 @@ def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eige
     idle = ~(M.any(axis=1) | C.any(axis=1) | linear.K.any(axis=1))
     if idle.any():
         raise MechanismError(
-            f"coordinate {linear.names[int(idle.argmax())]!r}: it moves no mass, and no spring or damper acts on it: give its "
-            "body mass, or prescribe its motion"
+            f"coordinate {linear.names[int(idle.argmax())]!r}: it has no mass, stiffness or damping: give its body mass, or "
+            "prescribe its motion"
         )
-    rigid = unresisted(linear.tree, linear.state, linear.names)
+    rigid = null_motions(linear.tree, linear.state, linear.names)
     if not _conservative(linear):
         return eigen.damped(M, C, K, count, rigid)
     C, K = 0.5 * (C - C.T), 0.5 * (K + K.T)
@@ -97,5 +102,5 @@ def _conservative(linear: Linearization) -> bool:
     """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
     mechanism = linear.tree.mechanism
     dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]
-    still = not linear.state.a.any() and not moving(linear.tree, linear.state).any()
+    still = not linear.state.a.any() and not driven_by_loops(linear.tree, linear.state).any()
     return still and not any(np.any(d.damping) for d in dampers)

@@ -16,7 +16,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ..mechanism.description import MechanismError
-from ..steady.equilibrium import again
+from ..steady.equilibrium import perturbed_again
 from ..tree.linearization import Linearization, about
 from . import eigen
 
@@ -41,7 +41,7 @@ def rounding(linear: Linearization, found: eigen.Eigen | eigen.Damped) -> Array:
         return np.zeros(0)
     sizes = _sizes(linear)
     try:
-        state = again(linear.tree, linear.state, linear.names)
+        state = perturbed_again(linear.tree, linear.state, linear.names)
         near = about(linear.tree, state, linear.names)
     except MechanismError:  # rounding decides whether there is a steady state
         return np.full(len(values), np.inf)

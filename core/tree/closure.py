@@ -10,14 +10,19 @@ from ..mechanism.description import MechanismError
 from ..rank import ranked
 from . import partition
 from .kinematics import poses
+from .scales import coordinate_units, length_at, weld_units
 from .topology import Tree
 
 Array = NDArray[Any]
 Index = NDArray[np.intp]
 
-_MAX_STEPS = 60
+_MAX_ITERATIONS = 60
+
 MAX_STEP = 0.2
-"""Longest step of a coordinate while loops close or a path is followed, rad or m."""
+"""Longest step of a coordinate while loops close or a path is followed, rad or fraction of the mechanism's length."""
+
+CLOSED, ASSEMBLED = 1e-11, 1e-9
+"""Largest gap of a loop, rad or fraction of the mechanism's length: while Newton's method converges, and at assembly."""
 
 
 def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
@@ -32,37 +37,38 @@ def assemble(tree: Tree, guess: Mapping[str, float] | None = None) -> Array:
     for m in tree.mechanism.motions:
         if m.position is not None:
             q[tree.coordinate(m.coordinate)] = m.position
-    q, gap, length = closed(tree, q, partition.free_coordinates(tree))
-    worst = int(np.argmax(np.abs(gap))) if len(gap) else 0
-    if len(gap) and abs(gap[worst]) > 1e-9 * length:
+    q, gap = close_loops(tree, q, partition.free_coordinates(tree))
+    if np.abs(gap).max(initial=0.0) > ASSEMBLED:
+        worst = int(np.abs(gap).argmax())
+        size = gap[worst] * weld_units(tree, length_at(tree, poses(tree, q)[0]))[worst]
         raise MechanismError(
-            f"joint {tree.weld_names[worst // 6]!r}: its loop does not close (gap {abs(gap[worst]):.3g}): wrong dimensions, or "
-            "a poor guess? correct either"
+            f"joint {tree.weld_names[worst // 6]!r}: its loop does not close: a gap of {abs(size):.3g} "
+            f"{'m' if worst % 6 < 3 else 'rad'} remains; check the dimensions or give a better initial guess"
         )
     return q
 
 
-def closed(tree: Tree, q: Array, free: Index) -> tuple[Array, Array, float]:
-    """Close the loops from coordinates q (n,), changing only the ``free`` ones; also the remaining gap (6w,) and length, m.
+def close_loops(tree: Tree, q: Array, free: Index) -> tuple[Array, Array]:
+    """Close the loops from coordinates q (n,), changing only the ``free`` ones; also the remaining gap (6w,).
 
-    Levenberg–Marquardt steps damped by the squared gap: robust near singular configurations, and quadratic at the end.
+    Gaps are in rad and fractions of the mechanism's length. Levenberg–Marquardt steps damped by the squared gap: robust near
+    singular configurations, and quadratic at the end.
     """
     q = q.copy()
+    gap = np.zeros(6 * len(tree.welds))
     if not tree.welds:
-        return q, np.zeros(0), 1.0
+        return q, gap
     last = np.inf
-    for _ in range(_MAX_STEPS):
+    for _ in range(_MAX_ITERATIONS):
         x, J = poses(tree, q)
-        gap, length = partition.misfit(tree, x), size_of(x)
-        size = float(np.abs(gap).max(initial=0.0))
-        if size < 1e-15 * length or (size < 1e-11 * length and size > 0.5 * last):
+        length = length_at(tree, x)
+        equations, units = weld_units(tree, length), coordinate_units(tree, length)[free]
+        gap = partition.misfit(tree, x) / equations
+        size = float(np.abs(gap).max())
+        if size < 1e-15 or (size < CLOSED and size > 0.5 * last):
             break
         last = size
-        step = -ranked(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]).solve(gap, float(gap @ gap))
-        q[free] += step * min(1.0, MAX_STEP / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-    return q, gap, length
-
-
-def size_of(x: Array) -> float:
-    """Length of a mechanism with body poses ``x`` (b, 4, 4), m; at least 1."""
-    return max(1.0, float(np.abs(x[:, :3, 3]).max(initial=0.0)))
+        rows = partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]
+        step = -ranked(rows, equations, units).solve(gap * equations, float(gap @ gap))
+        q[free] += step * min(1.0, MAX_STEP / max(float(np.abs(step / units).max(initial=0.0)), MAX_STEP))
+    return q, gap

@@ -14,6 +14,7 @@ from ..mechanism.description import MechanismError
 from ..rank import pivots, ranked
 from ..space import spatial as sp
 from .kinematics import Kinematics
+from .scales import coordinate_units, length_at, weld_units
 from .topology import Tree
 
 Array = NDArray[np.float64]
@@ -99,13 +100,16 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     """
     free = free_coordinates(tree)
     J = jacobian(tree, k.B)[:, free] if tree.welds else np.zeros((0, len(free)))
-    dependent, chosen = pivots(J)
+    length = length_at(tree, k.poses)
+    equations, units = weld_units(tree, length), coordinate_units(tree, length)[free]
+    scaled = J * units / equations[:, None]
+    dependent, chosen = pivots(scaled)
     rank = len(dependent)
     if independent is not None:
         wanted = [tree.coordinate(name) for name in independent]
         chosen = np.flatnonzero(np.isin(free, wanted))
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
-        if len(chosen) != len(free) - rank or ranked(J[:, dependent]).rank < rank:
+        if len(chosen) != len(free) - rank or ranked(scaled[:, dependent]).rank < rank:
             raise MechanismError(
                 f"independent: {', '.join(independent)} do not determine the others: give {len(free) - rank} that are free "
                 "and not tied to each other by a loop, or leave the choice to the solver"
@@ -114,23 +118,25 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     R[chosen, np.arange(len(chosen))] = 1.0
     R1, R2 = np.zeros_like(R), np.zeros_like(R)
     if rank:
-        back = ranked(J[:, dependent])
+        pinv = ranked(J[:, dependent], equations, units[dependent])
         J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
         # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14), and δq = R δq_I (eq. 15)
-        R[dependent] = -back.solve(J[:, chosen])
-        R1[dependent] = -back.solve(J1 @ R)
-        R2[dependent] = -back.solve(J2 @ R + 2.0 * J1 @ R1)
-    return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, J, rank))
+        R[dependent] = -pinv.solve(J[:, chosen])
+        R1[dependent] = -pinv.solve(J1 @ R)
+        R2[dependent] = -pinv.solve(J2 @ R + 2.0 * J1 @ R1)
+    return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, scaled, rank))
 
 
-def freedom(tree: Tree, B: Array) -> int:
-    """Degrees of freedom of the free coordinates at a configuration with velocity transformation B (b + m, 6, n)."""
-    J = jacobian(tree, B)[:, free_coordinates(tree)]
-    return J.shape[1] - ranked(J).rank
+def freedom(tree: Tree, k: Kinematics) -> int:
+    """Degrees of freedom of the free coordinates at a configuration."""
+    free, length = free_coordinates(tree), length_at(tree, k.poses)
+    return ranked(
+        jacobian(tree, k.B)[:, free], weld_units(tree, length), coordinate_units(tree, length)[free]
+    ).null.shape[1]
 
 
 def _redundant(tree: Tree, J: Array, rank: int) -> tuple[str, ...]:
-    """Names of the rows of J (6w, f) that depend on others."""
+    """Names of the rows of Φ_q (6w, f), in its units, that depend on others."""
     if rank == len(J):
         return ()
     parts = ("x", "y", "z", "rotation x", "rotation y", "rotation z")

@@ -8,14 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.description import MechanismError
-from ..rank import ranked
+from ..rank import Ranked, ranked
 from . import dynamics, partition
-from .closure import size_of
 from .dynamics import Cartesian
 from .kinematics import Kinematics, kinematics
+from .scales import coordinate_units, length_at, weld_units
 from .topology import Tree
 
 Array = NDArray[Any]
+
+_MOVES = 1e-9  # rate of a coordinate, as a fraction of the largest, above which it moves
+_CONTRADICTION = 1e-7  # rate of a loop's gap, as a fraction of the largest rate
 
 
 @dataclass(frozen=True)
@@ -39,36 +42,52 @@ class ContradictionError(MechanismError):
     """Prescribed rates that contradict a loop."""
 
 
-def given(tree: Tree) -> list[int]:
+def driven(tree: Tree) -> list[int]:
     """Indices of the coordinates with a motion, prescribed or not."""
     return [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
 
 
+def not_driven(tree: Tree) -> NDArray[np.intp]:
+    """Indices of the coordinates without a motion."""
+    return np.setdiff1d(np.arange(len(tree.coordinates)), driven(tree))
+
+
+def loop_jacobian(tree: Tree, k: Kinematics, columns: NDArray[np.intp]) -> Ranked:
+    """Φ_q over some coordinates, decomposed in the mechanism's units."""
+    length = length_at(tree, k.poses)
+    J = partition.jacobian(tree, k.B)[:, columns]
+    return ranked(J, weld_units(tree, length), coordinate_units(tree, length)[columns])
+
+
 def state_at(tree: Tree, q: Array) -> State:
-    """The state at coordinates q (n,), with the rates that the motions impose, also through the loops (eq. 18, 20)."""
-    n = len(q)
-    v, a = np.zeros(n), np.zeros(n)
-    moved = given(tree)
-    for m, j in zip(tree.mechanism.motions, moved, strict=True):
+    """The state at coordinates q (n,), with the rates that the motions impose, also through the loops (eq. 18, 20).
+
+    Raises:
+        ContradictionError: the motions contradict a loop.
+    """
+    v, a = np.zeros(len(q)), np.zeros(len(q))
+    for m, j in zip(tree.mechanism.motions, driven(tree), strict=True):
         v[j], a[j] = m.rate, m.acceleration
     k = kinematics(tree, q, v, a)
     if tree.welds:
-        following = np.setdiff1d(np.arange(n), moved)
-        J = partition.jacobian(tree, k.B)
-        back = ranked(J[:, following])
-        v[following] = back.solve(-J @ v)
+        J, following = partition.jacobian(tree, k.B), not_driven(tree)
+        pinv = loop_jacobian(tree, k, following)
+        v[following] = pinv.solve(-J @ v)
         k = kinematics(tree, q, v, a)
-        a[following] = back.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
-        if np.abs(J @ v).max() > 1e-7 * max(float(np.abs(v).max()), 1e-300) * size_of(k.poses):
+        a[following] = pinv.solve(-J @ a - partition.jacobian(tree, k.B1) @ v)
+        length = length_at(tree, k.poses)
+        opening = np.abs(J @ v / weld_units(tree, length)).max()
+        if opening > _CONTRADICTION * np.abs(v / coordinate_units(tree, length)).max():
             raise ContradictionError("motions: the prescribed rates contradict a loop; prescribe fewer coordinates")
         k = kinematics(tree, q, v, a)
     return State(q, v, a, np.zeros((len(tree.welds), 6)), k, dynamics.cartesian(tree, k))
 
 
-def moving(tree: Tree, state: State) -> NDArray[np.bool_]:
+def driven_by_loops(tree: Tree, state: State) -> NDArray[np.bool_]:
     """(n,) whether a coordinate moves because its loop does."""
-    out = np.abs(state.v) > 1e-9 * np.abs(state.v).max(initial=0.0)
-    out[given(tree)] = False
+    rate = np.abs(state.v) / coordinate_units(tree, length_at(tree, state.kinematics.poses))
+    out = rate > _MOVES * rate.max(initial=0.0)
+    out[driven(tree)] = False
     return out
 
 
@@ -78,13 +97,15 @@ def check_rates(tree: Tree, state: State) -> None:
     Raises:
         MechanismError: a coordinate of a moving loop has no determined rate.
     """
-    if not moving(tree, state).any():
+    moves = driven_by_loops(tree, state)
+    if not moves.any():
         return
-    following = np.setdiff1d(np.arange(len(state.q)), given(tree))
-    open_ = ranked(partition.jacobian(tree, state.kinematics.B)[:, following]).null
-    free = moving(tree, state)[following] & (np.abs(open_).max(axis=1, initial=0.0) > 1e-9)
-    if free.any():
-        name = tree.coordinates[following[int(free.argmax())]]
+    following = not_driven(tree)
+    units = coordinate_units(tree, length_at(tree, state.kinematics.poses))[following]
+    null = loop_jacobian(tree, state.kinematics, following).null / units[:, None]
+    undetermined = moves[following] & (np.abs(null).max(axis=1, initial=0.0) > _MOVES)
+    if undetermined.any():
+        name = tree.coordinates[following[int(undetermined.argmax())]]
         raise MechanismError(
             f"coordinate {name!r}: its loop moves, but the motions do not determine its rate: give it a rate too "
             "(prescribed = false if it is to vibrate)"

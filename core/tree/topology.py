@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..element.beams import Beams
 from ..mechanism.description import GROUND, Mechanism, MechanismError
+from ..mechanism.units import length_of
 
 Array = NDArray[np.float64]
 
@@ -104,6 +105,11 @@ class Tree:
     @cached_property
     def _number(self) -> dict[str, int]:
         return {name: j for j, name in enumerate(self.coordinates)}
+
+    @cached_property
+    def length(self) -> float:
+        """Length of the undeformed mechanism, m; see ``units.length_of``."""
+        return length_of(self.mechanism)
 
     @property
     def joints(self) -> int:

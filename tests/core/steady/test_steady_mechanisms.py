@@ -55,9 +55,9 @@ def test_relaxation_does_not_end_at_an_unstable_equilibrium(stands: float, ends:
 
 def test_without_a_state_near_the_guess_the_one_elsewhere_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     tree = compile_tree(pendulums())
-    monkeypatch.setattr(equilibrium, "followed", lambda tree, q, grow: (0.25, None))
-    monkeypatch.setattr(equilibrium, "relaxed", lambda tree, q, towards: None)
+    monkeypatch.setattr(equilibrium, "continue_from", lambda tree, q, grow: (0.25, None))
+    monkeypatch.setattr(equilibrium, "relaxed", lambda tree, q, allow_unstable: None)
     with pytest.raises(
-        mb.MechanismError, match=r"reached 25 % .* one is found, with of other.rz = 0, of one.rz = 0: give a"
+        mb.MechanismError, match=r"reached 25 % .* a steady state was found at of other.rz = 0, of one.rz = 0: give a"
     ):
         equilibrium.steady(tree, {"of one.rz": 1.2, "of other.rz": math.pi})

@@ -1,0 +1,180 @@
+"""Units of a mechanism: its numbers in other units of mass, length and time, and the units in which they are of order one.
+
+Angles are in rad in all units. Written u = (L, L, L, 1, 1, 1), the unit of a twist's component is u/T, and that of entry ij of
+an inertia is M L²/(u_i u_j).
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..element.beams import Beams
+from ..element.measures import StrainLaw
+from .description import Beam, Body, CoordinateSpring, Load, Mechanism, Spring
+from .joints import SCREWS, Joint, coordinate_names
+from .motion import Motion, MotionLaw
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Units:
+    """Units of mass (kg), length (m) and time (s)."""
+
+    mass: float = 1.0
+    length: float = 1.0
+    time: float = 1.0
+
+    @property
+    def energy(self) -> float:
+        """J."""
+        return self.mass * self.length**2 / self.time**2
+
+    @property
+    def twist(self) -> Array:
+        """(6,) of a small displacement: length, and 1 rad."""
+        return np.repeat([self.length, 1.0], 3)
+
+
+@dataclass(frozen=True)
+class RescaledLaw:
+    """A law of motion whose value and time are in other units, m or rad and s."""
+
+    law: MotionLaw
+    value: float
+    time: float
+
+    def __call__(self, time: float, /) -> float:
+        """The value at a time."""
+        return float(self.law(time * self.time)) / self.value
+
+    def deriv(self, m: int = 1) -> "RescaledLaw":
+        """Its m-th derivative."""
+        return RescaledLaw(self.law.deriv(m), self.value / self.time**m, self.time)
+
+
+def coordinate_units(mechanism: Mechanism, length: float) -> dict[str, float]:
+    """The unit of each joint's coordinates: ``length`` along an axis, 1 rad about one."""
+    return {
+        name: length if screw[:3].any() else 1.0
+        for joint in mechanism.joints
+        for name, (_, screw) in zip(coordinate_names(joint), SCREWS[joint.kind], strict=True)
+    }
+
+
+def length_of(mechanism: Mechanism) -> float:
+    """Length of a mechanism, m: the largest of its dimensions and its bodies' radii of gyration; 1 if all are zero."""
+    points = [frame[:3, 3] for j in mechanism.joints for frame in (j.at_parent, j.at_child)]
+    points += [point for s in mechanism.springs for point in (s.point_a, s.point_b)]
+    points += [pose[:3, 3] for b in mechanism.beams for pose in (b.at_a, b.at_b, *b.beams.undeformed)]
+    lengths = [float(np.linalg.norm(point)) for point in points]
+    lengths += [s.free_length for s in mechanism.springs]
+    along = {name for name, unit in coordinate_units(mechanism, 0.0).items() if unit == 0.0}
+    lengths += [abs(s.neutral) for s in mechanism.coordinate_springs if s.coordinate in along]
+    lengths += [abs(m.position) for m in mechanism.motions if m.position and m.coordinate in along]
+    lengths += [
+        float(np.sqrt(np.trace(b.inertia[3:, 3:]) / b.inertia[0, 0])) for b in mechanism.bodies if b.inertia[0, 0]
+    ]
+    return max(lengths, default=0.0) or 1.0
+
+
+def own_units(mechanism: Mechanism) -> Units:
+    """The units in which a mechanism without beams has a length and a mass of 1, and the sum of its squared rates is 1.
+
+    Its rates are those of its motions, and those that gravity and its springs and dampers give to its mass; 1/s if it has none.
+    """
+    length = length_of(mechanism)
+    units = coordinate_units(mechanism, length)
+    mass = sum(float(b.inertia[0, 0] + np.trace(b.inertia[3:, 3:]) / length**2) for b in mechanism.bodies) or 1.0
+    squares = [float(np.linalg.norm(mechanism.gravity)) / length]
+    squares += [(m.rate / units[m.coordinate]) ** 2 for m in mechanism.motions]
+    for s in mechanism.springs:
+        squares += [s.stiffness / mass, (s.damping / mass) ** 2]
+    for c in mechanism.coordinate_springs:
+        inertia = mass * (length / units[c.coordinate]) ** 2
+        squares += [c.stiffness / inertia, (c.damping / inertia) ** 2]
+    return Units(mass, length, 1.0 / np.sqrt(sum(map(abs, squares)) or 1.0))
+
+
+def in_units(mechanism: Mechanism, units: Units) -> Mechanism:
+    """The same mechanism with its numbers in other units instead of SI."""
+    mass, length, time, energy = units.mass, units.length, units.time, units.energy
+    pair = units.twist[:, None] * units.twist
+    coordinate = coordinate_units(mechanism, length)
+
+    def rescaled_spring(s: CoordinateSpring) -> CoordinateSpring:
+        unit = coordinate[s.coordinate]
+        stiffness = energy / unit**2
+        return CoordinateSpring(s.coordinate, s.stiffness / stiffness, s.damping / (stiffness * time), s.neutral / unit)
+
+    def rescaled_motion(m: Motion) -> Motion:
+        unit = coordinate[m.coordinate]
+        return replace(
+            m,
+            position=None if m.position is None else m.position / unit,
+            rate=m.rate * time / unit,
+            acceleration=m.acceleration * time**2 / unit,
+            law=None if m.law is None else RescaledLaw(m.law, unit, time),
+        )
+
+    def rescaled_point_spring(s: Spring) -> Spring:
+        values = s.stiffness * time**2 / mass, s.damping * time / mass, s.free_length / length
+        return Spring(s.body_a, s.body_b, s.point_a / length, s.point_b / length, *values)
+
+    return Mechanism(
+        bodies=tuple(Body(b.name, b.inertia * pair / (mass * length**2)) for b in mechanism.bodies),
+        joints=tuple(_joint(j, length) for j in mechanism.joints),
+        motions=tuple(map(rescaled_motion, mechanism.motions)),
+        coordinate_springs=tuple(map(rescaled_spring, mechanism.coordinate_springs)),
+        springs=tuple(map(rescaled_point_spring, mechanism.springs)),
+        beams=tuple(_beam(b, units) for b in mechanism.beams),
+        loads=tuple(Load(f.body, f.force * time**2 / (mass * length), f.axes_of) for f in mechanism.loads),
+        gravity=tuple(g * time**2 / length for g in mechanism.gravity),
+    )
+
+
+def _joint(joint: Joint, length: float) -> Joint:
+    return replace(joint, at_parent=_pose(joint.at_parent, length), at_child=_pose(joint.at_child, length))
+
+
+def _pose(pose: Array, length: float) -> Array:
+    out = np.array(pose, float)
+    out[..., :3, 3] /= length
+    return out
+
+
+def _beam(beam: Beam, units: Units) -> Beam:
+    u, inner, energy, beams = units.twist, np.sqrt(units.energy), units.energy, beam.beams
+    pair, ratio = u[:, None] * u, u / u[:, None]
+    law, points = beams.law, beams.points
+    # internal coordinates have a stiffness of 1, hence the unit √energy
+    slope = law.slope * np.concatenate([ratio, np.repeat(inner / u[:, None], 6, axis=1)], axis=1)
+    rescaled: Any = replace(
+        points,
+        zeta0=points.zeta0 / u,
+        shape=points.shape * ratio,
+        bubble=points.bubble * inner / u[:, None],
+        mass=points.mass * pair / (units.mass * units.length**2),
+        force=points.force * units.length / energy,
+    )
+    return replace(
+        beam,
+        beams=Beams(
+            StrainLaw(
+                law.measure,
+                _pose(law.undeformed, units.length),
+                law.shortening * pair / units.length,
+                law.mean * ratio,
+                slope,
+            ),
+            beams.stiffness * pair / energy,
+            rescaled,
+            beams.preload * u / energy,
+            beams.inner_preload / inner,
+        ),
+        damping=beam.damping * pair / (energy * units.time),
+        at_a=_pose(beam.at_a, units.length),
+        at_b=_pose(beam.at_b, units.length),
+    )
