@@ -139,13 +139,23 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
 
 
 def rounding_at(tree: Tree, here: Residual) -> Array:
-    """(i,) size of the forces of which the reduced ones are the sum."""
+    """(i,) size of the forces of which the reduced ones are the sum.
+
+    R is rounded relative to its norm, not to each entry: where loops transmit forces, Rᵀ times their reactions vanishes only to
+    rounding.
+    """
     state, part = here.state, here.part
     length = length_at(tree, state.kinematics.poses)
     units = coordinate_units(tree, length)[part.free]
     stiffness = np.abs(part.among_free(state.tangent[2]))
     size = _forces(tree, state)[part.free] + stiffness @ np.maximum(units, np.abs(state.q[part.free]))
-    return replace(part, R=np.abs(part.R)).onto(size)
+    rounding = replace(part, R=np.abs(part.R)).onto(size)
+    if not len(part.dependent):
+        return rounding
+    equations = weld_units(tree, length)
+    J = partition.jacobian(tree, state.kinematics.B)[:, part.free] * units / equations[:, None]
+    reactions = np.linalg.norm(state.multipliers.ravel() * equations) * np.linalg.norm(J, 2)
+    return rounding + reactions * np.linalg.norm(part.R / units[:, None], axis=0)
 
 
 def _forces(tree: Tree, state: State) -> Array:
