@@ -1,4 +1,4 @@
-# make verify | make test | make test-slow | make lint | make bench | make condense | make readme | make docs | make clean
+# make verify | make test | make test-slow | make lint | make bench | make readme | make docs | make clean
 # Python 3.11 or later with its headers and a C++ compiler are needed; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -15,7 +15,7 @@ export OPENBLAS_NUM_THREADS := 1
 # without its bytecode on disk, each of the many processes would compile the package again
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: verify test test-slow lint bench condense readme docs clean
+.PHONY: verify test test-slow lint bench readme docs clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
@@ -37,9 +37,6 @@ lint: $(INSTALLED)
 # writes docs/run-time.md
 bench: $(INSTALLED)
 	$(BIN)/python -m southwell.benchmarks.run_time
-
-condense: $(INSTALLED)
-	$(BIN)/southwell condense --example --out reports/out
 
 # from the results of the last make verify
 readme: $(INSTALLED)

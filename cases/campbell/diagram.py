@@ -168,16 +168,6 @@ def _tracks(solve: Solver, request: CampbellRequest, weight: Array) -> Tracks:
     return tracks
 
 
-def rises(diagram: Campbell, omega: float) -> Array:
-    """Relative rise (t,) of each track's frequency from the first speed to ``omega`` (rad/s); NaN where it is missing."""
-    out = np.full(diagram.tracks.count, np.nan)
-    for t in range(diagram.tracks.count):
-        line = line_of(diagram.tracks, t)
-        if line is not None and line.first == diagram.tracks.omega[0] and omega <= line.last:
-            out[t] = line.at(omega) / line.at(line.first) - 1.0
-    return out
-
-
 def _check(request: CampbellRequest) -> None:
     speeds = request.speeds
     if len(speeds) < 2:

@@ -13,8 +13,8 @@ from typing import Any
 from ...cases.faults import table
 from ...cases.input.schema import Case
 from ...cases.judge import results
-from ...cases.judge.results import Control, Level, Planned, Run
-from ...cases.verify import journal, lumping, matrix
+from ...cases.judge.results import Control, Planned, Run
+from ...cases.verify import journal, matrix
 from ...cases.verify.cached import Cached
 from ...cases.verify.journal import Journal, Remembering
 from ...cases.verify.mechanism_case import MechanismCase
@@ -65,23 +65,19 @@ def solve(
     state = (sources.package(), *(f"{name} {version}" for name, version in sorted(about.versions.items())))
     cached = [Cached(pool, kept_before, also) for also in ((), state)] if kept_before else []
     executor, trials = (Remembering(one, kept) for one in cached) if cached else (fresh, fresh)
-    lumped: list[Future[tuple[Level, ...]]] = []
     tried: list[Future[list[Control]]] = []
 
     def begin(plan: tuple[Planned, ...]) -> None:
         kept.begin(replace(about, plan=plan))
-        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
-        lumped.extend(executor.submit(lumping.lumping, v.blade) for v in blades if v.name == lumping.CASE)
         tried.extend(trials.submit(table.run, part, kept_before is not None) for part in seeded)
 
     try:
         scratch.mkdir()
         with watch:
             done = matrix.run(chosen, codes, executor, watch.show, user_results=files, on_plan=begin, **limits)
-            levels = done.levels + tuple(level for future in lumped for level in future.result())
             found = {control.control: control for future in tried for control in future.result()}
         controls = tuple(found[name] for part in seeded for name in part)
-        run = replace(done, levels=levels, controls=controls)
+        run = replace(done, controls=controls)
         run = replace(run, versions=about.versions, command=about.command, settings=about.settings)
         if missing := results.gaps(run):
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)

@@ -9,8 +9,6 @@ from ..shared.style import svg
 from ..shared.units import Units
 from .convergence import convergence
 from .figures import campbell, differences
-from .lumped import Taken
-from .lumped_figure import lumping
 
 Draw = Callable[[Run, str, Units, Sequence[str]], Figure | None]
 
@@ -26,8 +24,3 @@ def of_case(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[str
     """The figures of one case, by kind."""
     drawn = {kind: draw(run, case, units, among) for kind, draw in FIGURES.items()}
     return {kind: svg(figure) for kind, figure in drawn.items() if figure}
-
-
-def of_lumping(found: Taken) -> str:
-    """The figure of the paper's lumped mass."""
-    return svg(lumping(found))

@@ -10,7 +10,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.verify.cached import remembering
-from ...cases.verify.lumping import CASE as LUMPED
 from ...cases.verify.pool import Serial
 from ..condense import page
 from ..shared import summary
@@ -18,7 +17,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import case_tables, controls, error_budget, evidence, lumped, witnesses
+from . import case_tables, controls, error_budget, evidence, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -55,8 +54,6 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
             name = f"{file_name(case)}-{kind}.svg"
             atomic.write(figures / name, image)
             drawn.setdefault(case, []).append(f"figures/{name}")
-    if found := lumped.taken(run):
-        atomic.write(figures / "lumped-mass.svg", drawing.submit(_lumping, found).result())
     path = folder / "report.md"
     atomic.write(path, render(run, drawn, condensed=page.beside(folder)))
     return path
@@ -72,12 +69,6 @@ def _figures(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[st
     from . import drawing  # Matplotlib
 
     return drawing.of_case(run, case, units, among)
-
-
-def _lumping(found: lumped.Taken) -> str:
-    from . import drawing
-
-    return drawing.of_lumping(found)
 
 
 def units(run: Run, case: str) -> Units:
@@ -101,7 +92,6 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
         keep_trailing_newline=True,
     )
     environment.filters["plain"] = plain
-    found = lumped.taken(run)
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
@@ -114,7 +104,6 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
         origins=_plainly(witnesses.origins(run)),
         short=[plain(line) for line in witnesses.missing(run)],
         controls=_plainly(controls.overview(run)),
-        lumped={"case": LUMPED, "sentence": lumped.sentence(found)} if found else None,
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",

@@ -5,8 +5,15 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from southwell.cases.condense import solid_blades
-from southwell.cases.condense.solid_blades import (
+from southwell.core.blade import Blade, uniform_blade
+from southwell.core.condense import segments, ties
+from southwell.core.modes import Modes
+from southwell.references.solid import hexahedra
+from southwell.references.solid import timoshenko as beam
+from southwell.references.solid.materials import Material
+from southwell.references.solid.mesh import clamped
+from southwell.tests.support import solid_blades
+from southwell.tests.support.solid_blades import (
     HUB,
     LENGTH,
     ROOT,
@@ -20,13 +27,6 @@ from southwell.cases.condense.solid_blades import (
     square_bar,
     twisted,
 )
-from southwell.core.blade import Blade, uniform_blade
-from southwell.core.condense import segments, ties
-from southwell.core.modes import Modes
-from southwell.references.solid import hexahedra
-from southwell.references.solid import timoshenko as beam
-from southwell.references.solid.materials import Material
-from southwell.references.solid.mesh import clamped
 
 __all__ = [
     "HUB",

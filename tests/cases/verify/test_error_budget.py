@@ -14,6 +14,10 @@ from southwell.cases.judge import results
 from southwell.cases.judge.results import BudgetEntry, Run
 from southwell.cases.verify import error_budget, matrix
 from southwell.core.blade import uniform_blade
+from southwell.core.effects import Effects
+from southwell.core.element.discretize import Mass
+from southwell.core.element.measures import Measure
+from southwell.core.solve import mesh_modes
 from southwell.references import published
 from southwell.references.theories import exact_beam, yoo_shin
 from southwell.reports.shared.units import RAD_S
@@ -79,6 +83,23 @@ def test_lumping_and_its_frame_make_up_the_papers_error() -> None:
     both = share("lumped mass", "edgewise 3") + share("parent's frame", "edgewise 3")
     assert both == pytest.approx(189.6735 / 189.92222 - 1.0, abs=5e-6)
     assert both == pytest.approx(share("both", "edgewise 3"), abs=2e-6)
+    fractions = [share("lumped mass", f"edgewise {k}") / share("both", f"edgewise {k}") for k in (1, 2, 3)]
+    np.testing.assert_allclose(fractions, [0.33, 0.70, 0.80], atol=0.005)  # as docs/theory.md says
+
+
+@pytest.mark.parametrize("stiffness", ["body_fixed", "corotational"])
+def test_the_error_of_lumped_mass_falls_with_the_square_of_the_elements(stiffness: Measure) -> None:
+    """Exact: Exudyn's ANCF cable, converged; geometrically nonlinear, without rotary inertia."""
+    blade, exact = library.load(CASE).variants[0].blade, np.array([11.71131, 70.43535, 189.92222])
+
+    def errors(elements: int, mass: Mass, measure: Measure) -> np.ndarray:
+        effects = Effects(rotary_inertia=False)
+        solved = mesh_modes(blade, 10.0, elements, 9, mass=mass, stiffness=measure, effects=effects)
+        return family(solved, Y)[:3] / exact - 1.0
+
+    coarse, fine = (errors(n, "half_end", stiffness) for n in (50, 100))
+    np.testing.assert_allclose(np.log2(coarse / fine)[1:], 2.0, atol=0.05)
+    np.testing.assert_allclose(errors(200, "consistent", "corotational"), 0.0, atol=2e-6)
 
 
 def test_coriolis_is_nothing_out_of_the_plane() -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import scipy.sparse as ss
 
-from southwell.cases.condense.solid_blades import CHORD, THICK, cantilever_segment, st_venant, torsion
 from southwell.core.condense import ties
 from southwell.core.condense.compressed import chain_from_segments, chain_modes
 from southwell.core.condense.condensation import condense, segment
@@ -19,6 +18,7 @@ from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree.as_mechanism import mechanism
 from southwell.references.solid import hexahedra
+from southwell.tests.support.solid_blades import CHORD, THICK, cantilever_segment, st_venant, torsion
 from southwell.tests.support.solids import (
     HUB,
     ROOT,

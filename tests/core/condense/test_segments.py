@@ -1,12 +1,10 @@
 """Segments, ties and chains without a solid: textbook beams, closed forms, and invalid input."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.sparse as ss
-from matplotlib.collections import PolyCollection
 
 from southwell.core.condense import ties
 from southwell.core.condense.compressed import chain_from_segments, chain_modes, segment_modes
@@ -17,9 +15,6 @@ from southwell.core.element import sections
 from southwell.core.mechanism.description import inertia
 from southwell.core.solve import LargeStrainError, modes
 from southwell.core.space import spatial as sp
-from southwell.references.solid.mesh import blade
-from southwell.reports.condense.figure import stages
-from southwell.reports.shared.style import save
 from southwell.tests.support.beams import PARK
 from southwell.tests.support.solids import at
 
@@ -166,44 +161,6 @@ def test_rigid_motion_is_that_of_the_frame() -> None:
     linear = (ties.motion(model.points, model.directions, frame) @ twist).reshape(-1, 2, 3)
     np.testing.assert_allclose(linear[:, 0], displaced, atol=1e-8)
     np.testing.assert_allclose(linear[:, 1], np.tile(frame[:3, :3] @ twist[3:], (len(points), 1)), atol=1e-15)
-
-
-# Figure
-
-
-def test_the_three_stages_in_one_picture(tmp_path: Path) -> None:
-    """Faces of the mesh, 5 sections, 4 boxes and 4 springs; a box has its segment's outline, and files are reproducible."""
-    mass, side, length = 3.0, 0.2, 0.5
-    body = inertia(
-        mass, mass / 12 * np.array([2 * side**2, side**2 + length**2, side**2 + length**2]), [length / 2, 0, 0]
-    )
-    k12, _, undeformed = beam_segment(length)
-    pieces = [segment_from_matrix(k12, undeformed, body)] * 4
-    bricks = blade(np.linspace(1.0, 3.0, 9), side, side, across=(3, 2))
-    figure = stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999)
-    mesh, cut, compressed = (
-        [np.array([p.vertices for p in c.get_paths()]) for c in a.collections if isinstance(c, PolyCollection)]
-        for a in figure.axes
-    )
-    assert [len(faces) for faces in mesh] == [2 * (8 * 3 + 8 * 2 + 3 * 2)]
-    assert [faces.shape[1] for faces in cut] == [11] * 5  # 10 corners round, closed
-    assert [len(faces) for faces in compressed] == [6] * 4
-    apart = [np.ptp([faces[..., 0].mean() for faces in drawn]) for drawn in (cut, compressed)]
-    assert apart[1] == pytest.approx(3 / 4 * apart[0], rel=1e-9)
-    edges = np.diff(compressed[0], axis=1).reshape(-1, 2)
-    for corner in (3, 8):  # along y and z from the first
-        assert np.abs(edges - (cut[0][0, corner] - cut[0][0, 0])).sum(axis=1).min() < 1e-9
-    assert {t.get_text() for t in figure.texts} == {
-        "Finite element model: 48 hexahedra, 999 degrees of freedom",
-        "5 sections, each tied to a frame",
-        "Compressed model: 4 rigid bodies, 4 complex stiffness elements, 24 degrees of freedom",
-    }
-    for name in ("one.svg", "two.svg"):
-        save(stages(bricks, 2 * np.arange(5), pieces, at(1.0), 999), tmp_path / name)
-    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
-
-
-# Bad input
 
 
 def bad(change) -> tuple[Array, Array]:

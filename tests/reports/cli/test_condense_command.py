@@ -1,4 +1,4 @@
-"""``southwell condense``: a user's own matrices give what the package's give; wrong input is one line; the example's tables."""
+"""``southwell condense``: a user's own matrices give what the package's give; wrong input is one line."""
 
 from pathlib import Path
 
@@ -7,8 +7,7 @@ import pytest
 import scipy.io
 import scipy.sparse as ss
 
-from southwell.cases.condense import condensed, condensing, example, solid_blades
-from southwell.cases.condense.solid_blades import ROOT, SPAN, SPEED, STEEL, at
+from southwell.cases.condense import condensed, condensing
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import Run
 from southwell.core.condense.compressed import chain_from_segments, chain_modes
@@ -18,6 +17,8 @@ from southwell.reports.cli import app as cli
 from southwell.reports.condense import page as condense_page
 from southwell.reports.shared.certain import certain, relative
 from southwell.reports.verification import report as matrix_report
+from southwell.tests.support import solid_blades
+from southwell.tests.support.solid_blades import ROOT, SPAN, SPEED, STEEL, at
 
 pytestmark = pytest.mark.skipif(hexahedra.version() is None, reason=f"not installed: {hexahedra.HINT}")
 
@@ -274,8 +275,6 @@ def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.Capt
         ((), "file: missing: give a TOML file"),
         (("nowhere.toml",), "nowhere.toml: no such file"),
         (("nowhere.json",), "nowhere.json: no such file"),
-        (("--example", "--rpm", "3"), "--example: with --rpm 3: the example has its own"),
-        (("--example", "x.toml"), "--example: with x.toml: the example has its own"),
         (("x.toml", "--rpm", "fast"), "--rpm: 'fast' is neither a speed"),
     ],
 )
@@ -286,65 +285,9 @@ def test_wrong_arguments(arguments: tuple[str, ...], message: str, capsys: pytes
     assert err.count("\n") == 1
 
 
-@pytest.fixture
-def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The example with few elements, and without CalculiX."""
-    whole = example.example
-    coarse = {"layers": 20, "across": (2, 2), "segments": 10}
-    monkeypatch.setattr(example, "example", lambda say: whole(say, **coarse))
-    monkeypatch.setattr(example, "LENGTHS", (1,))
-    monkeypatch.setattr(solid_blades, "LAYER", 0.02)
-    monkeypatch.setattr(example.calculix, "version", lambda: None)
-
-
-@pytest.mark.slow
-def test_the_example(small: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every file; what is not run says how to install it; a coarse model misses its target and says so by the status."""
-    status, out, _ = run(capsys, "example", "-o", str(tmp_path))
-    found = example.read(tmp_path / "condensation.json")
-    assert status == (0 if example.within(found) else 1)
-    page = (tmp_path / "condensation.md").read_text()
-    assert page.strip() in out
-    assert f"○ not run: ccx is not on the PATH: {calculix.HINT}" in page
-    assert (tmp_path / "figures" / "condensation.png").read_bytes().startswith(b"\x89PNG")
-    assert "10 rigid bodies" in page
-    assert (tmp_path / "figures" / "condensation.svg").is_file()
-    assert len(condensed.read(tmp_path / "segments.json").segments) == 10
-    rest = found.speeds[0]
-    np.testing.assert_allclose(rest.condensed[:2], rest.whole[:2], rtol=5e-3)
-    assert found.torsion["rigid"][0] > 1.5 * found.torsion["average"][0]
-
-
-def made(whole: tuple[float, ...], condensed_: tuple[float, ...]) -> example.Example:
-    names = ("flapwise 1", "torsion 1")
-    speeds = tuple(
-        example.Speed(w, names, whole, condensed_, {"rigid": whole, "average": whole}, (), condensed_)
-        for w in (0.0, 10.0)
-    )
-    bar = {"rigid": (10.1, 10.1), "average": (10.0, 10.0)}
-    torsion = {"rigid": (1.6,), "average": (0.8,), "in place": (1.0,)}
-    return example.Example(99, 8, 2, speeds, (10.0,), bar, torsion, (1,), {"CalculiX": "not run: absent"})
-
-
-def test_the_page_says_what_the_numbers_say() -> None:
-    good, bad = made((10.0, 20.0), (10.04, 20.0)), made((10.0, 20.0), (10.06, 20.0))
-    assert example.within(good)
-    assert not example.within(bad)
-    page = condense_page.example(good, "figure.svg", "command")
-    assert (
-        "- ✔ The 2 elements reproduce the five lowest frequencies of a tapered, twisted solid blade within\n  **0.4 %**"
-        in page
-    )
-    assert "torsional stiffness with rigid ties is 2.0 times that" in page
-    assert "| ✔ +0.400 %" in page
-    wrong = condense_page.example(bad, "figure.svg", "command")
-    assert "| ✘ +0.600 %" in wrong
-    assert "- ✘ The 2 elements" in wrong
-
-
 def test_the_report_takes_the_page_up(tmp_path: Path) -> None:
     assert condense_page.beside(tmp_path) == ""
     (tmp_path / "condensation.md").write_text("# Title\n\n## Part\n\ntext # no heading\n")
     text = condense_page.beside(tmp_path)
     assert text == "## Title\n\n### Part\n\ntext # no heading\n"
-    assert text in matrix_report.render(Run(()), {}, "", text)
+    assert text in matrix_report.render(Run(()), {}, text)

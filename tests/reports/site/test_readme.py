@@ -10,13 +10,13 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.verify import core_solver
-from southwell.cases.verify.lumping import CASE, OMEGA
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.solve import modes
 from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
 from southwell.reports.shared import summary
 from southwell.reports.site import readme
+from southwell.reports.site.readme import CASE, OMEGA
 
 from ...support import samples
 

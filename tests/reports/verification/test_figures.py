@@ -15,29 +15,13 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
-from southwell.cases.input.library import load
 from southwell.cases.judge.results import Level, Run
-from southwell.cases.verify.lumping import lumping
 from southwell.reports.shared.style import COLOURS, INK, MARKERS, looks, save, spread
 from southwell.reports.shared.units import GAMMA, RAD_S, RPM, Units
 from southwell.reports.verification.convergence import convergence, ticks
 from southwell.reports.verification.figures import campbell, differences
-from southwell.reports.verification.lumped import BOTH, EXACT, FRAME, MASS, Taken, taken
-from southwell.reports.verification.lumped_figure import lumping as lumping_figure
 
 from ...support import samples
-
-
-@pytest.fixture(scope="module")
-def lumped() -> Run:
-    return Run((), lumping(load("park-cantilever").variants[0].blade))
-
-
-@pytest.fixture(scope="module")
-def parts(lumped: Run) -> Taken:
-    found = taken(lumped)
-    assert found
-    return found
 
 
 def drawn(figure: Figure | None) -> Figure:
@@ -55,11 +39,11 @@ def all_figures(run: Run) -> list[Figure]:
 
 
 @pytest.mark.slow
-def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path, parts: Taken) -> None:
+def test_the_same_run_gives_the_same_bytes_without_a_date(tmp_path: Path) -> None:
     for k in range(2):
-        for j, figure in enumerate([*all_figures(samples.run()), lumping_figure(parts)]):
+        for j, figure in enumerate(all_figures(samples.run())):
             save(figure, tmp_path / f"{k}-{j}.svg")
-    for j in range(4):
+    for j in range(3):
         text = (tmp_path / f"0-{j}.svg").read_bytes()
         assert text == (tmp_path / f"1-{j}.svg").read_bytes()
         assert not re.search(rb"<dc:date|20\d\d-\d\d-\d\d", text)
@@ -172,8 +156,8 @@ def labels(axes: Axes) -> list[Text]:
     return [t for t in (*axes.texts, axes.title, axes._left_title, *ticks) if t.get_text().strip()]  # type: ignore[attr-defined]
 
 
-def test_labels_do_not_lie_on_each_other(parts: Taken) -> None:
-    for figure in [*all_figures(samples.run()), lumping_figure(parts)]:
+def test_labels_do_not_lie_on_each_other() -> None:
+    for figure in all_figures(samples.run()):
         figure.draw_without_rendering()
         texts = [t for axes in figure.axes if axes.get_visible() for t in labels(axes)]
         assert len(texts) > 8
@@ -181,9 +165,9 @@ def test_labels_do_not_lie_on_each_other(parts: Taken) -> None:
         assert not [(a, b) for k, (a, p) in enumerate(boxes) for b, q in boxes[:k] if p.overlaps(q)]
 
 
-def test_labels_are_not_cut_off(parts: Taken) -> None:
+def test_labels_are_not_cut_off() -> None:
     long = Run((samples.cell(code="core, velocity transformation", difference=1e-13, target=1e-8),))
-    for figure in [*all_figures(samples.run()), lumping_figure(parts), drawn(differences(long, "beam", RAD_S))]:
+    for figure in [*all_figures(samples.run()), drawn(differences(long, "beam", RAD_S))]:
         figure.draw_without_rendering()
         canvas = figure.bbox.padded(1.0)
         texts = [t for t in [*figure.texts, *(t for axes in figure.axes for t in labels(axes))] if t.get_text().strip()]
@@ -219,23 +203,3 @@ def test_every_code_has_a_look_of_its_own() -> None:
     assert len({(look.colour, look.marker) for look in many.values()}) == 20
     assert len(set(COLOURS)) == len(COLOURS)
     assert len(set(MARKERS)) == len(MARKERS)
-
-
-def test_the_papers_combination_rounds_to_what_the_paper_prints(lumped: Run) -> None:
-    frequencies = [v.frequency for v in lumped.levels if v.code == BOTH and v.elements == 50]
-    assert [f"{f:.4g}" for f in frequencies] == ["11.71", "70.37", "189.7"]
-
-
-def test_the_exact_combination_meets_the_converged_answer_of_another_code(lumped: Run) -> None:
-    """Exudyn's ANCF cable, converged: geometrically nonlinear, without rotary inertia (11.71131, 70.43535, 189.92222)."""
-    finest = [v.frequency for v in lumped.levels if v.code == EXACT and v.elements == 200]
-    np.testing.assert_allclose(finest, [11.71131, 70.43535, 189.92222], rtol=2e-6)
-
-
-def test_the_two_parts_make_up_the_error_and_fall_with_the_square_of_the_elements(parts: Taken) -> None:
-    np.testing.assert_allclose(parts.at(MASS) + parts.at(FRAME), parts.at(BOTH), rtol=0.02)
-    coarse, fine = parts.elements.tolist().index(50), parts.elements.tolist().index(100)
-    for name in (MASS, FRAME, BOTH):
-        ratio = parts.errors[name][coarse] / parts.errors[name][fine]
-        np.testing.assert_allclose(np.log2(ratio), 2.0, atol=0.05)
-    assert (np.abs(parts.at(EXACT)) < 1e-6).all()

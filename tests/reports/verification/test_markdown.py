@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 from markdown_it import MarkdownIt
 
-from southwell.cases.input.library import load
 from southwell.cases.judge.results import Run, Setting, read, write
-from southwell.cases.verify.lumping import lumping
 from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
 from southwell.reports.verification import evidence
@@ -262,10 +260,3 @@ def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> Non
     assert summary.worst_verdict(run.cells) == "fail"
     assert "✘ fail" in matrix_report.heat(run)
     assert "crashed" in matrix_report.write(run, tmp_path).read_text()
-
-
-def test_the_lumped_mass_is_answered_if_the_run_has_it(tmp_path: Path) -> None:
-    levels = lumping(load("park-cantilever").variants[0].blade)
-    text = matrix_report.write(replace(samples.run(), levels=levels), tmp_path).read_text()
-    assert "lumping the mass causes 33 %, 70 %, 80 % of the error" in text
-    assert (tmp_path / "figures" / "lumped-mass.svg").exists()

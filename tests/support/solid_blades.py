@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.condense import condensation, ties
-from ...core.condense.segments import Segment
-from ...core.space import spatial as sp
-from ...references.solid import hexahedra
-from ...references.solid.materials import Material
-from ...references.solid.mesh import Bricks, blade
+from southwell.core.condense import condensation, ties
+from southwell.core.condense.segments import Segment
+from southwell.core.space import spatial as sp
+from southwell.references.solid import hexahedra
+from southwell.references.solid.materials import Material
+from southwell.references.solid.mesh import Bricks, blade
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
