@@ -86,9 +86,9 @@ auto each(Out (*f)(const In&, const In&)) {
     return [f](const Doubles& a, const Doubles& b) {
         Doubles out(shape_of(a, static_cast<int>(dimensions<In>().size()), dimensions<Out>()));
         const py::ssize_t n = out.size() / numbers<Out>;
-        const In *one = items<In>(a, n), *other = items<In>(b, n);
+        const In *first = items<In>(a, n), *second = items<In>(b, n);
         Out* to = fill<Out>(out);
-        for (py::ssize_t k = 0; k < n; ++k) to[k] = f(one[k], other[k]);
+        for (py::ssize_t k = 0; k < n; ++k) to[k] = f(first[k], second[k]);
         return out;
     };
 }

@@ -69,27 +69,28 @@ struct BeamArrays {
     int size() const { return beams.inner ? 18 : 12; }
 };
 
-// Residual (n, d), M, C and remainder (n, d, d), spring (n, 6, 6); see beams.OnStrain.
-struct OnStrain {
+// Residual (n, d), M, C and remainder (n, d, d), spring (n, 6, 6); see beams.RelativePencil.
+struct RelativePencil {
     Doubles residual, M, C, remainder, spring;
 
-    OnStrain(int n, int d) : residual({n, d}), M({n, d, d}), C({n, d, d}), remainder({n, d, d}), spring({n, 6, 6}) {}
+    RelativePencil(int n, int d)
+        : residual({n, d}), M({n, d, d}), C({n, d, d}), remainder({n, d, d}), spring({n, 6, 6}) {}
 
     // Store the pencil of element k, without β unless it has that.
-    void set(int k, const ElementPencil& one) {
+    void set(int k, const ElementPencil& element) {
         if (residual.shape(1) == 18)
-            set_parts<18>(k, one);
+            set_parts<18>(k, element);
         else
-            set_parts<12>(k, one);
-        fill<Matrix6>(spring)[k] = one.spring;
+            set_parts<12>(k, element);
+        fill<Matrix6>(spring)[k] = element.spring;
     }
 
     template <int D>
-    void set_parts(int k, const ElementPencil& one) {
-        for (int i = 0; i < D; ++i) fill<Vector<D>>(residual)[k][i] = one.f[i];
-        fill<Matrix<D, D>>(M)[k] = block<D, D>(one.M, 0, 0);
-        fill<Matrix<D, D>>(C)[k] = block<D, D>(one.C, 0, 0);
-        fill<Matrix<D, D>>(remainder)[k] = block<D, D>(one.K, 0, 0);
+    void set_parts(int k, const ElementPencil& element) {
+        for (int i = 0; i < D; ++i) fill<Vector<D>>(residual)[k][i] = element.f[i];
+        fill<Matrix<D, D>>(M)[k] = block<D, D>(element.M, 0, 0);
+        fill<Matrix<D, D>>(C)[k] = block<D, D>(element.C, 0, 0);
+        fill<Matrix<D, D>>(remainder)[k] = block<D, D>(element.K, 0, 0);
     }
 };
 
@@ -98,15 +99,15 @@ inline Vector6 coordinates(const py::array& beta, int k) {
 }
 
 // The pencils of all elements at poses x (n, 4, 4), β (n, 6 or 0), in frames (n, 6), under gravity (n, 6), with axes (n, 3, 3).
-inline py::tuple on_strain(const BeamArrays& of, const py::array& x, const py::array& beta, const py::array& frame,
-                           const py::array& fall, const py::array& axes, bool geometric) {
+inline py::tuple relative_pencil(const BeamArrays& of, const py::array& x, const py::array& beta,
+                                 const py::array& frame, const py::array& fall, const py::array& axes, bool geometric) {
     const Beams& beams = of.beams;
     const int n = beams.elements;
     const Pose* pose = items<Pose>(x, n);
     const Vector6 *frames = items<Vector6>(frame, n), *falls = items<Vector6>(fall, n);
     const auto* turns = items<Matrix<3, 3>>(axes, n);
     check(beta, beams.inner ? 6 * n : 0);
-    OnStrain out(n, of.size());
+    RelativePencil out(n, of.size());
     for (int k = 0; k < n; ++k)
         out.set(k, element_pencil(beams, k, pose[k], coordinates(beta, k), {frames[k], falls[k], turns[k]}, geometric,
                                   of.loaded));
@@ -119,7 +120,7 @@ inline Doubles relative_strains(const LawArrays& of, const py::array& x, const p
     if (beta.size()) check(beta, 6 * of.n);
     Doubles out(of.n);
     for (int k = 0; k < of.n; ++k) {
-        Vector3 found = linear(strain(of.law, k, Place(pose[k]), coordinates(beta, k)).strain);
+        Vector3 found = linear(strain(of.law, k, RelativePose(pose[k]), coordinates(beta, k)).strain);
         if (of.law.body_fixed) found[1] = found[2] = 0.0;
         const Vector3 along = linear(of.law.eta[k]);
         const double length = std::sqrt(dot(along, along));
@@ -137,7 +138,7 @@ inline py::tuple respond(const LawArrays& of, const py::array& x, const py::arra
     const py::ssize_t n = of.n;
     Doubles found({n, py::ssize_t{6}}), rate(Shape{n, 6, 12}), curvature(Shape{n, 12, 12});
     for (int k = 0; k < n; ++k) {
-        const Place at(pose[k]);
+        const RelativePose at(pose[k]);
         const Strain e = strain(of.law, k, at, coordinates(beta, k));
         auto bent = Matrix<12, 12>::zero();
         add_curvature(of.law, k, at, e, force[k], conjugate[k], bent);

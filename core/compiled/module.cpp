@@ -12,7 +12,7 @@ inline bool processor_has_avx2() { return false; }
 #endif
 
 inline Matrix<3, 3> skew_of(const Vector3& a) { return skew(a); }
-inline Matrix6 cross_of(const Vector6& a) { return cross(a); }
+inline Matrix6 coadjoint_of(const Vector6& a) { return coadjoint(a); }
 
 inline void define(py::module_& m) {
     m.def("sources", [] { return SOURCES; });
@@ -22,7 +22,7 @@ inline void define(py::module_& m) {
     m.def("inverse", each<Pose, Pose>(inverse));
     m.def("adjoint", each<Matrix6, Pose>(adjoint));
     m.def("ad", each<Matrix6, Vector6>(ad));
-    m.def("cross", each<Matrix6, Vector6>(cross_of));
+    m.def("coadjoint", each<Matrix6, Vector6>(coadjoint_of));
     m.def("exp", each<Pose, Vector6>(exp));
     m.def("log", each<Vector6, Pose>(log));
     m.def("tangent", each<Matrix6, Vector6>(tangent));
@@ -35,7 +35,7 @@ inline void define(py::module_& m) {
     py::class_<BeamArrays>(m, "Beams", py::module_local())
         .def(py::init<const LawArrays&, Indices, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles,
                       Doubles>());
-    m.def("on_strain", &on_strain);
+    m.def("relative_pencil", &relative_pencil);
     m.def("relative_strains", &relative_strains);
     m.def("respond", &respond);
 

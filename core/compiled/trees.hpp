@@ -63,7 +63,7 @@ inline Rows writable_rows(py::array& a, py::ssize_t length) {
     return rows_of(a, length);
 }
 
-// Elements and nodes at a shape, before assembly: OnStrain, and g, C, K of the nodes.
+// Elements and nodes at a shape, before assembly: RelativePencil, and g, C, K of the nodes.
 inline py::tuple tree_parts(const BeamArrays& of, const py::array& nodes, const py::array& relative,
                             const py::array& corner, const py::array& beta, const py::array& lumps,
                             const py::array& force, const Indices& parent, double omega, const py::array& gravity,
@@ -75,7 +75,7 @@ inline py::tuple tree_parts(const BeamArrays& of, const py::array& nodes, const 
     const Vector3 *push = items<Vector3>(force, n + 1), *g0 = items<Vector3>(gravity, 1);
     if (parent.size() != n) throw std::invalid_argument("the tree has another number of links than elements");
     check(beta, beams.inner ? 6 * n : 0);
-    OnStrain out(n, of.size());
+    RelativePencil out(n, of.size());
     Doubles g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
     std::vector<Surroundings> around(n + 1);
     for (int k = 0; k <= n; ++k) {

@@ -17,7 +17,7 @@ from .. import solve
 from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
-from ..element.measures import LARGEST_STRAIN, even
+from ..element.measures import LARGEST_STRAIN, constant_strain
 from ..element.mesh import Chain
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
@@ -54,9 +54,11 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
         beams=Beams(
-            law=even("corotational", undeformed),
+            law=constant_strain("corotational", undeformed),
             stiffness=bm.end_stiffness("corotational", undeformed, np.array([s.stiffness for s in segments])),
-            points=bm.riding(undeformed, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies),
+            points=bm.carried_points(
+                undeformed, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies
+            ),
             preload=np.zeros((n, 6)),
             inner_preload=np.zeros((n, 6)),
         ),

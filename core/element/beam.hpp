@@ -39,11 +39,11 @@ struct ElementPencil {
     Matrix6 spring = Matrix6::zero();
 };
 
-inline Strain strain(const StrainLaws& law, int k, const Place& at, const Vector6& beta) {
+inline Strain strain(const StrainLaws& law, int k, const RelativePose& at, const Vector6& beta) {
     return law.body_fixed ? body_fixed::strain(law, k, at) : corotational::strain(law, k, at, beta);
 }
 
-inline void add_curvature(const StrainLaws& law, int k, const Place& at, const Strain& e, const Vector6& s,
+inline void add_curvature(const StrainLaws& law, int k, const RelativePose& at, const Strain& e, const Vector6& s,
                           const Vector6& on_eta, Matrix<12, 12>& out) {
     if (law.body_fixed)
         body_fixed::add_curvature(law, k, at, e, s, on_eta, out);
@@ -64,9 +64,9 @@ struct OnTwists {
     Matrix<6, 12> by_H = Matrix<6, 12>::zero();
     Matrix<12, 12> on_H = Matrix<12, 12>::zero();
 
-    void add_point(const Matrix6& one, const Matrix<6, 12>& H) {
-        const Matrix<6, 12> product = one * H;
-        add(one, 0, 0, m);
+    void add_point(const Matrix6& of_point, const Matrix<6, 12>& H) {
+        const Matrix<6, 12> product = of_point * H;
+        add(of_point, 0, 0, m);
         add(product, 0, 0, by_H);
         add_transposed_times(H, product, on_H);
     }
@@ -91,16 +91,17 @@ inline void hold_components_at(const Pose& x, const Matrix6& to_point, const Vec
 }
 
 // Position ζ of a point in a's frame, its slope ∂ζ/∂(ρ, β), the tangent T(ζ), and H = T ∂ζ/∂(ρ, β).
-struct Riding {
+struct CarriedPoint {
     Vector6 zeta;
     Matrix<6, 12> slope;
     Matrix6 T;
     Matrix<6, 12> H;
 
     // ζ = ζ₀ + L (η − η₀) + bubble β
-    Riding(const Beams& beams, std::int64_t point, const Vector6& change, const Matrix6& back, const Vector6& beta)
+    CarriedPoint(const Beams& beams, std::int64_t point, const Vector6& change, const Matrix6& inv_tangent,
+                 const Vector6& beta)
         : zeta(beams.zeta0[point] + beams.shape[point] * change + beams.bubble[point] * beta) {
-        put(beams.shape[point] * back, 0, 0, slope);
+        put(beams.shape[point] * inv_tangent, 0, 0, slope);
         put(beams.bubble[point], 0, 6, slope);
         T = tangent(zeta);
         H = T * slope;
@@ -111,35 +112,35 @@ struct Riding {
 //
 // A wrench g at a point with twist ξ_a + H (ρ, β) acts as g on ξ_a and as Hᵀ g on (ρ, β). All wrenches are about a's origin in
 // a's axes, where all points of an element are carried at the same twist.
-inline void add_inertia(const Beams& beams, int k, const Place& at, const Vector6& beta, const Surroundings& around,
-                        bool geometric, bool loaded, Vector6& on_eta, ElementPencil& out) {
-    const Matrix6 turn = ad(around.frame);
+inline void add_inertia(const Beams& beams, int k, const RelativePose& at, const Vector6& beta,
+                        const Surroundings& around, bool geometric, bool loaded, Vector6& on_eta, ElementPencil& out) {
+    const Matrix6 ad_frame = ad(around.frame);
     const Vector6 change = at.eta - beams.law.eta[k];
     OnTwists mass, coriolis;
     Matrix<12, 12> on_strain = Matrix<12, 12>::zero();  // stiffness on (ρ, β)
     for (std::int64_t p = beams.first[k]; p < beams.first[k + 1]; ++p) {
-        const Riding point(beams, p, change, at.back, beta);
+        const CarriedPoint point(beams, p, change, at.inv_tangent, beta);
         const Pose x = exp(point.zeta), from_a = inverse(x);
         const Matrix6 to_point = adjoint(from_a), M = congruence(to_point, beams.mass[p]);
-        Inertial one = carried(M, around.frame, turn, around.fall);
+        Inertial inertial = carried(M, around.frame, ad_frame, around.fall);
         if (loaded || !geometric) {
             const Vector3 load = (block<3, 3>(from_a, 0, 0) * around.axes) * beams.force[p];
-            hold_components_at(x, to_point, load, geometric, one);
+            hold_components_at(x, to_point, load, geometric, inertial);
         }
-        const Vector<12> force = transposed_times(point.H, one.g);
-        for (int i = 0; i < 6; ++i) out.f[i] += one.g[i];
+        const Vector<12> force = transposed_times(point.H, inertial.g);
+        for (int i = 0; i < 6; ++i) out.f[i] += inertial.g[i];
         for (int i = 0; i < 12; ++i) out.f[6 + i] += force[i];
         mass.add_point(M, point.H);
-        coriolis.add_point(one.C, point.H);
-        add(one.K, 0, 0, out.K);
-        add(transposed_times(point.H, one.K), 6, 0, out.K);
-        Matrix6 K = one.K;
+        coriolis.add_point(inertial.C, point.H);
+        add(inertial.K, 0, 0, out.K);
+        add(transposed_times(point.H, inertial.K), 6, 0, out.K);
+        Matrix6 K = inertial.K;
         Matrix6 turning = Matrix6::zero();
         if (geometric) {
-            // D_a g = D_point g − cross(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β
-            K = K - cross(one.g);
-            turning = tangent_transpose_derivative(point.zeta, one.g);
-            on_eta = on_eta + transposed_times(beams.shape[p], transposed_times(point.T, one.g));
+            // D_a g = D_point g − coadjoint(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β
+            K = K - coadjoint(inertial.g);
+            turning = tangent_transpose_derivative(point.zeta, inertial.g);
+            on_eta = on_eta + transposed_times(beams.shape[p], transposed_times(point.T, inertial.g));
         }
         add(K * point.H, 0, 6, out.K);
         add(congruence(point.T, K), 0, 0, turning);  // H = T ∂ζ/∂(ρ, β)
@@ -155,7 +156,7 @@ inline void add_inertia(const Beams& beams, int k, const Place& at, const Vector
 }
 
 // Add the elastic force on (ρ, β) and its material and geometric stiffness.
-inline void add_elastic(const Beams& beams, int k, const Place& at, const Vector6& beta, bool geometric,
+inline void add_elastic(const Beams& beams, int k, const RelativePose& at, const Vector6& beta, bool geometric,
                         const Vector6& on_eta, ElementPencil& out) {
     const Strain e = strain(beams.law, k, at, beta);
     const Vector6 s = beams.stiffness[k] * e.strain + beams.preload[k];
@@ -167,7 +168,7 @@ inline void add_elastic(const Beams& beams, int k, const Place& at, const Vector
     if (!geometric) return;
     Vector6 on_b;
     for (int i = 0; i < 6; ++i) on_b[i] = out.f[6 + i];
-    const Matrix6 crossed = cross(on_b);  // −ρ ×* (wrench on b), on b alone
+    const Matrix6 crossed = coadjoint(on_b);  // −ρ ×* (wrench on b), on b alone
     add(crossed, 0, 6, out.K);
     add(crossed, 6, 6, out.K);
 }
@@ -177,7 +178,7 @@ inline ElementPencil element_pencil(const Beams& beams, int k, const Pose& x, co
                                     const Surroundings& around, bool geometric, bool loaded) {
     ElementPencil out;
     Vector6 on_eta{};
-    const Place at(x);
+    const RelativePose at(x);
     if (beams.inner) add_inertia(beams, k, at, beta, around, geometric, loaded, on_eta, out);
     add_elastic(beams, k, at, beta, geometric, on_eta, out);
     return out;

@@ -96,7 +96,7 @@ class Beams:
         return 6 if len(self.points.element) else 0
 
 
-class OnStrain(NamedTuple):
+class RelativePencil(NamedTuple):
     """As ``Pencil``, on (ξ_a, ρ, β) instead of (ξ_a, ξ_b, β)."""
 
     residual: Array
@@ -135,7 +135,7 @@ def end_stiffness(measure: Measure, undeformed: Array, twist_stiffness: Array) -
     return np.swapaxes(a, -1, -2) @ twist_stiffness @ a
 
 
-def riding(undeformed: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
+def carried_points(undeformed: Array, element: Index, pose: Array, shape: Array, bubble: Array, mass: Array) -> Points:
     """Points at undeformed poses ``pose`` (q, 4, 4) whose twists are ``shape`` (q, 6, 6) times that of b plus ``bubble`` β."""
     zeta = sp.log(pose)
     slope = sp.tangent_inverse(zeta)
@@ -155,7 +155,7 @@ def bushing(
     if k.shape != (6, 6) or not _symmetric(k):
         raise ValueError(f"stiffness: shape {k.shape}, or not symmetric: a bushing needs a symmetric 6×6 matrix")
     load = np.zeros(6) if preload is None else np.asarray(preload, float)
-    return Beams(measures.even(measure, undeformed[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
+    return Beams(measures.constant_strain(measure, undeformed[None]), k[None], NO_POINTS, load[None], np.zeros((1, 6)))
 
 
 def _symmetric(k: Array) -> bool:
@@ -175,7 +175,7 @@ def massless(beams: Beams) -> Beams:
     return replace(beams, points=NO_POINTS)
 
 
-def on_strain(
+def relative_pencil(
     beams: Beams,
     x: Array,
     beta: Array,
@@ -183,7 +183,7 @@ def on_strain(
     gravity: Array,
     effects: Effects = ALL_EFFECTS,
     axes: Array | None = None,
-) -> OnStrain:
+) -> RelativePencil:
     """Assemble residual and matrices of all elements, on (ξ_a, ρ, β).
 
     Args:
@@ -202,10 +202,10 @@ def on_strain(
         raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
     turn = np.zeros((len(x), 3, 3)) if axes is None else axes
     x, beta, frame, gravity, turn = (np.ascontiguousarray(a) for a in (x, beta, frame, gravity, turn))
-    return OnStrain(*kernels.on_strain(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
+    return RelativePencil(*kernels.relative_pencil(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
 
 
-def pencil(found: OnStrain) -> Pencil:
+def pencil(found: RelativePencil) -> Pencil:
     """The residual and matrices on (ξ_a, ξ_b, β); the arrays of ``found`` are changed."""
     found.residual[:, :6] -= found.residual[:, 6:12]  # ρ = ξ_b − ξ_a
     for matrix in found[1:4]:

@@ -24,28 +24,28 @@ inline Matrix<3, 3> rate_transpose_derivative(const Vector3& angles, const Vecto
 }
 
 // Strain and E of an element from its undeformed pose; the columns of β are zero.
-inline Strain strain(const StrainLaws& law, int k, const Place& at) {
+inline Strain strain(const StrainLaws& law, int k, const RelativePose& at) {
     Strain out;
-    const Pose back = inverse(law.undeformed[k]), y = back * at.x;
+    const Pose inv_undeformed = inverse(law.undeformed[k]), y = inv_undeformed * at.x;
     const Vector3 angles{std::atan2(-y[1][2], y[2][2]), std::asin(std::clamp(y[0][2], -1.0, 1.0)),
                          std::atan2(-y[0][1], y[0][0])};
     for (int i = 0; i < 3; ++i) out.strain[i] = y[i][3], out.strain[3 + i] = angles[i];
-    Matrix6 turn = Matrix6::unit();
-    put(-1.0 * skew(position(y)), 0, 3, turn);
-    put(rate(angles), 3, 3, turn);
+    Matrix6 by_twist = Matrix6::unit();
+    put(-1.0 * skew(position(y)), 0, 3, by_twist);
+    put(rate(angles), 3, 3, by_twist);
     out.rate = Matrix<6, 12>::zero();
-    put(turn * adjoint(back), 0, 0, out.rate);  // the adjoint brings ρ to the undeformed frame
+    put(by_twist * adjoint(inv_undeformed), 0, 0, out.rate);  // the adjoint brings ρ to the undeformed frame
     return out;
 }
 
 // Add the geometric stiffness of constant forces ``s`` and ``on_eta``, conjugate to ε and η.
-inline void add_curvature(const StrainLaws& law, int k, const Place& at, const Strain& e, const Vector6& s,
+inline void add_curvature(const StrainLaws& law, int k, const RelativePose& at, const Strain& e, const Vector6& s,
                           const Vector6& on_eta, Matrix<12, 12>& out) {
-    Matrix6 turn = Matrix6::zero();
-    put(-1.0 * skew(linear(s)), 3, 0, turn);
-    put(rate_transpose_derivative(angular(e.strain), angular(s)), 3, 3, turn);
+    Matrix6 variation = Matrix6::zero();
+    put(-1.0 * skew(linear(s)), 3, 0, variation);
+    put(rate_transpose_derivative(angular(e.strain), angular(s)), 3, 3, variation);
     const Matrix6 local = adjoint(inverse(law.undeformed[k]));
-    add(transposed_times(local, turn * block<6, 6>(e.rate, 0, 0)), 0, 0, out);
+    add(transposed_times(local, variation * block<6, 6>(e.rate, 0, 0)), 0, 0, out);
     add_tangent_variation(at, on_eta, out);
 }
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..space import spatial as sp
 from .beams import Beams, Points
-from .measures import even, joined, part
+from .measures import constant_strain, joined, part
 from .mesh import Chain, JointLink
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def attached(
     joint = JointLink(links, at_a, end, stiffness)
     none = np.zeros((1, 6))
     beams = Beams(
-        law=joined([a.law, even(b.law.measure, (at_a @ sp.inverse(end))[None]), b.law]),
+        law=joined([a.law, constant_strain(b.law.measure, (at_a @ sp.inverse(end))[None]), b.law]),
         stiffness=np.concatenate([a.stiffness, np.zeros((1, 6, 6)), b.stiffness]),
         points=_together(a.points, b.points, links + 1),
         preload=np.concatenate([a.preload, none, b.preload]),

@@ -66,7 +66,7 @@ def discretize(
     lumps, force = np.zeros((elements + 1, 6, 6)), np.zeros((elements + 1, 3))
     if mass == "consistent":
         mass_inside = seg.weight[:, None, None] * mass_at(blade, seg.s)
-        inside = bm.riding(undeformed, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
+        inside = bm.carried_points(undeformed, seg.element, seg.pose, seg.shape, seg.bubble, mass_inside)
         if load is not None:
             inside = replace(inside, force=seg.weight[:, None] * _at(blade, load, seg.s))
     else:
@@ -158,4 +158,4 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
 
 def _samples(seg: StaticSolution) -> Points:
     none = np.zeros((len(seg.at_element), 6, 6))
-    return bm.riding(seg.undeformed, seg.at_element, seg.at_pose, seg.at_shape, seg.at_bubble, none)
+    return bm.carried_points(seg.undeformed, seg.at_element, seg.at_pose, seg.at_shape, seg.at_bubble, none)

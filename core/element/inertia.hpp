@@ -3,8 +3,8 @@
 // With V the frame's constant twist and M a body's 6×6 inertia, d/dt(MY) = M Ẏ + Y ×* M Y. For a small twist ξ(t) of the body
 // relative to the rotating frame this gives, about the steady motion Y = V,
 //
-//     δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − cross(MV)  (Coriolis, skew),
-//                              K = −V×ᵀ M V× − cross(MV) V×   (centrifugal),
+//     δg = M ξ̈ + C ξ̇ + K ξ,   C = M V× − V×ᵀ M − coadjoint(MV)  (Coriolis, skew),
+//                              K = −V×ᵀ M V× − coadjoint(MV) V×   (centrifugal),
 //
 // in components that follow the body (Featherstone, Rigid Body Dynamics Algorithms, 2008, eq. 2.72, linearised).
 #pragma once
@@ -21,16 +21,16 @@ struct Inertial {
 
 // An inertia carried at the twist ``frame``, components following the body. Axes and origin are arbitrary, but the same for all.
 //
-// ``turn`` is ad(frame), and ``fall`` the acceleration of free fall as a twist (zero angular part), turning with the frame.
-inline Inertial carried(const Matrix6& mass, const Vector6& frame, const Matrix6& turn, const Vector6& fall) {
+// ``ad_frame`` is ad(frame), and ``fall`` the acceleration of free fall as a twist (zero angular part), turning with the frame.
+inline Inertial carried(const Matrix6& mass, const Vector6& frame, const Matrix6& ad_frame, const Vector6& fall) {
     Inertial out;
-    const Vector6 momentum = mass * frame, of_turn = transposed_times(turn, momentum), weight = mass * fall;
-    const Matrix6 by_turn = mass * turn;
-    Matrix6 transport = cross(momentum);
-    add(transposed(by_turn), 0, 0, transport);
-    for (int i = 0; i < 6; ++i) out.g[i] = -of_turn[i] - weight[i];
-    out.C = by_turn - transport;
-    out.K = -1.0 * (transport * turn);
+    const Vector6 momentum = mass * frame, of_frame = transposed_times(ad_frame, momentum), weight = mass * fall;
+    const Matrix6 by_frame = mass * ad_frame;
+    Matrix6 transport = coadjoint(momentum);
+    add(transposed(by_frame), 0, 0, transport);
+    for (int i = 0; i < 6; ++i) out.g[i] = -of_frame[i] - weight[i];
+    out.C = by_frame - transport;
+    out.K = -1.0 * (transport * ad_frame);
     for (int i = 0; i < 6; ++i) {  // M fall×, whose angular part is zero
         out.K[i][3] -= mass[i][1] * fall[2] - mass[i][2] * fall[1];
         out.K[i][4] -= mass[i][2] * fall[0] - mass[i][0] * fall[2];

@@ -68,7 +68,7 @@ class StrainLaw:
         return kernels.StrainLaws(self.measure == "body_fixed", *parts)
 
 
-def even(measure: Measure, undeformed: Array) -> StrainLaw:
+def constant_strain(measure: Measure, undeformed: Array) -> StrainLaw:
     """Law of n elements with constant strain: bushings, and elements of which only the ends are known."""
     n = len(undeformed)
     return StrainLaw(measure, undeformed, np.zeros((n, 6, 6)), np.zeros((n, 6, 6)), np.zeros((n, 6, 12)))

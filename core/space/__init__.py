@@ -5,13 +5,13 @@ formulae for one motion. Nothing here depends on bodies or beams.
 """
 
 from .inertia import about_centre, transformed
-from .spatial import ad, adjoint, cross, exp, inverse, log, pose, rotation, skew, tangent, tangent_inverse
+from .spatial import ad, adjoint, coadjoint, exp, inverse, log, pose, rotation, skew, tangent, tangent_inverse
 
 __all__ = [
     "about_centre",
     "ad",
     "adjoint",
-    "cross",
+    "coadjoint",
     "exp",
     "inverse",
     "log",

@@ -98,7 +98,7 @@ inline Matrix6 ad(const Vector6& twist) {
 }
 
 // ad(a)ᵀ f = cross(f) a
-inline Matrix6 cross(const Vector6& wrench) {
+inline Matrix6 coadjoint(const Vector6& wrench) {
     Matrix6 out = Matrix6::zero();
     put(skew(linear(wrench)), 0, 3, out);
     put(skew(linear(wrench)), 3, 0, out);
@@ -108,10 +108,10 @@ inline Matrix6 cross(const Vector6& wrench) {
 
 inline Matrix6 adjoint(const Pose& x) {
     Matrix6 out = Matrix6::zero();
-    const auto turn = block<3, 3>(x, 0, 0);
-    put(turn, 0, 0, out);
-    put(turn, 3, 3, out);
-    put(skew(position(x)) * turn, 0, 3, out);
+    const auto rotation = block<3, 3>(x, 0, 0);
+    put(rotation, 0, 0, out);
+    put(rotation, 3, 3, out);
+    put(skew(position(x)) * rotation, 0, 3, out);
     return out;
 }
 

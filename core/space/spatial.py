@@ -43,9 +43,9 @@ def ad(twist: Array) -> Array:
     return kernels.ad(twist)
 
 
-def cross(wrench: Array) -> Array:
-    """(..., 6, 6) with ``ad(a)ᵀ f = cross(f) a``."""
-    return kernels.cross(wrench)
+def coadjoint(wrench: Array) -> Array:
+    """(..., 6, 6) with ``ad(a)ᵀ f = coadjoint(f) a``."""
+    return kernels.coadjoint(wrench)
 
 
 def rotation(axis: int, angle: Array) -> Array:

@@ -136,7 +136,7 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     parts += np.abs(np.swapaxes(turn, -1, -2)) @ parts_of_M @ np.abs(k.Y)[..., None]
     out.size[: len(M)] += parts[..., 0]
     mt = M @ turn
-    C = -np.swapaxes(mt, -1, -2) - mt - sp.cross(momentum)
+    C = -np.swapaxes(mt, -1, -2) - mt - sp.coadjoint(momentum)
     each = np.arange(len(M))
     out.blocks.append((each, each, (M, C, -M @ sp.ad(fall))))
 
@@ -150,7 +150,7 @@ def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Arr
 
 def _between(w: Array, k: Array, c: Array) -> bm.Pencil:
     """w on b and −w on a, both at one point in one set of axes: with ρ = ξ_b − ξ_a, δw = k ρ + c ρ̇ + ξ_a ×* w."""
-    drag = bm.on_ends(np.zeros((1, 6, 6)), sp.cross(w)[None])  # follows b: −ρ ×* w
+    drag = bm.on_ends(np.zeros((1, 6, 6)), sp.coadjoint(w)[None])  # follows b: −ρ ×* w
     damping = bm.on_ends(c[None], c[None])
     return bm.Pencil(np.concatenate([-w, w])[None], np.zeros((1, 12, 12)), damping, drag, k[None])
 
@@ -213,7 +213,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
     load_axes = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
     axes = np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes
-    p = bm.pencil(bm.on_strain(batch.beams, x, beta, frame, fall, axes=axes))
+    p = bm.pencil(bm.relative_pencil(batch.beams, x, beta, frame, fall, axes=axes))
     M, C, K = p.M, p.C, p.remainder
     if batch.damping.any():
         E = response(batch.beams.law, x, beta).rate[..., :6]

@@ -109,8 +109,8 @@ void solve(const Factors<D>& f, const Links& links, Rows x) {
         solve<D, 2>(f, links, two);
     }
     if (v < x.count) {
-        double* const one[1] = {x[v]};
-        solve<D, 1>(f, links, one);
+        double* const last[1] = {x[v]};
+        solve<D, 1>(f, links, last);
     }
 }
 

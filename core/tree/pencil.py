@@ -115,7 +115,9 @@ def _with_joints(
         its = joint_links.response(joint, q, carried, chain.beams.preload[k])
         clamped[k], spring[k] = its.clamped, its.stiffness
         residual[k, :6] += its.force
-        turning = sp.cross(-carried)  # of the joint's wrench on end b, which follows end a: see add_elastic in beam.hpp
+        turning = sp.coadjoint(
+            -carried
+        )  # of the joint's wrench on end b, which follows end a: see add_elastic in beam.hpp
         K[k, :6, 6:12] += turning
         K[k, 6:12, 6:12] += turning
     return Links(links.parent, links.to_child, clamped)

@@ -8,11 +8,11 @@ namespace southwell {
 
 // The frame's twist, gravity and the hub's axes, in the axes of a node at ``pose`` in the hub's axes.
 inline Surroundings surroundings(const Pose& pose, double omega, const Vector3& gravity) {
-    const Pose back = inverse(pose);
-    const Matrix6 to_node = adjoint(back);
-    Surroundings out{{}, {}, block<3, 3>(back, 0, 0)};
+    const Pose to_node = inverse(pose);
+    const Matrix6 twist_to_node = adjoint(to_node);
+    Surroundings out{{}, {}, block<3, 3>(to_node, 0, 0)};
     const Vector3 fall = out.axes * gravity;
-    for (int i = 0; i < 6; ++i) out.frame[i] = omega * to_node[i][5];
+    for (int i = 0; i < 6; ++i) out.frame[i] = omega * twist_to_node[i][5];
     for (int i = 0; i < 3; ++i) out.fall[i] = fall[i];
     return out;
 }

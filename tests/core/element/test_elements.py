@@ -87,7 +87,7 @@ def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> No
 
     def pencil(a: np.ndarray, b: np.ndarray, inner: np.ndarray) -> bm.Pencil:
         to_a = sp.adjoint(sp.inverse(a))
-        return bm.pencil(bm.on_strain(beams, sp.inverse(a) @ b, inner, to_a @ frame, to_a @ fall))
+        return bm.pencil(bm.relative_pencil(beams, sp.inverse(a) @ b, inner, to_a @ frame, to_a @ fall))
 
     def residual(step: np.ndarray) -> np.ndarray:
         """Components in each end's axes, so that the difference is the variation that follows the body."""
@@ -113,7 +113,7 @@ def test_the_points_have_the_mass_of_the_blade() -> None:
     beams = discretize(blade, 3).beams
     n = len(beams.undeformed)
     zero = np.zeros((n, 6))
-    M = bm.pencil(bm.on_strain(beams, beams.undeformed, zero, zero, zero)).M[:, :12, :12]
+    M = bm.pencil(bm.relative_pencil(beams, beams.undeformed, zero, zero, zero)).M[:, :12, :12]
     along = np.tile(np.eye(6)[:, 2:3], (2, 1))
     total = sum(float((along.T @ m @ along)[0, 0]) for m in M)
     s = blade.stations

@@ -68,4 +68,4 @@ def test_adjoint_transforms_twists_and_cross_is_dual_to_ad() -> None:
     rng = np.random.default_rng(2)
     x, a, f = sp.exp(rng.normal(size=6)), rng.normal(size=6), rng.normal(size=6)
     np.testing.assert_allclose(x @ hat(a) @ sp.inverse(x), hat(sp.adjoint(x) @ a), atol=1e-13)
-    np.testing.assert_allclose(sp.ad(a).T @ f, sp.cross(f) @ a, atol=1e-14)
+    np.testing.assert_allclose(sp.ad(a).T @ f, sp.coadjoint(f) @ a, atol=1e-14)
