@@ -5,8 +5,9 @@ The text is taken from case files, adapters, docstrings and options.
 
 import re
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 
 from ...cases.input import library
 from ...cases.input.schema import Case
@@ -119,7 +120,14 @@ def api() -> Pages:
     out: Pages = {"api/index.md": f"{public}\n::: {root}\n    options:\n      heading_level: 2\n"}
     for floor, what in FLOORS.items():
         package = import_module(f"{root}.{floor}")
-        names = [m.name for m in iter_modules(package.__path__) if not m.ispkg]
-        text = "".join(f"\n::: {root}.{floor}.{name}\n    options:\n      heading_level: 2\n" for name in names)
+        walked = (m.name for m in walk_packages(package.__path__, f"{root}.{floor}.") if not m.ispkg)
+        names = [name for name in walked if _has_source(name)]
+        text = "".join(f"\n::: {name}\n    options:\n      heading_level: 2\n" for name in names)
         out[f"api/{floor}.md"] = f"# {root}.{floor}\n\n{what}\n{text}"
     return out
+
+
+def _has_source(module: str) -> bool:
+    """Whether a module is written in Python, not compiled."""
+    spec = find_spec(module)
+    return spec is not None and str(spec.origin).endswith(".py")

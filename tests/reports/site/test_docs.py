@@ -93,10 +93,10 @@ def test_the_command_line_has_every_command_and_option() -> None:
 def test_the_api_has_every_module() -> None:
     made = site.api()
     for floor in site.FLOORS:
-        modules = {path.stem for path in (ROOT / floor).glob("*.py")} - {"__init__"}
-        assert {f"southwell.{floor}.{m}" for m in modules} == set(
-            re.findall(r"^::: (\S+)", str(made[f"api/{floor}.md"]), re.M)
-        )
+        files = [path.relative_to(ROOT).with_suffix("") for path in (ROOT / floor).rglob("*.py")]
+        modules = {".".join(("southwell", *path.parts)) for path in files if path.name != "__init__"}
+        assert modules
+        assert modules == set(re.findall(r"^::: (\S+)", str(made[f"api/{floor}.md"]), re.M))
 
 
 # ------------------------------------------------------------------------------------------------------- what is typed
