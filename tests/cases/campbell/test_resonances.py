@@ -1,6 +1,7 @@
 """Crossings of n per revolution: against dense sweeps, an eigenproblem for the speed, and modes with known crossings."""
 
 from collections.abc import Callable
+from functools import cache
 from typing import cast
 
 import numpy as np
@@ -16,13 +17,13 @@ from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import mesh_modes
 from southwell.core.spectrum.modal import linearize
 from southwell.core.tree import as_mechanism
+from southwell.core.tree.linearization import Linearization
 from southwell.reports.campbell.tables import notes, sheets
 from southwell.reports.shared.units import RAD_S
 
 from ...support.veering import BLADE
 
 ELEMENTS, MODES, PER_REV = 10, 6, (1, 2, 3, 4, 5, 6)
-BLADES = ("park-cantilever", "pretwisted-beam", "nrel-5mw", "curved-solid")
 
 
 def subject(name: str) -> tuple[Blade, float]:
@@ -44,10 +45,9 @@ def coarse(blade: Blade, top: float) -> Campbell:
     return campbell(blade, request, lambda omega: mesh_modes(blade, omega, ELEMENTS, MODES + 4))
 
 
-@pytest.mark.parametrize("name", BLADES)
-def test_three_speeds_give_the_crossings_of_a_dense_sweep(name: str) -> None:
+def test_three_speeds_give_the_crossings_of_a_dense_sweep() -> None:
     """The n-th lowest mode is a continuous function of speed: its changes of sign need no tracking."""
-    blade, top = subject(name)
+    blade, top = subject("nrel-5mw")
     dense = np.linspace(0.0, top, 61)
     swept = np.array([mesh_modes(blade, omega, ELEMENTS, MODES).frequencies for omega in dense])
     found = coarse(blade, top)
@@ -71,8 +71,12 @@ def test_the_crossings_of_a_straight_blade_are_the_eigenvalues_of_one_problem() 
     blade, top = subject("park-cantilever")
     found = coarse(blade, top)
 
+    @cache
+    def matrices(at: float) -> Linearization:
+        return linearize(as_mechanism.mechanism(discretize(blade, ELEMENTS), at))
+
     def speeds(n: int, at: float) -> np.ndarray:
-        rest, turning = (linearize(as_mechanism.mechanism(discretize(blade, ELEMENTS), o)) for o in (0.0, at))
+        rest, turning = matrices(0.0), matrices(at)
         K0, K = (0.5 * (a.K + a.K.T) for a in (rest, turning))
         C, M = 0.5 * (turning.C - turning.C.T), 0.5 * (turning.M + turning.M.T)
         inverse = eigh(n**2 * M - (K - K0) / at**2 - 1j * n * C / at, K0, eigvals_only=True)
