@@ -2,25 +2,14 @@
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass
 
-import numpy as np
-
-from ...core import solve, velocity_transformation
+from ...core import solve
 from ...core.blade import Blade
-from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
 from ...core.spectrum.refinement import AccuracyWarning
 from ..input.errors import NO_STATE, rad_s, unsteady
 from ..judge.pairing import aligned, weights
-from .tracking import Solver
-
-Method = Literal["chain", "velocity-transformation"]
-"""Core's two ways to a blade's modes: block-tridiagonal in the bodies' own twists, or Park et al. (2010) with B."""
-
-ELEMENTS = 50
-"""Default number of elements of the velocity transformation, whose matrices are dense."""
 
 
 @dataclass(frozen=True)
@@ -74,18 +63,3 @@ def sweep(
             Named(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)
             for mode, (name, frequency, uncertainty) in enumerate(rows, 1)
         ]
-
-
-def by_velocity_transformation(blade: Blade, elements: int, count: int, allow_large_strain: bool) -> Solver:
-    """Core's other method as a function of speed.
-
-    The uncertainty is that of the chain solver on the same mesh, and the difference between both methods.
-    """
-
-    def modes(omega: float) -> Modes:
-        (same,) = solve.sweep(blade, [omega], elements, count, allow_large_strain=allow_large_strain)
-        (other,) = velocity_transformation.sweep(blade, [omega], elements, count)
-        apart = np.abs(other.frequencies / same.frequencies - 1.0)
-        return replace(other, uncertainty=same.uncertainty + apart, strain=same.strain)
-
-    return modes

@@ -9,9 +9,9 @@ from functools import partial
 from importlib.metadata import version
 from typing import Any, Literal
 
-from ...core import velocity_transformation
 from ...core.blade import Blade, straight
 from ...core.effects import ALL_EFFECTS, Effects
+from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...references.protocol.description import Description
 from ...references.protocol.interface import CORE, Independence
@@ -20,7 +20,7 @@ from ...references.protocol.worker import Answer, answers
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Case, Discretisation, Variant
 from ..judge.results import Cell, Level, Verdict
-from . import core_solver
+from . import core_solver, paper
 from .cells import Head, empty, failed, given, refined, rounding, same
 from .published_tables import about, rows
 from .reference import Reference, felt
@@ -29,12 +29,12 @@ from .refinement import Refining, Wanted, solve
 SAME = 1e-8
 """Target for two codes with the same discretisation."""
 
-OTHER_METHOD = "core, velocity transformation"
-"""The column of core's other method, which checks the chain solver."""
+PAPER = "paper's equations, literally"
+"""The column of ``core.park2010``, which checks the solver's algebra."""
 
-ELEMENTS = (20, 50)
-"""Numbers of elements of that column, whose cost is cubic; the second if neither method is stable with the first. Codes with
-core's discretisation also have the first if core is stable with it: refinement does not reduce rounding, which is compared."""
+ELEMENTS = 20
+"""Number of elements of that column, as of the paper's blade, unless a case gives the number of its source. Codes with core's
+discretisation also have it if core is stable with it: refinement does not reduce rounding, which is compared."""
 
 References = Sequence[tuple[float, Reference]]
 """Rotor speeds, rad/s, and core's references at these speeds."""
@@ -93,8 +93,9 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
         out.append(
             Column("core, as in the source", felt(source.effects, blade), head, partial(_source, head, blade, source))
         )
-    head = Head(variant.name, OTHER_METHOD, version("southwell"), "same discretisation", SAME, "everything")
-    out.append(Column(OTHER_METHOD, ALL_EFFECTS, head, partial(_other_method, head, blade), due="highest speed"))
+    head = Head(variant.name, PAPER, version("southwell"), "same discretisation", SAME, "everything")
+    work = partial(_paper, head, blade, source.elements if source else ELEMENTS)
+    out.append(Column(PAPER, ALL_EFFECTS, head, work, due="highest speed"))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
@@ -200,7 +201,7 @@ def _same(head: Head, name: str, blade: Blade, finest: int, effects: Effects, li
     def runs(elements: int) -> list[Asked]:
         return [(omega, elements, r.core.count) for omega, r in core]
 
-    elements = min(ELEMENTS[0], finest)
+    elements = min(ELEMENTS, finest)
     mine = ask(elements)
     if any(isinstance(answer, Failure) for answer in mine):
         elements = finest
@@ -212,18 +213,26 @@ def _same(head: Head, name: str, blade: Blade, finest: int, effects: Effects, li
     return _join(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
 
 
-def _other_method(head: Head, blade: Blade, core: References) -> Rows:
-    """Rows of core's other method, at the highest speed only: a difference at lower speeds also appears there."""
+def _paper(head: Head, blade: Blade, elements: int, core: References) -> Rows:
+    """Rows of the paper's equations, at the highest speed only: a difference at lower speeds also appears there.
+
+    Where core is not stable with the paper's elements, which have no geometric stiffness, there are half as many again;
+    where it is not stable with these either, elements are corotational.
+    """
     if not core:
         return [], []
     omega, reference = max(core, key=lambda pair: pair[0])
-    for elements in ELEMENTS:
-        run = (omega, elements, reference.core.count)
-        (mine,) = core_solver.answers(blade, [run])
-        (theirs,) = core_solver.answers(blade, [run], by=velocity_transformation.sweep)
-        if not (isinstance(mine, Failure) and isinstance(theirs, Failure)):
+    meshes: list[tuple[int, Measure]] = [
+        (elements, "body_fixed"),
+        (3 * elements // 2, "body_fixed"),
+        (elements, "corotational"),
+    ]
+    for number, stiffness in meshes:
+        run = (omega, number, reference.core.count)
+        (mine,) = core_solver.answers(blade, [run], "half_end", stiffness)
+        if not isinstance(mine, Failure):
             break
-    return same(head, omega, reference, theirs, mine)
+    return same(head, omega, reference, paper.answer(blade, run, stiffness), mine)
 
 
 def _wanted(core: References) -> Callable[[float, Sequence[Modes]], Wanted]:

@@ -1,7 +1,7 @@
 """Core as a solver: answers in the same form as a foreign code's, refined until they can serve as reference."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
@@ -38,10 +38,6 @@ DEEPER = 3
 """Factor on the number of modes for the one retry when too few modes qualify."""
 
 
-Sweep = Callable[..., Iterator[Modes]]
-"""A method of core: ``solve.mesh_sweep`` or ``velocity_transformation.sweep``."""
-
-
 @dataclass(frozen=True)
 class Converged:
     """Core's modes at one speed, with the compared modes, their estimates and dominant motions in the same order.
@@ -71,17 +67,14 @@ def answers(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     effects: Effects = ALL_EFFECTS,
-    by: Sweep | None = None,
 ) -> list[Answer]:
-    """Core's answers to ``runs`` by one of its methods; a speed without a stable steady state gives a failure."""
+    """Core's answers to ``runs``; a speed without a stable steady state gives a failure."""
     out: list[Answer] = []
     for (elements, count), group in groupby(runs, key=lambda run: run[1:]):
         speeds = [omega for omega, _, _ in group]
         first = 0
         while first < len(speeds):
-            swept = (by or mesh_sweep)(
-                blade, speeds[first:], elements, count, mass=mass, stiffness=stiffness, effects=effects
-            )
+            swept = mesh_sweep(blade, speeds[first:], elements, count, mass=mass, stiffness=stiffness, effects=effects)
             try:
                 for modes in swept:
                     out.append(modes)

@@ -6,11 +6,11 @@ from ...references.protocol.description import Description
 from ...references.published import load
 from ..input.errors import CaseError
 from ..input.schema import Case
-from .columns import OTHER_METHOD
+from .columns import PAPER
 from .mechanism_case import MechanismCase
 from .user_results import UserResults
 
-OURS = ("core", "core as in source", OTHER_METHOD, "closed form", "printed tables")
+OURS = ("core", "core as in source", PAPER, "closed form", "printed tables")
 """Columns of this package that are not codes, as named in results and in tables."""
 
 

@@ -89,14 +89,6 @@ def places(tree: Tree, at: Index, row: Index, column: Index) -> Places:
     return Places(of, rows, columns, by_row, by_column, rows[:, g] * columns[:, h], members[g], members[h])
 
 
-def over_joints(p: Places, J: Array, blocks: NDArray[Any]) -> NDArray[Any]:
-    """Bᵀ X B (c, c) over coordinates of joints with screws J (c, 6), from blocks (p, 6, 6) of X on bodies.
-
-    Only the upper half is complete: ``by_row`` is true only below the diagonal, since joints come after those that carry them.
-    """
-    return _upper(p, J, J[None], blocks[:, None])[0]
-
-
 def _projected(p: Places, J: Array, right: Array, blocks: NDArray[Any]) -> NDArray[Any]:
     """Bᵀ Σ X_k B_k (w, c, c); arguments as for ``_upper``."""
     whole = _upper(p, J, right, blocks)

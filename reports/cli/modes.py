@@ -8,12 +8,11 @@ from rich.console import Console
 
 from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import CampbellRequest
-from ...cases.campbell.sweep import ELEMENTS, Method, Named, by_velocity_transformation
+from ...cases.campbell.sweep import Named
 from ...cases.campbell.tracked import TrackedMode, tracked
 from ...cases.input import library
 from ...cases.input.changes import parse
 from ...cases.input.schema import speed_range
-from ...core.velocity_transformation import MAX_ELEMENTS
 from ..campbell import changes as changes_table
 from ..campbell import tables
 from ..shared import not_used
@@ -38,7 +37,6 @@ def modes(
     elements: Elements | None = None,
     accuracy: Accuracy = 1e-6,
     modes: NumberOfModes = 10,
-    method: Method = "chain",
     allow_large_strain: bool = False,
     json: bool = False,
     changes: Changes = (),
@@ -64,9 +62,6 @@ def modes(
         Largest relative uncertainty of a frequency, without --elements.
     modes
         Number of modes, from the lowest.
-    method
-        `chain`: block-tridiagonal matrices. `velocity-transformation`: the method of Park et al. (2010) with dense matrices;
-        50 elements by default, at most 200.
     allow_large_strain
         Accept steady strains above 20 %.
     json
@@ -78,10 +73,6 @@ def modes(
     against
         Another blade; prints the change of every frequency.
     """
-    if method != "chain" and (elements or 0) > MAX_ELEMENTS:
-        raise UsageError(
-            f"--elements {elements}: --method {method} uses dense matrices: give at most {MAX_ELEMENTS}, or use --method chain"
-        )
     speeds, units = _speeds(omega, rpm)
     rows: list[dict[str, object]] = []
     mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]
@@ -99,10 +90,7 @@ def modes(
         request = CampbellRequest(
             tuple(at), modes, elements=elements, accuracy=accuracy, allow_large_strain=allow_large_strain
         )
-        solver = None
-        if method != "chain":
-            solver = by_velocity_transformation(blade, elements or ELEMENTS, modes, allow_large_strain)
-        computed = tracked(blade, request, shown.at, solver)
+        computed = tracked(blade, request, shown.at)
         by_speed = sorted((row for mode in computed for row in mode.at), key=lambda row: (row.omega, row.mode))
         labels = {(row.omega, row.mode): mode.label for mode in computed for row in mode.at}
         rows += [_tidy(blade.name, row, labels[row.omega, row.mode]) for row in by_speed]
@@ -111,10 +99,8 @@ def modes(
             console.print(note, style="dim", markup=False, soft_wrap=True)
         not_used.show(subject.unused, console)
         if not json:
-            if elements is None and method != "chain":
-                elements = ELEMENTS
             mesh = f"accuracy {accuracy:g}" if elements is None else f"{elements} elements"
-            title = f"{blade.name}: {len(blade.stations)} stations, {mesh}, method: {method}"
+            title = f"{blade.name}: {len(blade.stations)} stations, {mesh}"
             for table in terminal.frequencies(computed, title, shown, console.width):
                 console.print(table)
             if subject.files:
@@ -122,7 +108,7 @@ def modes(
             for line in (*remarks(by_speed, accuracy if elements is None else None, shown), *_doubts(computed, shown)):
                 console.print(line, markup=False, soft_wrap=True)
             if other:
-                compared = blade_changes(blade, other.blade, at, modes, elements or ELEMENTS)
+                compared = blade_changes(blade, other.blade, at, modes, elements)
                 console.print(tables.terminal(changes_table.sheet(compared, other.blade.name, shown)))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())

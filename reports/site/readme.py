@@ -130,8 +130,8 @@ def results_page() -> str:
     return f"""# Results
 
 Results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
-verdict](reading-a-verdict.md) explains the signs. The column *core, velocity transformation* checks core's fast solver against
-the method of Park et al. (2010).
+verdict](reading-a-verdict.md) explains the signs. The column *paper's equations, literally* checks core's fast solver against
+the equations of Park et al. (2010), written out with dense matrices.
 
 {block(results.read(ROWS))}"""
 

@@ -124,9 +124,9 @@ def test_an_error_of_ours_in_a_column_costs_that_column(case: Case, monkeypatch:
     def wrong(*_: object) -> None:
         raise IndexError("list index out of range")
 
-    monkeypatch.setattr(columns, "_other_method", wrong)
+    monkeypatch.setattr(columns, "_paper", wrong)
     found = run(case, "yoo-shin")
-    lost = of(found, columns.OTHER_METHOD)
+    lost = of(found, columns.PAPER)
     assert [c.verdict for c in lost] == ["fail", "fail"]
     assert lost[0].reason == "internal error of southwell, not of the code: IndexError: list index out of range"
     assert {c.verdict for c in of(found, "yoo-shin")} <= {"pass", "known difference"}

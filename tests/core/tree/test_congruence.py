@@ -69,18 +69,6 @@ def test_sums_over_the_tree_are_products_with_b(name: str) -> None:
     assert np.abs(projected(k, c.g) - forces).max() <= 1e-14 * np.abs(k.B).max() * np.abs(c.g).sum()
 
 
-@pytest.mark.parametrize("name", [*CASES, "consistent", "half_end", "branches"])
-def test_over_joints_the_upper_half_is_complete(name: str) -> None:
-    k, c = moving(name)
-    b, at = len(k.poses), np.arange(k.tree.joints)
-    on = (c.row < b) & (c.column < b)
-    row, column, blocks = c.row[on], c.column[on], c.blocks[on, 2]
-    B = k.B[:, :, at]
-    expected = np.einsum("pai,pab,pbj->ij", B[row], blocks, B[column])
-    ours = congruence.over_joints(congruence.places(k.tree, at, row, column), k.J.T[at], blocks)
-    assert np.abs(np.triu(ours - expected)).max(initial=0.0) <= 1e-14 * np.abs(expected).max(initial=1e-300)
-
-
 @pytest.mark.parametrize(("least", "regular"), [(1.0, True), (1e-4, True), (1e-8, False), (1e-10, False), (0.0, False)])
 def test_lu_only_if_full_rank_is_certain(least: float, regular: bool) -> None:
     rng = np.random.default_rng(3)

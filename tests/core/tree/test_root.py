@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from southwell.core import velocity_transformation
 from southwell.core.blade import Blade, BladeError, uniform_blade, without_rotary_inertia
 from southwell.core.element.discretize import discretize
 from southwell.core.solve import modes
@@ -135,6 +134,3 @@ def test_springs_act_on_the_coordinates_of_a_joint_that_slides_and_turns() -> No
     blade = replace(on(soft, [80.0, 60.0, 40.0, 2.0, 5.0, 7.0]), pitch=0.3)
     coarse, fine = (code.solve(blade, 2.0, n, 5).frequencies for n in (24, 48))
     np.testing.assert_allclose(modes(blade, 2.0, 40, 5).frequencies, fine + (fine - coarse) / 3, rtol=2e-6)
-    np.testing.assert_allclose(
-        modes(blade, 2.0, 40, 5).frequencies, velocity_transformation.modes(blade, 2.0, 40, 5).frequencies, rtol=1e-10
-    )

@@ -166,7 +166,7 @@ def test_labels_do_not_lie_on_each_other() -> None:
 
 
 def test_labels_are_not_cut_off() -> None:
-    long = Run((samples.cell(code="core, velocity transformation", difference=1e-13, target=1e-8),))
+    long = Run((samples.cell(code="paper's equations, literally", difference=1e-13, target=1e-8),))
     for figure in [*all_figures(samples.run()), drawn(differences(long, "beam", RAD_S))]:
         figure.draw_without_rendering()
         canvas = figure.bbox.padded(1.0)
