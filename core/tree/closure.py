@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..mechanism.description import MechanismError
 from ..rank import ranked
 from . import partition
-from .kinematics import poses
+from .kinematics import poses, transformation
 from .scales import coordinate_units, length_at, weld_units
 from .topology import Tree
 
@@ -68,7 +68,7 @@ def close_loops(tree: Tree, q: Array, free: Index) -> tuple[Array, Array]:
         if size < 1e-15 or (size < CLOSED and size > 0.5 * last):
             break
         last = size
-        rows = partition.jacobian(tree, tree.carries[:, None, :] * J)[:, free]
+        rows = partition.jacobian(tree, transformation(tree, J))[:, free]
         step = -ranked(rows, equations, units).solve(gap * equations, float(gap @ gap))
         q[free] += step * min(1.0, MAX_STEP / max(float(np.abs(step / units).max(initial=0.0)), MAX_STEP))
     return q, gap

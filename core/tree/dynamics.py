@@ -15,8 +15,7 @@ from ..element.measures import response
 from ..mechanism.description import Load, MechanismError, Spring
 from ..space import spatial as sp
 from ..space.inertia import transformed
-from .congruence import add_springs, congruent
-from .kinematics import Kinematics, projected
+from .kinematics import Kinematics, carried, projected
 from .topology import Batch, Tree
 
 Array = NDArray[np.float64]
@@ -45,6 +44,11 @@ class Cartesian:
     def M(self) -> csr_array:
         """(6 (b + m), 6 (b + m)), sparse."""
         return self._sparse(0)
+
+    @property
+    def C(self) -> csr_array:
+        """(6 (b + m), 6 (b + m)), sparse."""
+        return self._sparse(1)
 
     @property
     def K(self) -> csr_array:
@@ -270,7 +274,11 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
 
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``of_joints``.
     """
-    M, C, K = congruent(k, c.row, c.column, c.blocks)
+    B, B1, B2 = (rows.reshape(-1, rows.shape[-1]) for rows in (k.B, k.B1, k.B2))
+    on_M, on_C = c.M, c.C
+    M = B.T @ (on_M @ B)  # (eq. 10)
+    C = B.T @ (2.0 * (on_M @ B1) + on_C @ B)
+    K = B.T @ (on_M @ B2 + on_C @ B1 + c.K @ B)
     j = tree.joints
     K[:j, :j] += of_joints(tree, k, c)
     for s in tree.mechanism.coordinate_springs:
@@ -286,10 +294,13 @@ def of_joints(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
     screws relative to the forces they transmit.
     """
     j = tree.joints
-    carried = tree.carries[:, :j].T.astype(float) @ c.g[: len(tree.bodies)]  # f_i
-    force = -(np.swapaxes(sp.ad(k.J.T[:j]), -1, -2) @ carried[..., None])[..., 0]  # J_i ×* f_i
-    K = tree.beyond[:j, :j].T * (k.J.T[:j] @ force.T)
-    add_springs(k, c.ends, c.stiffness, K)
+    transmitted = carried(tree, c.g[: len(tree.bodies)])[:j]  # f_i
+    force = -(np.swapaxes(sp.ad(k.J.T[:j]), -1, -2) @ transmitted[..., None])[..., 0]  # J_i ×* f_i
+    beyond = tree.moves_link[:j, :j] & ~np.eye(j, dtype=bool)
+    K = beyond.T * (k.J.T[:j] @ force.T)
+    rows = np.append(k.B[: len(tree.bodies), :, :j], np.zeros((1, 6, j)), axis=0)
+    strain = (rows[c.ends[:, 1]] - rows[c.ends[:, 0]]).reshape(-1, j)  # exact: columns of both ends cancel
+    K += strain.T @ (c.stiffness @ strain.reshape(-1, 6, j)).reshape(-1, j)
     for s in tree.mechanism.coordinate_springs:
         i = tree.coordinate(s.coordinate)
         K[i, i] += s.stiffness

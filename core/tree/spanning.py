@@ -11,7 +11,7 @@ from ..element.measures import joined
 from ..mechanism.description import GROUND, Mechanism, MechanismError, check
 from ..mechanism.joints import SCREWS, Joint, coordinate_names
 from ..space import spatial as sp
-from .topology import Batch, Groups, Tree
+from .topology import Batch, Tree
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -37,13 +37,8 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     inner = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
     n = len(added.names)
     before, inside = np.array(added.before, dtype=np.intp), np.array([j for j in inner if j >= 0], dtype=np.intp)
-    above, link = _above(before), np.array([k for k, _ in links], dtype=np.intp)
-    carries = np.vstack([above, np.zeros((1, n), bool)])[link]
-    _check_axes(
-        mechanism,
-        {name: [added.names[j] for j in np.flatnonzero(moved)] for name, moved in zip(bodies, carries, strict=True)},
-    )
-    return Tree(
+    link = np.array([k for k, _ in links], dtype=np.intp)
+    tree = Tree(
         mechanism=mechanism,
         coordinates=tuple(added.names),
         before=before,
@@ -57,11 +52,9 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         weld_names=tuple(j.name for j in cuts),
         inner=inside,
         batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
-        above=above,
-        beyond=above.astype(float) - np.eye(n),
-        carries=carries,
-        groups=_groups(before, np.append(link, inside + 5), inside),
     )
+    _check_axes(tree)
+    return tree
 
 
 @dataclass
@@ -124,45 +117,14 @@ def _inner(added: _Coordinates, beam: int, count: int) -> int:
     return min((added.add(name, -1, np.eye(4), np.zeros(6)) for name in names), default=-1)
 
 
-def _above(before: Index) -> NDArray[np.bool_]:
-    """(n, n): whether the coordinate of the column moves the link of the row."""
-    above = np.eye(len(before), dtype=bool)
-    for j, k in enumerate(before):
-        if k >= 0:
-            above[j] |= above[k]
-    return above
-
-
-def _groups(before: NDArray[np.intp], link: NDArray[np.intp], inner: NDArray[np.intp]) -> Groups:
-    """Groups from each link's parent, the link that carries each row of B, and the first link of each beam's internal six."""
-    n = len(before)
-    on = before.copy()
-    for j in inner:  # the internal coordinates of a beam move its one row together
-        on[j + 1 : j + 6] = np.arange(j, j + 5)
-    alone = np.bincount(on[on >= 0], minlength=n) == 1
-    alone[link[link >= 0]] = False  # links that carry only one other link
-    group, first, members = np.empty(n, np.intp), [], []
-    for j in range(n):
-        if on[j] >= 0 and alone[on[j]]:
-            group[j] = group[on[j]]
-            members[group[j]].append(j)
-        else:
-            group[j] = len(first)
-            first.append(group[on[j]] if on[j] >= 0 else -1)
-            members.append([j])
-    most = max(map(len, members), default=0)
-    padded = np.array([m + [-1] * (most - len(m)) for m in members], np.intp).reshape(len(first), most)
-    place = np.empty(n, np.intp)
-    place[padded[padded >= 0]] = np.flatnonzero(padded >= 0)
-    return Groups(np.array(first, np.intp), padded, np.append(group, -1)[link], place, group)
-
-
-def _check_axes(mechanism: Mechanism, moved_by: dict[str, list[str]]) -> None:
+def _check_axes(tree: Tree) -> None:
     """Check that loads turn with axes of prescribed motion: those of a vibrating body would make them follower forces."""
-    given = {m.coordinate for m in mechanism.motions if m.prescribed}
+    mechanism = tree.mechanism
+    prescribed = {m.coordinate for m in mechanism.motions if m.prescribed}
     axes = {f.axes_of for f in mechanism.loads} | {b.axes_of for b in mechanism.beams if b.beams.points.force.any()}
-    for name in sorted(axes):
-        free = [c for c in moved_by.get(name, []) if c not in given]
+    for name in sorted(axes - {GROUND}):
+        moved_by = [tree.coordinates[j] for j in np.flatnonzero(tree.moves_body[tree.body(name)])]
+        free = [coordinate for coordinate in moved_by if coordinate not in prescribed]
         if free:
             raise MechanismError(
                 f"load in the axes of {name!r}: coordinate {free[0]!r} moves that body freely: prescribe it, or give the "

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..element.beams import Beams
 from ..mechanism.description import GROUND, Mechanism, MechanismError
 from ..mechanism.units import length_of
+from .links import Links, twists
 
 Array = NDArray[np.float64]
 
@@ -40,25 +41,6 @@ class Batch:
 
 
 @dataclass(frozen=True)
-class Groups:
-    """Groups of coordinates that move the same rows of B: several of one joint, or of joints in series without mass between.
-
-    Attributes:
-        before: (g,) parent group of each, −1 for the ground; always a lower index.
-        members: (g, k) coordinates of each group, padded with −1.
-        row: (b + m,) the outermost group that moves each row of B, −1 for none.
-        place: (n,) position of each coordinate in the flattened ``members``.
-        of: (n,) group of each coordinate.
-    """
-
-    before: NDArray[np.intp]
-    members: NDArray[np.intp]
-    row: NDArray[np.intp]
-    place: NDArray[np.intp]
-    of: NDArray[np.intp]
-
-
-@dataclass(frozen=True)
 class Tree:
     """A mechanism's spanning tree as arrays, one link per coordinate.
 
@@ -78,10 +60,6 @@ class Tree:
         weld_names: the cut joints' names.
         inner: (i,) the first of the six internal coordinates of each beam that has them.
         batches: the beams.
-        above: (n, n) above[j, k]: link k is on the path from the ground to link j, or is j.
-        beyond: (n, n) beyond[j, k] = 1: link j is a descendant of link k; else 0.
-        carries: (b, n) carries[i, k]: coordinate k moves body i.
-        groups: the coordinates that move the same rows of B.
     """
 
     mechanism: Mechanism
@@ -97,10 +75,25 @@ class Tree:
     weld_names: tuple[str, ...]
     inner: NDArray[np.intp]
     batches: tuple[Batch, ...]
-    above: NDArray[np.bool_]
-    beyond: Array
-    carries: NDArray[np.bool_]
-    groups: Groups
+
+    @cached_property
+    def links(self) -> Links:
+        """The links for the sweeps of ``links``, with all twists and wrenches at the ground's origin, in its axes: Ad = 1."""
+        n = len(self.coordinates)
+        return Links(self.before.astype(np.int64) + 1, np.tile(np.eye(6), (n, 1, 1)), np.zeros((0, 6, 6)))
+
+    @cached_property
+    def moves_link(self) -> NDArray[np.bool_]:
+        """(n, n) whether the coordinate of the column moves the link of the row."""
+        n = len(self.coordinates)
+        unit = np.zeros((n, n, 6))
+        unit[range(n), range(n), 0] = 1.0
+        return twists(self.links, unit.reshape(n, -1))[..., 0].T > 0.0
+
+    @cached_property
+    def moves_body(self) -> NDArray[np.bool_]:
+        """(b, n) whether the coordinate of the column moves the body of the row."""
+        return np.append(self.moves_link, np.zeros((1, len(self.coordinates)), bool), axis=0)[self.link]
 
     @cached_property
     def _number(self) -> dict[str, int]:

@@ -11,7 +11,7 @@ from southwell import multibody as mb
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree import dynamics, partition
-from southwell.core.tree.kinematics import kinematics, poses
+from southwell.core.tree.kinematics import kinematics, poses, transformation
 from southwell.core.tree.spanning import compile_tree
 from southwell.tests.support.closed_forms.linkages import ring
 from southwell.tests.support.five_bar import GUESS, bar, five_bar, undamped
@@ -28,7 +28,7 @@ def reduced_residual(linear: modal.Linearization, dq: np.ndarray, dv: np.ndarray
     for _ in range(30):
         x, J = poses(tree, q)
         gap = partition.misfit(tree, x)
-        q[others] -= np.linalg.pinv(partition.jacobian(tree, tree.carries[:, None, :] * J)[:, others]) @ gap
+        q[others] -= np.linalg.pinv(partition.jacobian(tree, transformation(tree, J))[:, others]) @ gap
     v[mine] += dv
     a[mine] += da
     v[others] = a[others] = 0.0
