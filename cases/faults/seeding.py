@@ -2,8 +2,7 @@
 
 A fault replaces a named object of a module (a *seam*) while the real matrix runs a small case. It is detected by cells
 that are bad with the fault and not without it. A fault in judging may make cells better instead of worse; it is
-detected if another fault, which must be detected, no longer is. Faults in counting, history and gate are detected by
-their canaries.
+detected if another fault, which must be detected, no longer is.
 
 A fault acts only in the thread that runs its trial, so that trials may share a process with real work. Compiled loops
 cannot be replaced from Python: seams of core are the functions that call them.
@@ -31,7 +30,7 @@ from ..verify import matrix, mechanism_case
 from ..verify.mechanism_case import MechanismCase
 from ..verify.pool import Serial
 
-Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader", "counting", "history", "gate"]
+Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader"]
 
 Seam = tuple[Any, str, Callable[[Any], Any]]
 """A module or class, the name of a function or constant in it, and a function from the right to the faulty object."""
@@ -83,7 +82,7 @@ class Fault:
         what: one sentence on what a program with this fault does.
         size: size of its effect on the compared quantities of the trial.
         seams: the replaced objects.
-        trial: the case to run; None for counting, history and gate, whose canaries are run.
+        trial: the case to run; None if the fault ``blinds`` another, whose trial is run.
         blinds: name of a fault that must be detected and, with this fault, no longer is.
         fast: whether every run includes it.
     """
@@ -170,17 +169,12 @@ def faultless(trial: Trial) -> tuple[Cell, ...]:
     return cells(trial)
 
 
-def execute(fault: Fault, by_name: Callable[[str], Fault], canaries: Callable[[], list[str]]) -> Control:
-    """Run one fault's trial.
-
-    ``by_name`` returns another fault by its name; ``canaries`` runs those of counting, history and gate.
-    """
+def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
+    """Run one fault's trial; ``by_name`` returns another fault by its name."""
     trial = fault.trial
     if fault.blinds:
         return _blinding(fault, by_name(fault.blinds))
-    if trial is None:
-        with seeded(fault.seams):
-            return _control(fault, tuple(canaries()))
+    assert trial
     if absent := [one.asked for one in known(trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(trial)

@@ -5,11 +5,12 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from southwell.cases.faults import mechanisms, seeding, table
-from southwell.cases.faults.table import ALL, BY_NAME, FAST, canaries
+from southwell.cases.faults.table import ALL, BY_NAME, FAST
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import results, verdict
 from southwell.cases.judge.results import Control, Run
@@ -18,7 +19,7 @@ from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
 from southwell.reports.verification import controls as reported
 
-from ...support import samples
+from ...support import counting_canaries, gate_canaries, samples
 
 pytestmark = pytest.mark.usefixtures("keeping")
 
@@ -26,20 +27,10 @@ pytestmark = pytest.mark.usefixtures("keeping")
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40
     areas = Counter(f.area for f in ALL)
-    assert set(areas) == {
-        "core",
-        "adapter",
-        "pairing",
-        "uncertainty",
-        "verdict",
-        "reader",
-        "counting",
-        "history",
-        "gate",
-    }
+    assert set(areas) == {"core", "adapter", "pairing", "uncertainty", "verdict", "reader"}
     assert len(FAST) == 7
     assert all(f.what and f.size and f.seams for f in ALL)
-    assert all(f.trial or f.blinds or f.area in ("counting", "history", "gate") for f in ALL)
+    assert all(f.trial or f.blinds for f in ALL)
     assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
 
 
@@ -55,11 +46,22 @@ def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
     assert all(line.endswith(("fail", "inconclusive")) for line in control.detected_by)
 
 
-@pytest.mark.parametrize("name", [f.name for f in ALL if f.area in ("counting", "history", "gate")])
-def test_a_fault_in_counting_history_or_gate_is_detected(name: str) -> None:
-    assert canaries() == []
-    (control,) = table.run([name])
-    assert control.detected_by
+@pytest.mark.parametrize("canaries", [counting_canaries, gate_canaries])
+def test_the_canaries_of_counting_history_and_gate_report_nothing(canaries: Any) -> None:
+    assert canaries.canaries() == []
+
+
+@pytest.mark.parametrize(
+    ("canaries", "seam"),
+    [
+        pytest.param(canaries, seam, id=name)
+        for canaries in (counting_canaries, gate_canaries)
+        for name, seam in canaries.FAULTS.items()
+    ],
+)
+def test_a_fault_in_counting_history_or_gate_is_detected(canaries: Any, seam: seeding.Seam) -> None:
+    with seeding.seeded([seam]):
+        assert canaries.canaries()
 
 
 @pytest.mark.slow
@@ -93,7 +95,7 @@ def test_a_fault_in_sections_is_detected(name: str) -> None:
 @pytest.mark.slow
 def test_a_fault_that_does_nothing_is_missed() -> None:
     harmless = replace(BY_NAME["no hub radius"], seams=())
-    assert seeding.execute(harmless, BY_NAME.__getitem__, canaries).missed
+    assert seeding.execute(harmless, BY_NAME.__getitem__).missed
 
 
 @pytest.mark.slow

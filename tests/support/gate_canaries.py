@@ -9,11 +9,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..judge.results import Cell, Control, Run
-from ..regression import gate, history
-from ..regression.gate import Comparison
-from ..regression.history import Entry
-from .seeding import Area, Fault, Seam
+from southwell.cases.faults.seeding import Seam
+from southwell.cases.judge.results import Cell, Control, Run
+from southwell.cases.regression import gate, history
+from southwell.cases.regression.gate import Comparison
+from southwell.cases.regression.history import Entry
 
 
 def _cell(mode: int, **changes: Any) -> Cell:
@@ -108,31 +108,14 @@ def _none(right: Any) -> Any:
     return lambda old, now: []
 
 
-def _gate(name: str, area: Area, what: str, size: str, seam: Seam) -> Fault:
-    return Fault(name, area, what, size, (seam,))
-
-
-FAULTS = (
-    _gate(
-        "verdicts forgotten",
-        "history",
-        "every verdict is kept as pass",
-        "one verdict",
-        (history, "entry", _entry(verdict="pass")),
-    ),
-    _gate(
-        "targets forgotten", "history", "no targets are kept", "a factor of 2", (history, "entry", _entry(target=None))
-    ),
-    _gate("frequencies rounded", "history", "frequencies have three decimals", "1e-6", (history, "entry", _rounded)),
-    _gate("cells lost", "history", "only the first cell is kept", "an answer", (history, "entry", _first_only)),
-    _gate(
-        "last run for the one before",
-        "gate",
-        "a run is compared with itself",
-        "everything",
-        (gate, "compare", lambda right: lambda before, after: right(after, after)),
-    ),
-    _gate("worse is better", "gate", "a worse verdict is not listed", "one verdict", (gate, "_worse", _never)),
-    _gate("gone is gone", "gate", "answers that are gone are not listed", "an answer", (gate, "_gone", _none)),
-    _gate("targets at will", "gate", "a loosened target is not listed", "a factor of 2", (gate, "_loosened", _never)),
-)
+FAULTS: dict[str, Seam] = {
+    "every verdict is kept as pass": (history, "entry", _entry(verdict="pass")),
+    "no targets are kept": (history, "entry", _entry(target=None)),
+    "frequencies have three decimals": (history, "entry", _rounded),
+    "only the first cell is kept": (history, "entry", _first_only),
+    "a run is compared with itself": (gate, "compare", lambda right: lambda before, after: right(after, after)),
+    "a worse verdict is not listed": (gate, "_worse", _never),
+    "missing answers are not listed": (gate, "_gone", _none),
+    "a wider target is not listed": (gate, "_loosened", _never),
+}
+"""What a wrong program does, and the seam of the fault."""

@@ -2,13 +2,15 @@
 
 from typing import Any
 
-from ...references.protocol.interface import CORE
-from ..judge import witnesses
-from ..judge.results import Cell, Origin, Run, Setting
-from ..judge.witnesses import groups, short
-from .seeding import Fault, Seam
+from southwell.cases.faults.seeding import Seam
+from southwell.cases.judge import witnesses
+from southwell.cases.judge.results import Cell, Origin, Run, Setting
+from southwell.cases.judge.witnesses import groups, short
+from southwell.references.protocol.interface import CORE
 
 CASE = "canary"
+
+STANDINGS = ("agrees", "known difference", "estimate", "open", "disagrees")
 
 
 def _cell(code: str, **changes: Any) -> Cell:
@@ -66,27 +68,24 @@ def canaries() -> list[str]:
     return wrong
 
 
-def _counting(name: str, what: str, size: str, seam: Seam) -> Fault:
-    return Fault(name, "counting", what, size, (seam,))
-
-
 def _without(field: str) -> Any:
     return lambda right: tuple(name for name in right if name != field)
 
 
-FAULTS = (
-    _counting("every code a group", "codes that share an engine or a theory count twice", "a group",
-              (witnesses, "_linked", lambda right: lambda a, b: False)),
-    _counting("rotation terms ignored", "shared rotation terms are ignored", "a group",
-              (witnesses, "MATTERS", _without("rotation"))),
-    _counting("core confirms core", "codes with core's discretisation or frames count", "a group",
-              (witnesses, "_kind", lambda right: lambda cell, origin: "code")),
-    _counting("known differences count", "every witness agrees", "a group",
-              (witnesses, "_worst", lambda right: lambda standings: "agrees")),
-    _counting("best mode counts", "agreement in one mode is enough", "a group",
-              (witnesses, "_worst", lambda right: lambda standings: next(
-                  (s for s in ("agrees", "known difference", "estimate", "open", "disagrees") if s in set(standings)),
-                  "agrees"))),
-    _counting("too few groups are accepted", "no number of groups is required", "a group",
-              (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9)),
-)  # fmt: skip
+FAULTS: dict[str, Seam] = {
+    "codes that share an engine or a theory count twice": (witnesses, "_linked", lambda right: lambda a, b: False),
+    "shared rotation terms are ignored": (witnesses, "MATTERS", _without("rotation")),
+    "codes with core's discretisation or frames count": (
+        witnesses,
+        "_kind",
+        lambda right: lambda cell, origin: "code",
+    ),
+    "every witness agrees": (witnesses, "_worst", lambda right: lambda standings: "agrees"),
+    "agreement in one mode is enough": (
+        witnesses,
+        "_worst",
+        lambda right: lambda standings: min(standings, key=STANDINGS.index, default="agrees"),
+    ),
+    "no number of groups is required": (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9),
+}
+"""What a wrong program does, and the seam of the fault."""
