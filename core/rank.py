@@ -21,6 +21,10 @@ _TIE = (
 )
 
 
+class NotFiniteError(ValueError):
+    """A matrix with an entry that is not finite."""
+
+
 @dataclass(frozen=True)
 class Ranked:
     """A matrix A (m, n) with its numerical rank r, from the singular values of ``U_e⁻¹ A U_x``.
@@ -61,13 +65,14 @@ def ranked(A: Array, equations: Array | float = 1.0, unknowns: Array | float = 1
         unknowns: (n,) units of the unknowns that it multiplies.
 
     Raises:
-        ValueError: an entry is not finite.
+        NotFiniteError: an entry is not finite.
     """
     m, n = A.shape
     row, column = np.broadcast_to(equations, m)[:, None], np.broadcast_to(unknowns, n)[:, None]
     if not A.size:
         return Ranked(np.zeros((m, 0)), np.zeros(0), np.zeros((0, n)), np.eye(n) * column, np.eye(m) / row)
     scaled = A * column.T / row
+    check_finite(scaled)
     try:
         u, s, vt = scipy.linalg.svd(scaled)
     except np.linalg.LinAlgError:  # divide and conquer, six times as fast, may fail to converge
@@ -102,15 +107,22 @@ def factored(A: Array) -> Regular | Ranked:
     Numerical Algorithms*, 2002, sec. 15.3), ``10 n κ₁ < 1/TOLERANCE`` implies full rank by the criterion above.
 
     Raises:
-        ValueError: an entry is not finite.
+        NotFiniteError: an entry is not finite.
     """
-    if not np.isfinite(A).all():
-        raise ValueError("array must not contain infs or NaNs")
+    check_finite(A)
     if len(A):
         lu, pivot, info = _LAPACK.dgetrf(A)
         if info == 0 and _LAPACK.dgecon(lu, float(np.abs(A).sum(0).max()))[0] > 10.0 * len(A) * TOLERANCE:
             return Regular((lu, pivot))
     return ranked(A)
+
+
+def check_finite(A: Array) -> None:
+    """Raise ``NotFiniteError`` if an entry is not finite."""
+    if not np.isfinite(A).all():
+        raise NotFiniteError(
+            "the forces, stiffnesses or constraints are not finite: a value is out of range; check units"
+        )
 
 
 def pivots(A: Array) -> tuple[Index, Index]:

@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
+from ...core.blade_checks import BladeError
 from ...core.mechanism.description import at_time
 from ...core.space import spatial as sp
 from ...core.spectrum.eigen import EigenError
@@ -162,7 +163,11 @@ def _beams(text: MechanismFile, path: str) -> list[mb.Beam]:
         names = ("EA", "GJ", "EI_y", "EI_z", "GA_y", "GA_z", "mass", "I_y", "I_z")
         section = {n: v for n in names if (v := getattr(b, n)) is not None}
         at_a, at_b = _ends(b.at_a, b.at_b, f"{path}: beams[{k}]")
-        out.append(mb.Beam(b.body_a, b.body_b, mb.straight_beam(b.length, **section), at_a=at_a, at_b=at_b))
+        try:
+            beam = mb.straight_beam(b.length, **section)
+        except BladeError as error:
+            raise CaseError(f"{path}: beams[{k}].{error}") from error
+        out.append(mb.Beam(b.body_a, b.body_b, beam, at_a=at_a, at_b=at_b))
     return out
 
 
@@ -189,18 +194,18 @@ def _moments(value: list[float | list[float]], where: str) -> Array:
     least, middle, most = np.linalg.eigvalsh(out).tolist()
     if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
         raise CaseError(
-            f"{where}: {most:g} is more than {least:g} and {middle:g} together: not physically possible; correct it"
+            f"{where}: {most:g} is more than {least:g} and {middle:g} together: not physically possible; check the moments"
         )
     return out
 
 
 def _matrix(value: list[float | list[float]], side: int, where: str) -> Array:
     """A square matrix from its rows, or from its diagonal."""
-    rows = {len(row) if isinstance(row, list) else 0 for row in value}
-    if len(value) != side or rows not in ({0}, {side}):
-        raise CaseError(f"{where}: {value}: neither {side} numbers nor {side} rows of {side}: correct it")
+    rows = {len(row) if isinstance(row, list) else None for row in value}
+    if len(value) != side or rows not in ({None}, {side}):
+        raise CaseError(f"{where}: {value}: give {side} numbers or {side} rows of {side}")
     out = np.array(value, dtype=float)
-    return np.diag(out) if rows == {0} else out
+    return np.diag(out) if rows == {None} else out
 
 
 def _by_coordinate(table: Mapping[str, Mapping[str, Any]], kind: type[T], path: str, field: str) -> list[tuple[str, T]]:

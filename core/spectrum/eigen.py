@@ -144,7 +144,7 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # scales coordinates of different units; time is scaled too
     M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
     d = W.shape[1]
-    w = scipy.linalg.orth(W / unit[:, None]).T
+    w = np.linalg.qr(W / unit[:, None])[0].T
     given = np.arange(n)
     if d:
         given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..mechanism.description import Mechanism, MechanismError, at_time
+from ..rank import NotFiniteError
 from ..steady import periodic
 from ..steady.equilibrium import null_motions, steady
 from ..tree.closure import assemble
@@ -43,11 +44,14 @@ def linearize(
         MechanismError: the mechanism cannot be assembled, balanced or partitioned, or is not steady.
     """
     tree = compile_tree(at_time(mechanism, time))
-    state = steady(tree, guess)
-    _check_regular(tree, state)
-    linear = about(tree, state, independent)
-    if all(m.law is None for m in mechanism.motions):
-        periodic.check(linear)
+    try:
+        state = steady(tree, guess)
+        _check_regular(tree, state)
+        linear = about(tree, state, independent)
+        if all(m.law is None for m in mechanism.motions):
+            periodic.check(linear)
+    except NotFiniteError as error:
+        raise MechanismError(str(error)) from error
     return linear
 
 

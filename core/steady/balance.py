@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rank import TOLERANCE, Ranked, Regular, factored, ranked
+from ..rank import TOLERANCE, Ranked, Regular, check_finite, factored, ranked
 from ..tree import dynamics, partition
 from ..tree.kinematics import projected
 from ..tree.scales import coordinate_units, length_at, weld_units
@@ -133,6 +133,8 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
     least = (replace(part, R=np.abs(R)).onto(_forces_of_unit_strain(tree, state, units)[part.free]) + rounding) / unit
     reduced = part.onto(by_independent)
     scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
+    check_finite(scale)
+    check_finite(here.reduced)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = reduced / root[:, None] / root
     return Tangent(scaled, factored(scaled), root**2, rounding, units[part.free])

@@ -117,3 +117,24 @@ def test_units_of_a_prismatic_oscillator() -> None:
     assert found.frequencies == pytest.approx([5.0e-3], rel=1e-12)
     assert found.damping == pytest.approx([4.0 / (2 * 2.0 * 5.0)], rel=1e-12)
     assert found.steady["rail.z"] == pytest.approx(1e3 * (0.3 - 2.0 * 9.81 / 50.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("rate", [1e160, 1e200])
+def test_values_that_overflow_are_refused(rate: float) -> None:
+    mechanism, guess = ACCEPTED["pitch-link"]()
+    fast = replace(mechanism, motions=tuple(replace(m, rate=rate) for m in mechanism.motions))
+    with (
+        np.errstate(all="ignore"),
+        pytest.raises(mb.MechanismError, match="not finite: a value is out of range; check units"),
+    ):
+        mb.solve(fast, guess)
+
+
+def test_a_stiffness_that_overflows_is_refused() -> None:
+    swing = mb.Joint("swing", "revolute", "ground", "bob")
+    spring = mb.CoordinateSpring("swing.rz", stiffness=1e300, neutral=1e100)
+    mechanism = mb.Mechanism(
+        (mb.Body("bob", mb.inertia(1.0, 1.0, (1.0, 0.0, 0.0))),), (swing,), coordinate_springs=(spring,)
+    )
+    with np.errstate(all="ignore"), pytest.raises(mb.MechanismError, match="not finite"):
+        mb.solve(mechanism)
