@@ -198,6 +198,5 @@ def _failed(error: Exception) -> EigenError:
 def unstable() -> UnstableError:
     """The error to raise if K is not positive definite."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: too few elements for a very soft blade (a cable), "
-        "or the centrifugal force exceeds the stiffness; check units"
+        "the stiffness about the steady state is not positive definite: the state is unstable in this discretisation"
     )

@@ -56,14 +56,14 @@ class MeshSolver:
             if pencil.has_free_motion(
                 pencil.linearize(body, pencil.undeformed(body), omega, self.gravity, self.effects)
             ):
-                raise _free_hinge(omega) from error
+                raise _free_root(omega) from error
             raise
         try:
             found = self._lowest(state.pencil)
         except (UnstableError, EigensolverError) as error:
             if pencil.has_free_motion(state.pencil):
-                raise _free_hinge(omega) from error
-            raise type(error)(f"omega: {omega:.6g} rad/s: {error}") from error
+                raise _free_root(omega) from error
+            raise type(error)(f"omega: {omega:.6g} rad/s: {body.elements} elements: {error}") from error
         self.start = found.start
         self.known.pop(omega**2, None)  # the latest is the last one
         self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])
@@ -89,9 +89,10 @@ class MeshSolver:
         return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
 
 
-def _free_hinge(omega: float) -> UnstableError:
+def _free_root(omega: float) -> UnstableError:
+    turning = "" if omega else "; rotation stiffens a flap hinge: give speeds above 0"
     return UnstableError(
-        f"omega: {omega:.6g} rad/s: a free hinge has no stiffness (at rest, or lead–lag without offset): add a spring"
+        f"omega: {omega:.6g} rad/s: a free direction of the root has no stiffness: add a spring or clamp it{turning}"
     )
 
 

@@ -25,7 +25,9 @@ _EPS = float(np.finfo(float).eps)
 _STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a stalled step; of the next one
 _MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
 LATEST = 8  # number of speeds from which the next steady state is extrapolated
-_MIN_RAMP = 2.0**-8
+_FIRST_STEP = 0.5  # of continuation, as a fraction of the loads
+_MIN_STEP, _SMALLEST_LOAD = 1e-3, 1e-9  # smallest step, as a fraction of the loads reached and of all
+_MAX_STATES = 300  # number of states that continuation tries
 
 
 class SteadyStateError(ValueError):
@@ -47,33 +49,66 @@ class Steady:
 def steady(chain: Chain, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
     """The steady state at ``omega`` (rad/s) under ``gravity`` (3,), m/s², in the hub's axes.
 
-    Newton's method starts from ``start``; if that fails, from the undeformed shape with the speed ramped up.
+    Newton's method starts from ``start``, then from the undeformed shape; if both fail, the loads are raised from zero.
 
     Raises:
         SteadyStateError: if none is found near the undeformed blade.
     """
-    if start is not None:
+    for shape in (start, undeformed(chain)):
+        if shape is not None:
+            try:
+                return _newton(chain, shape, omega, gravity)
+            except SteadyStateError:
+                pass  # the start is too far away
+    return _continued(chain, omega, gravity)
+
+
+def _continued(chain: Chain, omega: float, gravity: Array) -> Steady:
+    """The steady state by continuation: Ω², gravity and the given loads grow together from zero.
+
+    Each state starts from an extrapolation of the previous ones. A success doubles the step, a failure halves it.
+    """
+    state, known = None, {0.0: coordinates(chain, undeformed(chain))}
+    done, step = 0.0, _FIRST_STEP
+    for _ in range(_MAX_STATES):
+        fraction = min(1.0, done + step)
         try:
-            return _newton(chain, start, omega, gravity)
-        except SteadyStateError:
-            pass  # start too far away: ramp the load instead
-    found = None
-    done, step = 0.0, 1.0
-    while found is None or done < 1.0:
-        load = min(1.0, done + step)
-        try:
-            shape = undeformed(chain) if found is None else found.shape
-            found = _newton(chain, shape, omega * load**0.5, gravity * load)
-            done, step = load, 2.0 * step
+            guess = _shape(chain, _extrapolated(known, fraction))
+            state = _newton(_loaded(chain, fraction), guess, omega * fraction**0.5, gravity * fraction)
         except SteadyStateError:
             step *= 0.5
-            if step < _MIN_RAMP:
-                raise SteadyStateError(
-                    f"omega: no steady state at {omega:.6g} rad/s; the loads were raised up to {done:.0%} of Ω²: the "
-                    "centrifugal force exceeds the axial stiffness there, or the blade is far too soft; check units or "
-                    "lower the speed"
-                ) from None
-    return found
+            if step < _MIN_STEP * done or step < _SMALLEST_LOAD:
+                break
+            continue
+        if fraction == 1.0:
+            return state
+        known = dict([*known.items(), (fraction, coordinates(chain, state.shape))][-LATEST:])
+        done, step = fraction, 2.0 * step
+    raise _no_state(chain, omega, state, done)
+
+
+def _loaded(chain: Chain, fraction: float) -> Chain:
+    """The chain with a fraction of its loads that do not depend on the speed."""
+    points = chain.beams.points
+    if not (chain.force.any() or points.force.any()):
+        return chain
+    beams = replace(chain.beams, points=replace(points, force=fraction * points.force))
+    return replace(chain, force=fraction * chain.force, beams=beams)
+
+
+def _no_state(chain: Chain, omega: float, state: Steady | None, done: float) -> SteadyStateError:
+    """The error of a continuation that ended at the fraction ``done`` of the loads, in ``state``."""
+    if state is None:
+        return SteadyStateError(
+            f"omega: no steady state at {omega:.6g} rad/s, nor at {done:.0e} of its loads: check units"
+        )
+    strain = largest_strain(chain, state.shape)
+    end = f"omega: no steady state at {omega:.6g} rad/s; the loads were raised up to {done:.3g} of theirs, where the "
+    if strain > measures.LARGEST_STRAIN:
+        return SteadyStateError(
+            f"{end}strain is {strain:.0%}: the blade is too soft in tension or shear; check units or lower the loads"
+        )
+    return SteadyStateError(f"{end}strain is {strain:.1%}: check bending and torsional stiffness, or lower the loads")
 
 
 def _newton(chain: Chain, shape: Shape, omega: float, gravity: Array) -> Steady:
@@ -169,14 +204,20 @@ def extrapolate(chain: Chain, known: Mapping[float, Array], omega: float) -> Sha
     The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
     poses in the hub's axes, of which strains are small differences, these errors would be far larger.
     """
-    if not known:
-        return None
-    found = known.get(omega**2)
-    if found is None:
-        at, values = np.array(list(known)) - omega**2, np.array(list(known.values()))
-        found = extrapolation.at_zero(at, values)
-    relative = chain.between @ sp.exp(np.ascontiguousarray(found[:, :6]))
-    return assembled(chain, relative, found[:, 6:], found[[joint.link for joint in chain.joints], :6])
+    return _shape(chain, _extrapolated(known, omega**2)) if known else None
+
+
+def _extrapolated(known: Mapping[float, Array], at: float) -> Array:
+    """The coordinates at ``at`` from those at known values of the same parameter."""
+    if at in known:
+        return known[at]
+    return extrapolation.at_zero(np.array(list(known)) - at, np.array(list(known.values())))
+
+
+def _shape(chain: Chain, values: Array) -> Shape:
+    """The shape with given ``coordinates``."""
+    relative = chain.between @ sp.exp(np.ascontiguousarray(values[:, :6]))
+    return assembled(chain, relative, values[:, 6:], values[[joint.link for joint in chain.joints], :6])
 
 
 def carried_over(chain: Chain, shape: Shape, finer: Chain) -> Shape:

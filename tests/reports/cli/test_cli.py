@@ -478,7 +478,8 @@ def test_stiffness_out_of_all_proportion_is_told_in_one_line(
 
 
 @pytest.mark.parametrize(
-    ("speed", "phrase"), [("0", "give speeds above 0"), ("1", "hold the hinge"), ("0:2:1", "give speeds above 0")]
+    ("speed", "phrase"),
+    [("0", "give speeds above 0"), ("1", "add a spring or clamp it"), ("0:2:1", "give speeds above 0")],
 )
 def test_a_hinge_that_nothing_holds_is_told(
     speed: str, phrase: str, beam: Path, capsys: pytest.CaptureFixture[str]
