@@ -24,7 +24,7 @@ FLOOR = 1e-13
 
 _NEAR_THEORY = 0.1  # relative distance from the theoretical order that counts as the asymptotic range
 _FIRM, _WARY = 1.25, 3.0  # safety factors within that range, and outside it
-_CHANCE = 0.1  # smallest fraction of a lower mode's uncertainty: changes may cancel by chance
+_CHANCE = 0.2  # smallest fraction of a lower mode's uncertainty: changes may cancel by chance
 _SLOWEST = 0.5  # smallest order of convergence that is assumed for a converging sequence
 
 
@@ -43,9 +43,12 @@ def estimate(f: Array, order: int) -> Estimate:
     With f₁, f₂, f₃ from coarse to fine, Richardson's estimate of the error of f₃ is r = |f₃ − f₂|/(2ᵖ − 1), p the theoretical
     order, and c is the change between the extrapolations from (f₁, f₂) and (f₂, f₃). Where the observed order agrees with p,
     the uncertainty of the extrapolated value is max(c, r), since three meshes may have the theoretical order by chance, and
-    that of f₃ is 1.25 r + c. Otherwise f₃ is not extrapolated, and its uncertainty is 3 |f₃ − f₂|/(2^q − 1) with the lower
-    of the two orders, q; for a sequence that does not converge, it is three times the larger difference. No uncertainty is
-    smaller than a tenth of that of a lower mode, since differences may cancel by chance.
+    that of f₃ is 1.25 r + c. Otherwise f₃ is not extrapolated, and its uncertainty is 3 d/(2^q − 1) with the lower of the two
+    orders, q, and d the larger of |f₃ − f₂| and |f₂ − f₁|/2ᵖ: a difference smaller than the theory predicts is one where terms
+    of different order cancel by chance, which the next ones need not do. For a sequence that does not converge, it is three
+    times the larger difference. No uncertainty is smaller than a fifth of that of a lower mode, for the same reason.
+
+    These uncertainties cover 99.9 % of the errors; see docs/uncertainty.md.
     """
     before, last = f[1] - f[0], f[2] - f[1]
     quiet = np.abs(before) <= 1e3 * FLOOR * f[2]  # rounding, which has no order
@@ -57,7 +60,8 @@ def estimate(f: Array, order: int) -> Estimate:
     gain = 2.0**order - 1.0
     first, second = f[1] + before / gain, f[2] + last / gain
     spread = _WARY * np.maximum(np.abs(before), np.abs(last))
-    wary = np.where(converging, _WARY * np.abs(last) / (2.0**slow - 1.0), spread)
+    expected = np.maximum(np.abs(last), np.abs(before) / 2.0**order)
+    wary = np.where(converging, _WARY * expected / (2.0**slow - 1.0), spread)
     values = np.where(firm, second, f[2])
     of_values = np.where(firm, np.maximum(np.abs(second - first), np.abs(last) / gain), wary) / f[2]
     of_finest = np.where(firm, _FIRM * np.abs(last) / gain + np.abs(second - first), wary) / f[2]
