@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import UNSET, Meta, Struct, UnsetType
 from numpy.typing import NDArray
 
-from ...core.blade import Blade
+from ...core.blade import Blade, BladeError
 from ...core.effects import Effects
 from ...references import published
 from . import files
@@ -171,10 +171,13 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
-        changed = {**data, "blade": {**data["blade"], **changes}}
-        blade = convert(changed, CaseFile, f"{path}: variants.{label}" if label else path).blade
+        changed, where = {**data, "blade": {**data["blade"], **changes}}, f"{path}: variants.{label}" if label else path
+        blade = convert(changed, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
-        found, left = blade.read(name, folder)
+        try:
+            found, left = blade.read(name, folder)
+        except BladeError as error:
+            raise CaseError(f"{where}: blade: {error}") from error
         variants.append(Variant(name, found, speeds, left))
     return Case(path, text, tuple(variants))
 

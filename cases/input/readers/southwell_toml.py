@@ -10,7 +10,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta, Struct
 
-from ....core.blade import Blade
+from ....core.blade import Blade, BladeError
 from .. import atomic
 from ..blades import BladeData, Dimensionless, Stations
 from ..errors import CaseError
@@ -66,6 +66,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         blade, left = text.blade.read(text.name, path.parent)
     except CaseError as error:
         raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
+    except BladeError as error:
+        raise CaseError(f"{path}: blade: {error}") from error
     notes = tuple(note for note in (text.title, text.source) if note)
     return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, left))
 

@@ -340,3 +340,43 @@ def test_where_names_are_impossible(folder: Path) -> None:
     with pytest.raises(CaseError, match=r"name: .* one line") as caught:
         readers.read(folder / "st\nx.dat", readers.Mount(subset=(1, 1)))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("blade", "message"),
+    [
+        ({"E": 1e-320}, r"case: blade: stiffness: .* must be positive"),
+        ({"length": 1e-15}, r"case: blade: length: 1e-15 m: not between"),
+        ({"hub_radius": 1e4, "length": 1e-9}, r"case: blade: length"),
+    ],
+)
+def test_values_at_the_limits_of_floating_point_are_bad_input(blade: dict[str, float], message: str) -> None:
+    beam = {
+        "kind": "beam",
+        "length": 6.0,
+        "E": 7e10,
+        "G": 2.7e10,
+        "density": 3e3,
+        "A": 4e-4,
+        "I_y": 7e-13,
+        "I_z": 1e-4,
+        "J": 4e-7,
+    }
+    case = {"name": "case", "title": "t", "description": "d", "source": "s", "blade": {**beam, **blade}}
+    with pytest.raises(CaseError, match=message):
+        schema.decode({**case, "speeds": {"rad_s": [1.0]}, "compare": {"modes": 1}}, "case", Path())
+
+
+def test_a_ratio_that_makes_an_impossible_blade_is_bad_input() -> None:
+    case = {
+        "name": "case",
+        "title": "t",
+        "description": "d",
+        "source": "s",
+        "blade": {"kind": "dimensionless", "slenderness": 70.0},
+    }
+    variants = {"far": {"hub_ratio": 2e9}}
+    with pytest.raises(CaseError, match=r"case: variants\.far: blade: hub_radius: 2e\+09 m: not between"):
+        schema.decode(
+            {**case, "variants": variants, "speeds": {"gamma": [1.0]}, "compare": {"modes": 1}}, "case", Path()
+        )
