@@ -16,6 +16,7 @@ from .modes import Modes
 from .spectrum.mesh_solver import MeshSolver
 from .spectrum.refinement import Meshes, as_given, refined, without_bias
 from .steady.blade_state import LargeStrainError
+from .threads import one_thread
 
 Array = NDArray[np.float64]
 
@@ -60,7 +61,7 @@ def modes(
         UnstableError: the steady state is not stable.
         EigensolverError, MissedModesError: the eigensolver failed.
     """
-    one = sweep(
+    results = sweep(
         blade,
         [omega],
         elements,
@@ -73,7 +74,7 @@ def modes(
         load=load,
         allow_large_strain=allow_large_strain,
     )
-    return next(one)
+    return next(results)
 
 
 def sweep(
@@ -104,11 +105,12 @@ def sweep(
         if abs(omega) > fastest:  # the graded mesh is made for a range of speeds, up to a power of two
             fastest = 2.0 ** np.ceil(np.log2(abs(omega)))
             meshes = Meshes(body, count, mass, stiffness, load, effects, gravity)
-        found = (
-            refined(meshes, omega, fastest, accuracy)
-            if elements is None
-            else as_given(meshes, omega, elements, fastest)
-        )
+        with one_thread():
+            found = (
+                refined(meshes, omega, fastest, accuracy)
+                if elements is None
+                else as_given(meshes, omega, elements, fastest)
+            )
         if found.strain > LARGEST_STRAIN and not allow_large_strain:
             raise LargeStrainError(
                 f"omega: {omega:.6g} rad/s: steady strain {found.strain:.0%}: too large for linear elastic sections: the "
@@ -149,12 +151,17 @@ def mesh_sweep(
     body = discretize(
         blade if effects.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load
     )
-    one = MeshSolver(body, count, effects, gravity)
-    return (one.at(omega).modes for omega in speeds)
+    solver = MeshSolver(body, count, effects, gravity)
+    return (_with_one_thread(solver, omega) for omega in speeds)
+
+
+def _with_one_thread(solver: MeshSolver, omega: float) -> Modes:
+    with one_thread():
+        return solver.at(omega).modes
 
 
 def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
-    """The speeds, each validated when it is taken: the caller may choose it from earlier results."""
+    """Yield the speeds lazily, validating each: the caller may choose the next one from earlier results."""
     if count < 1:
         raise ValueError(f"count: {count}: ask for at least one mode")
     for omega in omegas:
@@ -167,9 +174,9 @@ def chain_modes(
     body: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
-    one = MeshSolver(body, count, effects, gravity)
-    solved = one.at(next(_checked([omega], count)))
-    return replace(solved.modes, rounding=one.rounding(solved))
+    solver = MeshSolver(body, count, effects, gravity)
+    solved = solver.at(next(_checked([omega], count)))
+    return replace(solved.modes, rounding=solver.rounding(solved))
 
 
 def rigid_strain_bias(

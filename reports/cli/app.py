@@ -185,7 +185,6 @@ def _allowed(words: Sequence[str]) -> tuple[list[str], AbstractContextManager[ob
 
 
 def _one_thread() -> AbstractContextManager[object]:
-    """Limit numerical libraries to one thread; the matrices are too small for several."""
-    from threadpoolctl import threadpool_limits
+    from ...core.threads import one_thread
 
-    return threadpool_limits(1)
+    return one_thread()
