@@ -71,7 +71,7 @@ def estimate(f: Array, order: int) -> Estimate:
 def rounding(
     body: Chain, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
 ) -> Array:
-    """(m,) relative error of frequencies due to rounding: three times the change caused by rounding the relative poses.
+    """(m,) error of frequencies due to rounding, rad/s: three times the change caused by rounding the relative poses.
 
     It includes the effect of rigid or nearly rigid strains on the tension. The vectors are unchanged: their error enters
     squared.
@@ -84,5 +84,5 @@ def rounding(
     rounded = replace(shape, relative=relative)
     near = linearize(body, rounded, omega, gravity, effects)
     a, b = (frequencies_of(p, vectors) for p in (state.pencil, near))
-    change = np.abs(b / a - 1.0)
-    return FLOOR + 3.0 * np.maximum(change, np.median(change))
+    change = np.abs(b - a)
+    return 3.0 * np.maximum(change, a * np.median(change / a))

@@ -14,10 +14,10 @@ from ..steady.blade_state import Steady, SteadyStateError
 from ..tree import pencil
 from ..tree.mode_shapes import mode_shapes
 from ..tree.pencil import ChainPencil, Shape
-from . import accuracy
+from . import accuracy, gyroscopic
 from .completeness import MissedModesError
-from .eigen import UnstableError
-from .lanczos import EigensolverError, Lowest, Start, lanczos
+from .eigen import Eigen, UnstableError
+from .lanczos import EigensolverError, Start, lanczos
 
 Array = NDArray[np.float64]
 
@@ -59,12 +59,11 @@ class MeshSolver:
                 raise _free_root(omega) from error
             raise
         try:
-            found = self._lowest(state.pencil)
+            found, self.start = self._lowest(state.pencil)
         except (UnstableError, EigensolverError) as error:
             if pencil.has_free_motion(state.pencil):
                 raise _free_root(omega) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {body.elements} elements: {error}") from error
-        self.start = found.start
         self.known.pop(omega**2, None)  # the latest is the last one
         self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])
         shapes = mode_shapes(body, state.shape, pencil.on_nodes(state.pencil, found.vectors))
@@ -73,20 +72,29 @@ class MeshSolver:
         modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
         return Solved(modes, state, found.vectors)
 
-    def _lowest(self, p: ChainPencil) -> Lowest:
-        if self.start is not None:
-            try:
-                return lanczos(p, self.count, self.start)
-            except (MissedModesError, EigensolverError):
-                self.restarts += 1
-        return lanczos(p, self.count)
+    def _lowest(self, p: ChainPencil) -> tuple[Eigen, Start | None]:
+        try:
+            if self.start is not None:
+                try:
+                    solved = lanczos(p, self.count, self.start)
+                    return solved, solved.start
+                except (MissedModesError, EigensolverError):
+                    self.restarts += 1
+            solved = lanczos(p, self.count)
+        except UnstableError:
+            stabilised = gyroscopic.stabilised(p, self.count) if p.C.any() else None
+            if stabilised is None:
+                raise
+            return stabilised, None
+        return solved, solved.start
 
     def rounding(self, solved: Solved) -> Array:
         """(m,) relative error of the frequencies due to rounding."""
         if not (self.effects.geometric and self.effects.prestretch):  # about the undeformed shape, which is exact
             return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
         state, omega = solved.state, solved.modes.omega
-        return accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
+        change = accuracy.rounding(self.body, state, omega, self.gravity, self.effects, solved.vectors)
+        return accuracy.FLOOR + change / solved.modes.frequencies
 
 
 def _free_root(omega: float) -> UnstableError:
