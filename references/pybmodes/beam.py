@@ -12,8 +12,8 @@ includes pitch in the twist.
 Blades with a tip mass are declined, because it is added to the mass matrix only: it causes no tension and no spin
 softening. Blades with mass centres off the axis are declined too. The input file has a column for them, which is
 correct at zero speed, but in rotation their steady moment is missing, up to 2.7 % in
-``defects/pybmodes_mass_centre.py``. A shear centre off the axis is only partly applied, even at zero speed
-(``defects/pybmodes_shear_centre.py``).
+``tests/references/defects/pybmodes_mass_centre.py``. A shear centre off the axis is only partly applied, even at zero speed
+(``pybmodes_shear_centre.py`` there).
 """
 
 from collections.abc import Iterator, Sequence

@@ -53,8 +53,7 @@ def codes(*, pages: Path | None = None) -> int:
     Parameters
     ----------
     pages
-        Output folder of `southwell verify`: write one page per code into it instead, with its worst difference on every blade
-        and its known defects, each demonstrated by a run.
+        Output folder of `southwell verify`: write one page per code into it instead, with its worst difference on every blade.
     """
     if pages:
         from ..verification import code_pages

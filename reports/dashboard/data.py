@@ -196,7 +196,6 @@ def codes(run: Run) -> list[dict[str, Any]]:
                 "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
                 "worst": _placed(far),
                 "known": _placed(known),
-                "defects": len(code_pages.defects(name)),
             }
         )
     return out
@@ -208,7 +207,7 @@ def _placed(cell: Cell | None) -> list[Any] | None:
 
 
 def of_code(run: Run, name: str) -> dict[str, Any]:
-    """One code: version, what it shares with core and lacks, its worst difference on every blade, known defects."""
+    """One code: version, what it shares with core and lacks, its worst difference on every blade."""
     cells = code_pages.own(run, name)
     worst = []
     for case in dict.fromkeys(c.case for c in cells):
@@ -224,10 +223,6 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
         "shares": shared(run, name),
         "verdicts": verdicts(),
         "worst": worst,
-        "defects": [
-            {"what": d.what, "avoided": d.avoided, "script": f"references/defects/{d.script}.py"}
-            for d in code_pages.defects(name)
-        ],
         "title": name,
         **_known(name),
     }

@@ -1,6 +1,6 @@
-"""One page per code: version, what it shares with core, its worst difference on every blade, known defects.
+"""One page per code: version, what it shares with core, its worst difference on every blade.
 
-Numbers are taken from a run. The adapter reports what it refuses. A reproducer is run to show each defect.
+Numbers are taken from a run. The adapter reports what it refuses.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from ...cases.conformance.blades import PROPERTIES
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run
-from ...references.defects import DEFECTS, Defect, shown
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ..shared import summary
@@ -48,7 +47,7 @@ def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
 
 
 def index(run: Run, known: Sequence[Description]) -> str:
-    """The table of all codes: version, sharing with core, cells by verdict, worst difference, defects."""
+    """The table of all codes: version, sharing with core, cells by verdict, worst difference."""
     rows = []
     for code in known:
         cells = own(run, code.name)
@@ -62,7 +61,6 @@ def index(run: Run, known: Sequence[Description]) -> str:
                 "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)} ({plain(far.case)})"
                 if far
                 else "",
-                "known defects": str(len(defects(code.name))),
             }
         )
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
@@ -90,18 +88,12 @@ def page(run: Run, code: Description) -> str:
         legend=", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items()),
         differences=differences(run, own(run, code.name)),
         properties=properties(code) if code.refused else "",
-        defects=[_defect(defect) for defect in defects(code.name)],
     )
 
 
 def own(run: Run, name: str) -> list[Cell]:
     """The cells of one code."""
     return [c for c in run.cells if c.code == name and c.role in ROLES]
-
-
-def defects(name: str) -> list[Defect]:
-    """The known defects of one code."""
-    return [d for d in DEFECTS if name in d.codes]
 
 
 def version(run: Run, code: Description) -> str:
@@ -144,18 +136,3 @@ def properties(code: Description) -> str:
             answer = "left out, as declared"
         rows.append({"property": plain(p.name), "answer": answer})
     return table(rows)
-
-
-def _defect(defect: Defect) -> dict[str, str]:
-    """A defect for the template, with the current output of its reproducer."""
-    try:
-        output, says = shown(defect), "prints"
-    except RuntimeError as error:
-        output, says = str(error), "could not run here"
-    return {
-        "what": defect.what.rstrip("."),
-        "avoided": defect.avoided,
-        "script": defect.script,
-        "says": says,
-        "output": output,
-    }

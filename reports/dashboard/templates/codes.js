@@ -1,14 +1,12 @@
 "use strict";
-// All codes in a table; one code: what it is, its worst difference on every blade, what it gets wrong.
-
-const prose = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", {}, part) : part));
+// All codes in a table; one code: what it is, its worst difference on every blade.
 
 const placed = (far) => make("td", { class: far ? `prose v${far[0]}` : null }, ...(far ? [figure(`${DATA.verdicts[far[0]].sign} ${far[1]}`), make("br"), ...broken(far[2])] : []));
 
 function codes() {
   MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share core's mechanical model or discretisation are one witness of the implementation, not several of the answer."),
-    table(["code", "what", "version", "shares with core", "answers", "worst, relative to target", "largest known difference", "defects"], DATA.codes.map((code) => row(link(code.page, code.name),
-      make("td", { class: "prose" }, code.title), code.version, code.shares, make("td", { class: "prose" }, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join(", ")), placed(code.worst), placed(code.known), code.defects || "")), { id: "codes" }),
+    table(["code", "what", "version", "shares with core", "answers", "worst, relative to target", "largest known difference"], DATA.codes.map((code) => row(link(code.page, code.name),
+      make("td", { class: "prose" }, code.title), code.version, code.shares, make("td", { class: "prose" }, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join(", ")), placed(code.worst), placed(code.known))), { id: "codes" }),
     make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
 }
 
@@ -18,10 +16,7 @@ function code() {
   if (DATA.hint && DATA.version === "not installed") MAIN.append(make("p", { class: "muted" }, `To install: ${DATA.hint}`));
   MAIN.append(make("h2", {}, "Largest difference for each blade"),
     table(["case", "worst verdict", "cells", "difference ± uncertainty", "where", "why"], DATA.worst.map(([name, page, v, n, text, where, why]) =>
-      row(link(page, name), judged(v), n, text, where, make("td", { class: "reason" }, why))), { id: "worst" }),
-    make("h2", {}, "Known defects"));
-  if (!DATA.defects.length) MAIN.append(make("p", { id: "defects" }, "None known."));
-  else MAIN.append(make("ul", { id: "defects" }, ...DATA.defects.map((d) => make("li", {}, ...prose(d.what), make("p", { class: "muted" }, "Here: ", ...prose(d.avoided), " Reproducer: ", make("code", {}, d.script), ".")))));
+      row(link(page, name), judged(v), n, text, where, make("td", { class: "reason" }, why))), { id: "worst" }));
 }
 
 ({ codes, code })[document.body.dataset.page]();

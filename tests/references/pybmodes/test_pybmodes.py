@@ -178,7 +178,7 @@ def test_why_mass_centres_off_the_axis_are_declined() -> None:
     Both are without Coriolis terms, for a beam with its mass 0.05 m off the axis, at 60 rpm. Only in pyBModes the
     second flap mode does not depend on the stiffness of the other plane.
     """
-    from southwell.references.defects import pybmodes_mass_centre as they
+    from ..defects import pybmodes_mass_centre as they
 
     blade = uniform_blade(
         "off",

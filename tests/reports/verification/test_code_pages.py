@@ -1,4 +1,4 @@
-"""A page for each code: every number is the run's, every refusal its adapter's, every defect shown by running it."""
+"""A page for each code: every number is the run's and every refusal its adapter's."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,6 @@ import pytest
 
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run, Verdict
-from southwell.references.defects import DEFECTS
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import Description
 from southwell.reports.cli import app as cli
@@ -55,12 +54,6 @@ RUN = Run(
 )
 
 
-@pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No reproducer is run: that is another test's."""
-    monkeypatch.setattr(code_pages, "shown", lambda defect: f"{defect.script} ran")
-
-
 def rows(text: str) -> list[list[str]]:
     return [[f.strip() for f in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
 
@@ -82,14 +75,12 @@ def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
     assert shown.startswith("✘ +0.200 %")
 
 
-def test_a_page_says_version_refusals_and_defects() -> None:
+def test_a_page_says_version_and_refusals() -> None:
     text = code_pages.page(RUN, described("scikit-fem"))
     assert text.startswith("# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with core: **nothing**.")
     taken = {row[0]: row[1] for row in rows(text.partition("## Accepted properties")[2])}
     assert taken["twist"] == "taken"
     assert taken["shear flexibility"].startswith("refused: finite shear stiffness")
-    assert "An `ElementLineHermite` used on a second mesh" in text
-    assert "scikit_fem_hermite ran" in text
 
 
 def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
@@ -97,21 +88,9 @@ def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
     assert taken["rotary inertia"] == "left out, as declared"
 
 
-def test_a_code_without_cells_or_defects_says_so() -> None:
+def test_a_code_without_cells_says_so() -> None:
     text = code_pages.page(RUN, described("exact-beam"))
     assert "This run has no cells of this code." in text
-    assert "None known." in text
-
-
-def test_a_reproducer_that_cannot_run_is_said_to() -> None:
-    def fails(defect: object) -> str:
-        raise RuntimeError("no such module")
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(code_pages, "shown", fails)
-        text = code_pages.page(RUN, described("scikit-fem"))
-    assert "which could not run here:" in text
-    assert "no such module" in text
 
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -129,7 +108,6 @@ def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys:
     assert line[3:] == [
         "1 ✘, 2 ✔, 1 –",
         "✘ +25 % ± 0.0010 % (second)",
-        str(sum("scikit-fem" in d.codes for d in DEFECTS)),
     ]
 
 

@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..isolated import ENVIRONMENTS
+from southwell.references.isolated import ENVIRONMENTS
 
 
 @dataclass(frozen=True)

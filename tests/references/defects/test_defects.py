@@ -3,13 +3,15 @@
 import ast
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
-from southwell.references import defects, isolated
-from southwell.references.defects import DEFECTS, Defect
+from southwell.references import isolated
 from southwell.references.protocol import registry
 from southwell.references.solid import calculix
+
+from . import DEFECTS, Defect, shown
 
 INSTALLED = {
     "pinocchio": find_spec("pinocchio") is not None,
@@ -28,7 +30,7 @@ def test_the_defect_is_present(defect: Defect) -> None:
     if not INSTALLED[defect.script.partition("_")[0]]:
         hint = f": southwell codes install {defect.environment}" if defect.environment else ""
         pytest.skip(f"not installed{hint}")
-    said = defects.shown(defect).splitlines()
+    said = shown(defect).splitlines()
     assert said[-1] == "defect: present", "fixed: remove it from the list"
     assert "expected" in "".join(said[1:-1])
     assert any(character.isdigit() for character in said[0]), "its first line names the version"
@@ -45,13 +47,24 @@ def test_its_script_is_self_contained(defect: Defect) -> None:
 
 
 def test_every_script_is_listed_and_every_code_known() -> None:
-    scripts = {p.stem for p in DEFECTS[0].path.parent.glob("*.py")} - {"__init__"}
+    scripts = {p.stem for p in DEFECTS[0].path.parent.glob("*.py")} - {"__init__", "test_defects"}
     assert scripts == {d.script for d in DEFECTS}
     assert {code for d in DEFECTS for code in d.codes} <= set(registry.names())
 
 
+def test_the_page_lists_every_defect() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "known-defects.md").read_text(encoding="utf-8")
+    rows = [
+        [field.strip() for field in line.strip("|").split(" | ")]
+        for line in page.splitlines()
+        if line.startswith("| `")
+    ]
+    listed = [[", ".join(f"`{code}`" for code in d.codes), d.what, d.avoided, f"`{d.script}.py`"] for d in DEFECTS]
+    assert rows == listed
+
+
 def test_a_reproducer_that_cannot_run_is_reported() -> None:
     with pytest.raises(RuntimeError, match=r"missing: .*No such file"):
-        defects.shown(replace(DEFECTS[0], script="missing"))
+        shown(replace(DEFECTS[0], script="missing"))
     with pytest.raises(RuntimeError, match=r"no answer within 0\.001 s"):
-        defects.shown(DEFECTS[0], timeout=0.001)
+        shown(DEFECTS[0], timeout=0.001)
