@@ -87,9 +87,8 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
         UnknownCodeError: if a name is unknown, or there is no code at an import path.
     """
     where = {name: registry.address(name) for name in names}
-    packaged = {*registry.OURS.values(), *registry.FOR_MECHANISMS.values()}
     shown = [encode(blade) for blade in blades]
-    bundled = {name: at for name, at in where.items() if at["code"] in packaged}
+    bundled = {name: at for name, at in where.items() if registry.bundled(at["code"])}
     found = {one.asked: one for one in _asked(bundled, shown, limits)}
     alone = [name for name in where if name not in found or found[name].failure]
     with ThreadPoolExecutor(TOGETHER) as threads:

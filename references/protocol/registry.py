@@ -1,5 +1,4 @@
-"""Find codes by name: those of this package, those of installed packages (entry-point group ``southwell.codes``),
-import paths.
+"""Find codes by name, registered in the entry-point group ``southwell.codes`` by this or another package, or by import path.
 
 ``code`` and ``loaded`` import a code, which runs foreign code. Only worker processes call them. Everything else uses
 ``description.describe`` to learn about a code and ``worker.answers`` to run it.
@@ -17,26 +16,9 @@ from .mechanism_interface import MechanismAdapter
 from .process import Failure, one_line, raised
 
 GROUP = "southwell.codes"
+"""Entry-point group of codes, those of this package and those of others."""
 
-OURS = {
-    "exudyn-ancf": "southwell.references.exudyn.ancf:CODE",
-    "exudyn-tree": "southwell.references.exudyn.tree:CODE",
-    "scikit-fem": "southwell.references.scikit_fem.beam:CODE",
-    "scikit-fem-reissner": "southwell.references.scikit_fem.reissner:CODE",
-    "pinocchio": "southwell.references.joint_chains.pinocchio:CODE",
-    "drake": "southwell.references.joint_chains.drake:CODE",
-    "mujoco": "southwell.references.joint_chains.mujoco:CODE",
-    "pybmodes": "southwell.references.pybmodes.beam:CODE",
-    "scikit-fem-solid": "southwell.references.solid.scikit_fem_blade:CODE",
-    "calculix": "southwell.references.solid.calculix_blade:CODE",
-    "sharpy": "southwell.references.isolated.sharpy:CODE",
-    "frame3dd": "southwell.references.isolated.frame3dd:CODE",
-    "yoo-shin": "southwell.references.theories.yoo_shin:CODE",
-    "assumed-modes": "southwell.references.theories.assumed_modes:CODE",
-    "southwell-equation": "southwell.references.theories.southwell_equation:CODE",
-    "exact-beam": "southwell.references.theories.exact_beam:CODE",
-}
-"""Name → ``module:attribute`` of the codes of the package that solve blades."""
+PACKAGE = __name__.partition(".")[0]
 
 
 class Address(TypedDict):
@@ -53,17 +35,26 @@ class UnknownCodeError(ValueError):
     """Unknown code; the message gives its name, the likely cause and the remedy."""
 
 
-FOR_MECHANISMS = {
-    "exudyn-loops": "southwell.references.exudyn.mechanism:CODE",
-    "pinocchio-loops": "southwell.references.linkages.mechanism:CODE",
-}
-"""Name → ``module:attribute`` of the codes of the package that solve mechanisms but not blades."""
+def registered() -> dict[str, str]:
+    """Name → import path of every registered code, sorted by name; no other package can take a name of this one.
+
+    Raises:
+        UnknownCodeError: if the codes of this package are missing: its installation is older than its sources.
+    """
+    entries = sorted(entry_points(group=GROUP), key=lambda entry: bundled(entry.value))
+    if not entries or not bundled(entries[-1].value):
+        raise UnknownCodeError("codes: southwell's own are not registered: run make, or pip install --editable .")
+    return dict(sorted({entry.name: entry.value for entry in entries}.items()))
+
+
+def bundled(path: str) -> bool:
+    """Whether the import path of a code is in this package."""
+    return path.startswith(f"{PACKAGE}.")
 
 
 def names() -> tuple[str, ...]:
-    """Names of all registered codes, installed or not; those of this package first."""
-    theirs = sorted(e.name for e in entry_points(group=GROUP) if e.name not in {**OURS, **FOR_MECHANISMS})
-    return (*OURS, *FOR_MECHANISMS, *theirs)
+    """Names of all registered codes, installed or not."""
+    return tuple(registered())
 
 
 def locate(name: str) -> str:
@@ -77,12 +68,11 @@ def locate(name: str) -> str:
     """
     if ":" in name:
         return name
-    if name in OURS or name in FOR_MECHANISMS:
-        return {**OURS, **FOR_MECHANISMS}[name]
-    for entry in entry_points(group=GROUP, name=name):
-        return entry.value
-    near = get_close_matches(name, names(), 1)
-    advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(names())}"
+    codes = registered()
+    if name in codes:
+        return codes[name]
+    near = get_close_matches(name, codes, 1)
+    advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(codes)}"
     raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
 
 

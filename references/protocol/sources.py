@@ -135,7 +135,7 @@ def bundled(code: str) -> bool:
     Raises:
         UnknownCodeError: if no such code is known.
     """
-    return registry.locate(code).partition(":")[0].partition(".")[0] == PACKAGE
+    return registry.bundled(registry.locate(code))
 
 
 def adapter(code: str) -> str:

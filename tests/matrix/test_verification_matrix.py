@@ -15,7 +15,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
-from southwell.references.protocol import registry
+from southwell.tests.support.codes import BLADE_CODES
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
 
@@ -54,7 +54,7 @@ def within_target(cell: Cell) -> bool:
 
 
 def test_every_code_and_every_blade_is_in_the_table() -> None:
-    assert set(CODES) == set(registry.OURS)
+    assert set(CODES) == set(BLADE_CODES)
     assert set(BLADES) == set(CASES) | set(library.everything()[1])
 
 

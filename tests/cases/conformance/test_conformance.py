@@ -16,10 +16,11 @@ from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, DIGITS, BladeAdapter, CodeError, Independence
+from southwell.tests.support.codes import BLADE_CODES
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", registry.OURS)
+@pytest.mark.parametrize("name", BLADE_CODES)
 def test_ours_conform(name: str) -> None:
     """Passes, or declines with a reason; one that declined everything would be caught by the capabilities' table."""
     code = registry.code(name)

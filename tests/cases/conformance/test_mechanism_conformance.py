@@ -13,11 +13,12 @@ from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CodeError
 from southwell.references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from southwell.tests.support.codes import MECHANISM_CODES
 
 from ...reports.cli.test_cli import southwell
 
 
-@pytest.mark.parametrize("name", registry.FOR_MECHANISMS)
+@pytest.mark.parametrize("name", MECHANISM_CODES)
 def test_ours_conform(name: str) -> None:
     code = registry.code(name)
     if code.version() is None:

@@ -23,6 +23,7 @@ from southwell.references.protocol.mechanism_interface import MechanismAdapter, 
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
+from southwell.tests.support.codes import MECHANISM_CODES
 
 pytestmark = pytest.mark.usefixtures("keeping")
 
@@ -32,7 +33,7 @@ TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
 
 def rows(name: str, column: str) -> list:
     case = mechanism_case.case(library.mechanism(name))
-    known = describe(tuple(registry.FOR_MECHANISMS))
+    known = describe(tuple(MECHANISM_CODES))
     (turning,) = case.variants
     core = mechanism_columns.references(turning)[ALL_EFFECTS]
     (one,) = (c for c in mechanism_columns.columns(case, known, Limits(60.0)) if c.name == column)
@@ -40,7 +41,7 @@ def rows(name: str, column: str) -> list:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("column", [*registry.FOR_MECHANISMS, "closed form"])
+@pytest.mark.parametrize("column", [*MECHANISM_CODES, "closed form"])
 @pytest.mark.parametrize("name", library.mechanisms())
 def test_every_code_at_every_speed(name: str, column: str) -> None:
     found = rows(name, column)
@@ -284,7 +285,7 @@ def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
     """Exudyn is given core's spanning tree, and is no group; Pinocchio reads the mechanism itself."""
     for name in library.mechanisms():
         case = mechanism_case.case(library.mechanism(name))
-        run = matrix.run([case], describe(tuple(registry.FOR_MECHANISMS)), seeding.Serial(), parts=False)
+        run = matrix.run([case], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
         found = {w.name: w.kind for w in witnesses.witnesses(run, name)}
         assert found["exudyn-loops"] == "core's model"
         if any(not c.version for c in run.cells):

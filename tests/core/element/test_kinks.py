@@ -18,6 +18,7 @@ from southwell.core.space import spatial as sp
 from southwell.core.tree.as_mechanism import mechanism, one
 from southwell.references.joint_chains import joint_chain
 from southwell.references.protocol import registry
+from southwell.tests.support.codes import BLADE_CODES
 
 from ...support.beams import curved
 
@@ -162,7 +163,7 @@ def test_bodies_of_the_joint_chain_are_at_the_ends_of_the_elements() -> None:
 TAKE_KINKS = ("pinocchio", "mujoco", "drake", "scikit-fem-reissner")
 
 
-@pytest.mark.parametrize("name", [n for n in registry.OURS if n not in TAKE_KINKS])
+@pytest.mark.parametrize("name", [n for n in BLADE_CODES if n not in TAKE_KINKS])
 def test_other_codes_report_that_kinks_are_unsupported(name: str) -> None:
     assert registry.code(name).unsupported(kinked())
 

@@ -83,7 +83,7 @@ print(json.dumps(sorted(name for name in sys.modules if name.startswith("southwe
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [*registry.OURS, *registry.FOR_MECHANISMS])
+@pytest.mark.parametrize("name", registry.names())
 def test_every_module_that_a_code_loads_counts(name: str) -> None:
     done = subprocess.run([sys.executable, "-c", PROGRAM, name], capture_output=True, text=True)
     if done.returncode:
