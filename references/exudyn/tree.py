@@ -18,7 +18,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
-from ..protocol.interface import BladeAdapter, CodeError, Independence
+from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
 from . import system as ex
@@ -39,7 +39,7 @@ class ExudynTree(BladeAdapter):
 
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
-    independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn")
+    independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn", sections=REFERENCE_LINE)
     effects = ALL_EFFECTS
     levels = (12, 24, 36)
     order = 2

@@ -31,6 +31,9 @@ DIGITS = 9
 CORE = "core"
 """An origin in ``Independence`` that is core."""
 
+REFERENCE_LINE = "the adapters' reference line"
+"""The origin of positions and axes that ``references.theories.reference_line`` integrates."""
+
 
 @dataclass(frozen=True)
 class Independence:
@@ -43,10 +46,12 @@ class Independence:
     matrix in ``tests/cases/judge/test_groups.py``.
 
     Attributes:
-        engine: the program that assembles the equations of motion, e.g. ``Exudyn``.
+        engine: the program that assembles the equations of motion, e.g. ``Exudyn``. If the adapter assembles a part with the
+            program's elements, ``theory`` names it.
         theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``.
         rotation: origin of the centrifugal and gyroscopic terms.
-        sections: origin of geometry and section data: ``blade`` (the adapter reads them) or core's frames.
+        sections: origin of the sections' positions and axes: ``blade`` (a straight axis, twist and pitch as given),
+            ``REFERENCE_LINE``, or core's frames. Stiffness and mass are interpolated between stations by ``core.blade`` in all.
         eigensolver: what solves the eigenproblem.
     """
 

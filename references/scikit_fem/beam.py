@@ -21,7 +21,7 @@ from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
-from .assembly import bilinear
+from .assembly import bilinear, skfem
 
 Array = NDArray[np.float64]
 
@@ -99,12 +99,6 @@ class ScikitFemBeam(BladeAdapter):
         return Modes(omega, frequencies, shapes, basis.mesh.nelements)
 
 
-def _skfem() -> Any:
-    import skfem
-
-    return skfem
-
-
 def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
     """Indices of the slopes at the root that its joint leaves free → stiffness of their springs, N m."""
     slopes = basis.get_dofs("root").nodal
@@ -122,7 +116,7 @@ def _basis(nodes: Array) -> Any:
 
     New elements are made each time, because Hermite elements keep the mesh they are first used on.
     """
-    fem = _skfem()
+    fem = skfem()
     ends = {"root": lambda x: x[0] == nodes[0], "tip": lambda x: x[0] == nodes[-1]}
     mesh = fem.MeshLine(nodes).with_boundaries(ends)
     along, across = fem.ElementLineP2, fem.ElementLineHermite
@@ -166,7 +160,7 @@ def _mesh(blade: Blade, elements: int) -> tuple[Any, list[Part], list[tuple[Any,
 
 def _parts(blade: Blade, basis: Any) -> list[Part]:
     """The line, and the tip if it has mass."""
-    fem = _skfem()
+    fem = skfem()
     steady = basis.with_element(fem.ElementLineHermite())
     x, at = _sections(blade, basis)
     parts = [Part(basis, steady, x, at.mass, at.I_x, at.I_y, at.I_z, at.twist + blade.pitch)]
@@ -187,7 +181,7 @@ def _sections(blade: Blade, basis: Any) -> tuple[Array, Sections]:
 
 def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Array:
     """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, which is linear for any amplitude."""
-    fem = _skfem()
+    fem = skfem()
     load = fem.LinearForm(forms.load)
     steady = parts[0].steady
     K, f = bilinear(forms.spring, steady, k=at.EA), steady.zeros()
@@ -199,7 +193,7 @@ def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Arr
 
 def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     """Steady rotation of the sections about x by the propeller moment: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, by Newton's method."""
-    fem = _skfem()
+    fem = skfem()
     load = fem.LinearForm(forms.load)
     steady = parts[0].steady
     torsion, turn = bilinear(forms.spring, steady, k=at.GJ), steady.zeros()

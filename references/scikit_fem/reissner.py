@@ -20,13 +20,13 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
-from ..protocol.interface import BladeAdapter, Independence
+from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
 from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
-from .assembly import bilinear
-from .reissner_beam import Beam, State, beam_of, skfem, spatial, stiffening, strain, strain_rate
+from .assembly import bilinear, skfem
+from .reissner_beam import Beam, State, beam_of, spatial, stiffening, strain, strain_rate
 from .reissner_steady import steady
 
 Array = NDArray[np.float64]
@@ -46,7 +46,9 @@ class ScikitFemReissner(BladeAdapter):
 
     name = "scikit-fem-reissner"
     title = "scikit-fem, geometrically exact beam"
-    independence = Independence("scikit-fem", "geometrically exact beam", "scikit-fem-reissner's adapter")
+    independence = Independence(
+        "scikit-fem", "geometrically exact beam", "scikit-fem-reissner's adapter", sections=REFERENCE_LINE
+    )
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
     order = 4

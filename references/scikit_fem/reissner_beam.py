@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade, mass_at, stiffness_at
 from ..theories.reference_line import line, moments, root_axes
 from . import reissner_forms as forms
-from .assembly import bilinear
+from .assembly import bilinear, skfem
 
 Array = NDArray[np.float64]
 
@@ -92,13 +92,6 @@ class State:
     part_axes: tuple[Array, ...]
     force: Array
     root: Array
-
-
-def skfem() -> Any:
-    """Import scikit-fem when it is first needed."""
-    import skfem
-
-    return skfem
 
 
 def beam_of(blade: Blade, ends: Array) -> Beam:

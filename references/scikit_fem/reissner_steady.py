@@ -7,7 +7,8 @@ from scipy.sparse import linalg as spla
 
 from ..protocol.interface import CodeError
 from . import reissner_forms as forms
-from .reissner_beam import Beam, State, after_step, at_rest, centrifugal_force, skfem, stiffening, strain, strain_rate
+from .assembly import skfem
+from .reissner_beam import Beam, State, after_step, at_rest, centrifugal_force, stiffening, strain, strain_rate
 
 Array = NDArray[np.float64]
 

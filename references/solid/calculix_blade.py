@@ -21,7 +21,9 @@ class Calculix(BladeAdapter):
 
     name = "calculix"
     title = "CalculiX, solid elements"
-    independence = Independence("CalculiX", "solid elements", "CalculiX", eigensolver="CalculiX")
+    independence = Independence(
+        "CalculiX", "solid elements", "CalculiX", sections="the solid's geometry", eigensolver="CalculiX"
+    )
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = calculix.EFFECTS
     levels = (10, 20, 40)

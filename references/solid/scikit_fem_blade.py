@@ -31,7 +31,10 @@ class ScikitFemSolid(BladeAdapter):
     name = "scikit-fem-solid"
     title = "scikit-fem, solid elements"
     independence = Independence(
-        "scikit-fem", "three-dimensional solid", "scikit-fem-solid's adapter", sections="the solid's geometry"
+        "scikit-fem",
+        "three-dimensional solid, stiffness assembled by the adapter",
+        "scikit-fem-solid's adapter",
+        sections="the solid's geometry",
     )
     motions: tuple[Motion, ...] = ("axial", "edgewise", "flapwise")
     effects = ALL_EFFECTS

@@ -1,0 +1,93 @@
+"""What adapters declare about their origins, checked against what their modules import and call."""
+
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from southwell.references.protocol import registry, sources
+from southwell.references.protocol.interface import CORE, REFERENCE_LINE, BladeAdapter
+
+from ..support.beams import PARK
+from ..support.codes import BLADE_CODES
+
+LANGUAGE = {"blade", "blade_checks", "curve", "effects", "gauss", "modes", "rank", "regular_files", "participation"}
+"""Modules of core that describe blades and modes, for every adapter. Others solve or discretise."""
+
+TOOLS = {"compiled", "space", "condense"}
+"""Folders of core with rigid-body motions and condensation."""
+
+
+def modules(name: str) -> set[str]:
+    """Modules of the package, except those of the protocol and of descriptions of mechanisms, that an adapter imports."""
+    found: set[str] = set()
+    todo = {registry.locate(name).partition(":")[0]}
+    while todo:
+        found |= todo
+        todo = {
+            other
+            for module in todo
+            for other in sources.imported(module)
+            if not other.startswith(("southwell.references.protocol", "southwell.core"))
+        } - found
+    return found
+
+
+def imported_of_core(name: str) -> set[str]:
+    """Parts of core that the modules of an adapter import: names of its modules and folders."""
+    found = {other for module in modules(name) for other in sources.imported(module)}
+    return {other.split(".")[2] for other in found if other.startswith("southwell.core.")}
+
+
+@pytest.mark.parametrize("name", BLADE_CODES)
+def test_a_code_that_uses_cores_discretisation_declares_it(name: str) -> None:
+    declared = registry.code(name).independence
+    discretising = imported_of_core(name) - LANGUAGE - TOOLS
+    assert bool(discretising) == (CORE in vars(declared).values()), discretising
+
+
+@pytest.mark.parametrize("name", BLADE_CODES)
+def test_the_reference_line_is_declared_by_the_codes_that_use_it(name: str) -> None:
+    uses = "southwell.references.theories.reference_line" in modules(name)
+    assert uses == (registry.code(name).independence.sections == REFERENCE_LINE)
+
+
+@pytest.mark.parametrize("name", BLADE_CODES)
+def test_the_adapters_eigensolver_is_declared_by_the_codes_that_use_it(name: str) -> None:
+    imported = {other for module in modules(name) for other in sources.imported(module)}
+    own = "southwell.references.protocol.quadratic" in imported
+    engine = registry.code(name).independence
+    assert (engine.eigensolver == "the adapters' own") == own or engine.eigensolver == engine.engine
+
+
+@pytest.mark.parametrize("name", ["scikit-fem", "scikit-fem-reissner"])
+def test_scikit_fem_assembles_the_matrices(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    skfem = pytest.importorskip("skfem")
+    code = registry.code(name)
+    assert isinstance(code, BladeAdapter)
+
+    def refuse(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("assembled")
+
+    monkeypatch.setattr(skfem.BilinearForm, "assemble", refuse)
+    with pytest.raises(ZeroDivisionError, match="assembled"):
+        code.solve(replace(PARK, name=f"assembled by {name}"), 1.0, code.levels[0], 2)
+
+
+def test_no_adapter_imports_its_code_until_it_solves() -> None:
+    program = (
+        "import sys\nfrom southwell.references.protocol import registry\n"
+        "for name in registry.names(): registry.code(name).version()\n"
+        "imported = {'exudyn', 'pinocchio', 'skfem', 'pybmodes', 'mujoco', 'pydrake'} & set(sys.modules)\n"
+        "assert not imported, imported\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_every_code_is_an_entry_point_of_this_package() -> None:
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    own = {name: path for name, path in registry.registered().items() if registry.bundled(path)}
+    assert own == project["entry-points"][registry.GROUP]
