@@ -8,7 +8,7 @@ from msgspec import Meta, Struct
 
 from ...references.protocol import boundary, registry
 from ...references.protocol.boundary import NonsenseError
-from ...references.protocol.child import Reply, blunder, serve
+from ...references.protocol.child import Reply, foreign_exception, serve
 from ...references.protocol.process import Failure, Limits, converse, one_line
 from .suite import CHECKS, EVERY, Check, Outcome, judge
 
@@ -64,7 +64,7 @@ def _answer(request: Any) -> Iterator[Reply]:
             outcome = judge(code, EVERY[number])
             yield {"verdict": outcome.verdict, "reason": outcome.reason}
         except BaseException as error:  # also SystemExit
-            yield blunder(error)
+            yield foreign_exception(error)
 
 
 def main() -> None:

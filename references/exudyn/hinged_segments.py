@@ -71,7 +71,7 @@ LAYER = 10.0
 need at most twice the elements."""
 
 
-def plant(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
+def hinge_segments(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
     """A blade at ``omega`` (rad/s) as a tree of at least ``elements`` elements, after the root joint if not clamped."""
     ends = _ends(blade, elements, omega)
     hinges = _hinges(blade, ends)

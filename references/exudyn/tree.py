@@ -22,7 +22,7 @@ from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Indepe
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
 from . import system as ex
-from .hinged_segments import SLIDE, TURN, HingedSegments, plant
+from .hinged_segments import SLIDE, TURN, HingedSegments, hinge_segments
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class ExudynTree(BladeAdapter):
         Raises:
             CodeError: no stable steady state at this speed.
         """
-        tree = plant(blade, elements, omega)
+        tree = hinge_segments(blade, elements, omega)
         M, C, K, q = linearize(tree, omega)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         shapes = _shapes(blade, tree, q, vectors)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, from_core, places, rigid
+from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
 
@@ -24,8 +24,8 @@ SYMMETRY_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """Drake's plant; see ``joint_chain.Plant``.
+class DrakeChain:
+    """Drake's plant; see ``joint_chain.ChainModel``.
 
     Attributes:
         plant, context: in floating point.
@@ -44,7 +44,7 @@ class Bodies:
     hub: int
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
-        """Force and derivatives by inverse dynamics with zero acceleration; see ``joint_chain.Plant``."""
+        """Force and derivatives by inverse dynamics with zero acceleration; see ``joint_chain.ChainModel``."""
         ad = _drake("autodiffutils")
         n, state = len(q), self._state(q, omega)
         seeds = np.zeros((len(state), 2 * n))
@@ -55,7 +55,7 @@ class Bodies:
         none = _drake("multibody.tree").MultibodyForces_[ad.AutoDiffXd](self.auto)
         force = self.auto.CalcInverseDynamics(self.auto_context, still, none)[self.velocity].reshape(-1, 1)
         stiffness, gyroscopic = np.split(ad.ExtractGradient(force), 2, axis=1)
-        check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Drake")
+        require_symmetries(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Drake")
         return ad.ExtractValue(force).ravel(), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
@@ -64,7 +64,7 @@ class Bodies:
         return self.plant.CalcMassMatrix(self.context)[np.ix_(self.velocity, self.velocity)]
 
     def jacobian(self, q: Array) -> Array:
-        """(elements, 4, n); see ``joint_chain.Plant``."""
+        """(elements, 4, n); see ``joint_chain.ChainModel``."""
         rates = _drake("multibody.tree").JacobianWrtVariable.kV
         self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
         world, origin = self.plant.world_frame(), np.zeros(3)
@@ -85,7 +85,7 @@ def _drake(module: str) -> Any:
     return import_module(f"pydrake.{module}")
 
 
-def plant(chain: Chain) -> Bodies:
+def build(chain: Chain) -> DrakeChain:
     """A hub rotating about z, then six links on joints of one coordinate for every node except the clamped one."""
     tree, pose = _drake("multibody.tree"), _drake("math").RigidTransform
     made = _drake("multibody.plant").MultibodyPlant(0.0)
@@ -104,7 +104,7 @@ def plant(chain: Chain) -> Bodies:
         links.append(link)
     made.Finalize()
     auto = made.ToAutoDiffXd()
-    return Bodies(
+    return DrakeChain(
         plant=made,
         context=made.CreateDefaultContext(),
         auto=auto,
@@ -131,5 +131,5 @@ CODE = JointChain(
     independence=from_core("Drake"),
     distribution="drake",
     max_elements=80,  # each number in the recursion over 6·elements joints has 12·elements derivatives
-    plant=plant,
+    build=build,
 )

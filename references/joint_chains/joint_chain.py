@@ -43,7 +43,7 @@ RIGID = 1e-9
 """Departure from a rigid body's inertia attributed to rounding, relative to its largest entry."""
 
 
-class Plant(Protocol):
+class ChainModel(Protocol):
     """A chain in another code: a hub that rotates about z, then a body on six joints for every node except the clamped one.
 
     Coordinates q (n,) are all except the hub's: x, y, z, then about x, y, z, for each body in turn.
@@ -92,7 +92,7 @@ class JointChain(BladeAdapter):
         independence: equations of motion from the code, everything else from core; see ``from_core``.
         distribution: the installed package that gives the version.
         max_elements: largest number of elements, limited by the code's time or memory.
-        plant: builds the chain in the code.
+        build: builds the chain in the code.
     """
 
     name: str
@@ -101,7 +101,7 @@ class JointChain(BladeAdapter):
     independence: Independence
     distribution: str
     max_elements: int
-    plant: Callable[[Chain], Plant]
+    build: Callable[[Chain], ChainModel]
     levels: tuple[int, ...] = (10, 20, 30)
     order: int = 2
 
@@ -117,9 +117,9 @@ class JointChain(BladeAdapter):
         """
         self.limit(elements)
         chain = discretize(blade, elements, "half_end", "body_fixed")
-        body = self.plant(chain)
+        body = self.build(chain)
         elastic = cast(Array, block_diag(*chain.beams.stiffness))
-        q, before = steady(body, elastic, omega, chain)
+        q, before = steady_coordinates(body, elastic, omega, chain)
         _, stiffness, gyroscopic = body.inertial(q, omega)
         mass = body.mass(q)
         frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
@@ -176,7 +176,7 @@ def rigid(lump: Array) -> tuple[float, Array, Array]:
     return float(mass), centre, lump[3:, 3:]
 
 
-def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:
+def require_symmetries(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:
     """Check the symmetry of a code's derivatives by q (symmetric) and by q̇ (skew), to the relative error ``rounding``.
 
     Raises:
@@ -191,7 +191,7 @@ def check(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> No
             )
 
 
-def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Array, Array]:
+def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: Chain) -> tuple[Array, Array]:
     """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial forces.
 
     The load, Ω², is raised in steps only if Newton's method fails with the full load.
@@ -206,7 +206,7 @@ def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Ar
     stiffness = np.zeros_like(elastic)
     while done < 1.0:
         load = min(1.0, done + step)
-        found = _newton(plant, elastic, omega * load**0.5, q, chain)
+        found = _newton(model, elastic, omega * load**0.5, q, chain)
         if found is not None:
             (q, stiffness), done = found, load
         elif step > SMALLEST_RAMP:
@@ -216,7 +216,7 @@ def steady(plant: Plant, elastic: Array, omega: float, chain: Chain) -> tuple[Ar
     return q, stiffness
 
 
-def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) -> tuple[Array, Array] | None:
+def _newton(model: ChainModel, elastic: Array, omega: float, q: Array, chain: Chain) -> tuple[Array, Array] | None:
     """Newton's method until the energy of its step, the square of the error in the energy norm, is at rounding; None if
     it fails.
 
@@ -227,7 +227,7 @@ def _newton(plant: Plant, elastic: Array, omega: float, q: Array, chain: Chain) 
     lever = np.tile(np.repeat([1.0, float(np.linalg.norm(chain.nodes[-1, :3, 3]))], 3), len(q) // 6)
     before = np.inf
     for _ in range(STEPS):
-        force, stiffness, _ = plant.inertial(q, omega)
+        force, stiffness, _ = model.inertial(q, omega)
         residual = force + elastic @ q
         try:
             step = np.linalg.solve(elastic + stiffness, -residual)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, from_core, places, rigid
+from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
 
@@ -28,8 +28,8 @@ SYMMETRY_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """MuJoCo's model and state; see ``joint_chain.Plant``.
+class MujocoChain:
+    """MuJoCo's model and state; see ``joint_chain.ChainModel``.
 
     Attributes:
         model, data: MuJoCo's; coordinate 0 is the hub's.
@@ -41,7 +41,7 @@ class Bodies:
     step: Array
 
     def inertial(self, q: Array, omega: float) -> tuple[Array, Array, Array]:
-        """Force and derivatives by differences; see ``joint_chain.Plant``."""
+        """Force and derivatives by differences; see ``joint_chain.ChainModel``."""
         n, rates = len(q), np.append(omega, np.zeros(len(q)))
         unit = np.eye(n)
         stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
@@ -56,7 +56,7 @@ class Bodies:
         for k in range(n):
             change = np.append(0.0, rate * unit[k])
             gyroscopic[:, k] = (self._of_rates(rates + change) - self._of_rates(rates - change)) / (2 * rate)
-        check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "MuJoCo")
+        require_symmetries(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "MuJoCo")
         return self._of_rates(rates), stiffness, gyroscopic
 
     def mass(self, q: Array) -> Array:
@@ -100,7 +100,7 @@ def _mujoco() -> Any:
     return import_module("mujoco")
 
 
-def plant(chain: Chain) -> Bodies:
+def build(chain: Chain) -> MujocoChain:
     """A hub rotating about z, then a body on six joints for every node except the clamped one.
 
     MuJoCo's compiler requires inertias of solids. The chain may have point masses, so its inertias are set after
@@ -131,7 +131,7 @@ def plant(chain: Chain) -> Bodies:
     model.body_subtreemass[:] = np.append(model.body_mass[1:].sum(), np.cumsum(model.body_mass[:0:-1])[::-1])
     lengths = np.linalg.norm(chain.beams.undeformed[:, :3, 3], axis=1)
     step = STEP * np.concatenate([np.repeat([length, 1.0], 3) for length in lengths])
-    return Bodies(model, mujoco.MjData(model), step)
+    return MujocoChain(model, mujoco.MjData(model), step)
 
 
 CODE = JointChain(
@@ -141,5 +141,5 @@ CODE = JointChain(
     independence=from_core("MuJoCo"),
     distribution="mujoco",
     max_elements=80,  # the time of the differences grows as its square, of the eigenproblem as its cube
-    plant=plant,
+    build=build,
 )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Chain
 from ..protocol import install
-from .joint_chain import JointChain, bodies, check, from_core, places
+from .joint_chain import JointChain, bodies, from_core, places, require_symmetries
 
 Array = NDArray[np.float64]
 
@@ -22,8 +22,8 @@ SYMMETRY_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class PinocchioTree:
-    """Pinocchio's model and workspace; see ``joint_chain.Plant``."""
+class PinocchioChain:
+    """Pinocchio's model and workspace; see ``joint_chain.ChainModel``."""
 
     model: Any
     data: Any
@@ -46,10 +46,10 @@ class PinocchioTree:
         return np.array([pin.getJointJacobian(self.model, self.data, k, axes)[:4, 1:] for k in last])
 
 
-def tree(chain: Chain) -> PinocchioTree:
+def build(chain: Chain) -> PinocchioChain:
     """Build the chain in Pinocchio."""
-    model = plant(chain)
-    return PinocchioTree(model, _workspace(model), chain.elements)
+    model = pinocchio_model(chain)
+    return PinocchioChain(model, _workspace(model), chain.elements)
 
 
 _LAST: dict[int, Any] = {}
@@ -73,7 +73,7 @@ def _pinocchio() -> Any:
     return pinocchio
 
 
-def plant(chain: Chain) -> Any:
+def pinocchio_model(chain: Chain) -> Any:
     """Pinocchio's model: a hub rotating about z, then a body on four joints for every node except the clamped one."""
     pin = _pinocchio()
     model = pin.Model()
@@ -104,7 +104,7 @@ def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Arra
     q, v = np.append(0.0, q), np.append(omega, np.zeros_like(q))
     pin.computeRNEADerivatives(model, data, q, v, np.zeros_like(v))
     force, stiffness, gyroscopic = data.tau[1:].copy(), data.dtau_dq[1:, 1:].copy(), data.dtau_dv[1:, 1:].copy()
-    check(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Pinocchio")
+    require_symmetries(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Pinocchio")
     return force, stiffness, gyroscopic
 
 
@@ -115,5 +115,5 @@ CODE = JointChain(
     independence=from_core("Pinocchio"),
     distribution="pin",
     max_elements=60,  # its workspace has four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60
-    plant=tree,
+    build=build,
 )

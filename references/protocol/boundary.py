@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
 
-Line = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
+TextLine = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
 Name = Annotated[str, Meta(max_length=60, pattern=r"^[^\W_][\w.+-]*$")]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]
 Elements = Annotated[int, Meta(ge=1, le=10**7)]
@@ -58,24 +58,24 @@ class Effects(Struct, frozen=True, forbid_unknown_fields=True):
 class Origin(Struct, frozen=True, forbid_unknown_fields=True):
     """Same fields as ``interface.Independence``."""
 
-    engine: Line
-    theory: Line
-    rotation: Line
-    sections: Line
-    eigensolver: Line
+    engine: TextLine
+    theory: TextLine
+    rotation: TextLine
+    sections: TextLine
+    eigensolver: TextLine
 
 
 class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     """Declarations of an adapter; see ``interface``. A code that solves only mechanisms has the defaults of the others."""
 
     name: Name
-    title: Line
+    title: TextLine
     effects: Effects
-    hint: Line
+    hint: TextLine
     blades: bool
     mechanisms: bool
     independence: Origin | None
-    distribution: Line
+    distribution: TextLine
     version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
     page: str
     levels: Annotated[tuple[Elements, ...], Meta(max_length=20)] = ()
@@ -104,7 +104,7 @@ class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
-    coordinates: list[Line]
+    coordinates: list[TextLine]
     steady: list[float]
     values: _Complex
     shapes: _Complex

@@ -42,7 +42,7 @@ def failed(kind: str, reason: str) -> Reply:
     return {"kind": kind, "reason": reason}
 
 
-def blunder(error: BaseException, where: str = "") -> Reply:
+def foreign_exception(error: BaseException, where: str = "") -> Reply:
     """The reply for an exception that a code must not raise, including ``SystemExit``."""
     return failed("nonsense", f"{where}: {raised(error)}" if where else raised(error))
 
@@ -51,4 +51,4 @@ def _line(reply: Reply) -> str:
     try:
         return json.dumps(reply)
     except Exception as error:  # whatever a code puts into its answer
-        return json.dumps({"run": reply["run"], **blunder(error, "its answer")})
+        return json.dumps({"run": reply["run"], **foreign_exception(error, "its answer")})

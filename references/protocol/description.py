@@ -19,7 +19,7 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
-from .child import Reply, blunder, failed, serve
+from .child import Reply, failed, foreign_exception, serve
 from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, Motion, Shares, shares
 from .mechanism_interface import MechanismAdapter
 from .process import Failure, Limits, converse, one_line, raised
@@ -213,7 +213,7 @@ def _answer(request: Any) -> Iterator[Reply]:
         try:
             yield _facts(code, blades)
         except BaseException as error:
-            yield blunder(error, "its declarations")
+            yield foreign_exception(error, "its declarations")
 
 
 def main() -> None:

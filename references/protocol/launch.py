@@ -19,7 +19,7 @@ from .supervisor import REQUEST
 
 SUPERVISOR = Path(__file__).with_name("supervisor.py")
 
-PRELOADED = ("southwell.references.preloaded",)
+WARM_IMPORTS = ("southwell.references.warm_imports",)
 """What a kept or prepared process imports."""
 
 _keeping = False
@@ -115,7 +115,7 @@ def keep() -> None:
 def prepare() -> None:
     """Start the process that forks for the next start: it imports while the request is prepared."""
     if not _prepared:
-        _prepared.append(_forker(PRELOADED))
+        _prepared.append(_forker(WARM_IMPORTS))
 
 
 def start(module: str, space: int) -> Child:
@@ -140,7 +140,7 @@ def _keep_one() -> _Forker | None:
     global _kept
     with _starting:  # one for all threads
         if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
-            _kept = _forker(PRELOADED)
+            _kept = _forker(WARM_IMPORTS)
         return _kept
 
 

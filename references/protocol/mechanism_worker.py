@@ -13,7 +13,7 @@ import numpy as np
 
 from ...core.mechanism.description import Mechanism
 from . import boundary, registry, wire
-from .child import Reply, blunder, failed, serve
+from .child import Reply, failed, foreign_exception, serve
 from .interface import CodeError
 from .mechanism_interface import MechanismAdapter, MechanismModes
 from .process import Failure, Limits, one_line
@@ -80,7 +80,7 @@ def _solve(code: MechanismAdapter, mechanism: Mechanism, guess: Mapping[str, flo
     except CodeError as error:
         return failed("refused", one_line(error))
     except BaseException as error:  # whatever the code raises affects this mechanism only
-        return blunder(error)
+        return foreign_exception(error)
 
 
 def _answer(data: Any) -> Iterator[Reply]:

@@ -1,4 +1,4 @@
-"""Run an untrusted process with limits on time, memory and output, and leave nothing of it running.
+"""Run an untrusted process with limits on time, memory and output, and kill all its descendants.
 
 The process runs a module of the package under ``supervisor.py``. It reads one request, a line of JSON, and writes one line
 per answer as soon as it is ready. Closing its standard input ends it and all processes it has started.

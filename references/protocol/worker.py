@@ -16,7 +16,7 @@ from ...core.blade import Blade
 from ...core.modes import Modes
 from . import boundary, registry, stored_answers
 from .boundary import NonsenseError
-from .child import Reply, blunder, failed, serve
+from .child import Reply, failed, foreign_exception, serve
 from .interface import BladeAdapter, CodeError
 from .process import Failure, Limits, converse, one_line
 from .wire import decode_blade, encode
@@ -119,7 +119,7 @@ def declined(code: Any, asked: str, question: object) -> Reply | None:
     try:
         why = getattr(code, asked)(question)
     except BaseException as error:  # an exit, too
-        return blunder(error, f"{asked}()")
+        return foreign_exception(error, f"{asked}()")
     if not (why is None or isinstance(why, str)):
         return failed("nonsense", f"{asked}(): {one_line(repr(why))}: neither a reason nor None")
     if why:
@@ -127,7 +127,7 @@ def declined(code: Any, asked: str, question: object) -> Reply | None:
     try:
         return failed("not installed", f"not installed: {one_line(code.hint)}") if code.version() is None else None
     except BaseException as error:
-        return blunder(error, "version()")
+        return foreign_exception(error, "version()")
 
 
 def _solve(code: BladeAdapter, blade: Blade, run: Run) -> Reply:
@@ -140,7 +140,7 @@ def _solve(code: BladeAdapter, blade: Blade, run: Run) -> Reply:
     except CodeError as error:
         return failed("refused", one_line(error))
     except BaseException as error:  # whatever the code raises affects this run only
-        return blunder(error)
+        return foreign_exception(error)
 
 
 def _answer(request: Any) -> Iterator[Reply]:

@@ -16,8 +16,8 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sam
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
+from ..protocol.cache_last import cache_last
 from ..protocol.interface import BladeAdapter, CodeError, Independence
-from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
@@ -145,7 +145,7 @@ class Part:
     angle: Array
 
 
-@latest
+@cache_last
 def _mesh(blade: Blade, elements: int) -> tuple[Any, list[Part], list[tuple[Any, Any]]]:
     """What is the same at every speed.
 

@@ -20,14 +20,14 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol import install
+from ..protocol.cache_last import cache_last
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
-from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
 from .assembly import bilinear, skfem
 from .reissner_beam import Beam, State, beam_of, spatial, stiffening, strain, strain_rate
-from .reissner_steady import steady
+from .reissner_steady import steady_state
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ class ScikitFemReissner(BladeAdapter):
         """
         self.limit(len(element_ends(blade, elements, COARSEST)) - 1)
         beam = _beam(blade, elements)
-        state = steady(beam, omega)
+        state = steady_state(beam, omega)
         motions = _motions(beam, state)
         M, C, K = _matrices(beam, state, omega, motions)
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
@@ -92,7 +92,7 @@ class ScikitFemReissner(BladeAdapter):
         return Modes(omega, frequencies, shapes, refinement, strain=largest)
 
 
-@latest
+@cache_last
 def _beam(blade: Blade, elements: int) -> Beam:
     return beam_of(blade, element_ends(blade, elements, COARSEST))
 

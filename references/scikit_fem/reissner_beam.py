@@ -70,7 +70,7 @@ class Beam:
 
     @property
     def elements(self) -> int:
-        """How many."""
+        """Number of elements."""
         return int(self.basis.mesh.nelements)
 
 

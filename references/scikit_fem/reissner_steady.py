@@ -22,7 +22,7 @@ COMMUTE = 1e-8
 """Largest product of steady rotations about two axes of the root joint for which their order does not matter, rad²."""
 
 
-def steady(beam: Beam, omega: float) -> State:
+def steady_state(beam: Beam, omega: float) -> State:
     """The steady state at ``omega`` (rad/s), reached from zero speed in as few steps as suffice.
 
     Raises:

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, sample, uniform
 from ...core.modes import Modes
+from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError
-from ..protocol.latest import latest
 from .materials import Orthotropic
 from .mesh import Bricks, blade
 
@@ -89,7 +89,7 @@ def modes(blade: Blade, omega: float, elements: int, count: int, solve: Solve) -
         wanted *= 2
 
 
-@latest
+@cache_last
 def bar(of: Blade, elements: int) -> tuple[Bricks, Orthotropic]:
     """The solid equivalent to a uniform blade, from the rotor's axis outwards, and its material."""
     at = sample(of, 0.0)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from ...core.condense import ties
-from ..protocol.latest import latest
+from ..protocol.cache_last import cache_last
 from . import hexahedra
 from .materials import Orthotropic
 from .mesh import Bricks
@@ -125,7 +125,7 @@ def layer(bricks: Bricks, at: int) -> NDArray[np.intp]:
     return np.arange(at * size, (at + 1) * size)
 
 
-@latest
+@cache_last
 def with_root_forces(solid: CurvedSolid, layers: int, across: tuple[int, int]) -> tuple[Bricks, Array]:
     """The mesh of a solid with ``layers`` along the span, and the nodal forces (3n, 6) at its root, one column per reaction."""
     bricks = solid.bricks(np.linspace(0.0, solid.length, layers + 1), across)

@@ -23,8 +23,8 @@ from scipy.sparse.linalg import splu
 from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
 from ..protocol import install
+from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError
-from ..protocol.latest import latest
 from ..protocol.quadratic import gyroscopic_modes
 from .materials import Material, Orthotropic, rotated
 from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless
@@ -76,7 +76,7 @@ class Solid:
     volume: Array
 
 
-@latest
+@cache_last
 def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     """Build the fields of a block."""
     import skfem as fem
@@ -139,7 +139,7 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
     return ss.csr_array((sums.ravel()[order], columns, rows), shape=(3 * len(s.nodes), 3 * len(s.nodes)))
 
 
-@latest
+@cache_last
 def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
     """Where the entries of matrices of all elements, for each pair of displacement components, are in the sparse matrix.
 
@@ -172,7 +172,7 @@ def internal_force(s: Solid, u: Array) -> Array:
     return np.concatenate(parts)
 
 
-@latest
+@cache_last
 def mass(s: Solid) -> ss.csr_array:
     """Mass matrix (n, n), kg, the same for each displacement component."""
     import skfem as fem
@@ -246,7 +246,7 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
     return ss.csr_array(ss.csc_array(one + others)[:, kept])
 
 
-def steady(s: Solid, omega: float, free: Any) -> tuple[Array, Any]:
+def steady_displacements(s: Solid, omega: float, free: Any) -> tuple[Array, Any]:
     """Displacements (3n,) of the steady state, and the stiffness there including spin softening, by Newton's method.
 
     ``free`` are the free ``motions``.
@@ -277,7 +277,7 @@ def factored(matrix: Any) -> Any:
 
 
 def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
-    """As ``steady``, from displacements ``u``; no stiffness if Newton's method does not converge.
+    """As ``steady_displacements``, from displacements ``u``; no stiffness if Newton's method does not converge.
 
     The geometric stiffness is that of the stress which the step before predicted. With the stress of ``u``, the squares of
     the rotations of that step, as spurious tension, make a slender solid straighten slowly (D. Magisano, L. Leonetti and
@@ -324,7 +324,7 @@ def modes(
     """
     s = solid(bricks, material)
     free = motions(s, clamp)
-    _, K = steady(s, omega, free)
+    _, K = steady_displacements(s, omega, free)
     m = mass(s)
     B = ss.csr_array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     M = ss.kron(ss.eye_array(3), m, format="csc")

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
+from ..protocol.cache_last import cache_last
 from ..protocol.interface import Independence, Motion
-from ..protocol.latest import latest
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
-from .spectral import clamped
+from .spectral import clamped_functions
 from .straight_beam import ClosedForm, line, refusal, tension, terms
 
 Array = NDArray[np.float64]
@@ -49,11 +49,11 @@ class Bending:
         return self.elastic + omega**2 * self.centrifugal
 
 
-@latest
+@cache_last
 def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
     """Edgewise and flapwise bending, separate if the blade is untwisted, with ``terms`` polynomials in each interval."""
     at = line(blade, terms)
-    v, slope, curvature = clamped(at.ends, terms, at.s)
+    v, slope, curvature = clamped_functions(at.ends, terms, at.s)
     angle = at.sections.twist + blade.pitch
     cos, sin = np.cos(angle), np.sin(angle)
     flap, edge = at.sections.EI_y, at.sections.EI_z  # of the section; motion along its z is resisted by EI_y
@@ -67,7 +67,7 @@ def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
     tense = integral(at.weight * tension(blade, at.s), slope)
     none = np.zeros_like(mass)
     centrifugal = {(Y, Y): tense - mass, (Z, Z): tense}
-    shape = clamped(at.ends, terms, STATIONS * blade.length)[0]
+    shape = clamped_functions(at.ends, terms, STATIONS * blade.length)[0]
 
     def together(planes: tuple[int, ...]) -> Bending:
         pairs = [[(i, j) for j in planes] for i in planes]

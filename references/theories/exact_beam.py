@@ -32,19 +32,19 @@ from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError, Independence
 from .ritz import ROTATION_X, X, Y, Z, apart, coupled_modes, integral, part, shape_of, skew, union
-from .spectral import clamped, pinned
-from .straight_beam import ClosedForm, Line, line, refusal, terms
+from .spectral import clamped_functions, pinned_functions
+from .straight_beam import BeamPoints, ClosedForm, line, refusal, terms
 
 Array = NDArray[np.float64]
 
 
-def steady(blade: Blade, at: Line, omega: float, terms: int) -> tuple[Array, Array]:
+def steady_stretch(blade: Blade, at: BeamPoints, omega: float, terms: int) -> tuple[Array, Array]:
     """Stretch λ (q,) of the steady state and its slope λ′ (q,), 1/m.
 
     Raises:
         CodeError: if the centrifugal force exceeds the axial stiffness, so that no steady state exists.
     """
-    u, strain, bend = pinned(at.ends, terms, at.s)
+    u, strain, bend = pinned_functions(at.ends, terms, at.s)
     K = integral(at.weight * at.sections.EA, strain) - omega**2 * integral(at.mass, u)
     force = omega**2 * (u.T @ (at.mass * (blade.hub_radius + at.s)))
     try:
@@ -71,7 +71,7 @@ class Beam:
         u_shape, v_shape: (21, n) the functions at ``core.modes.STATIONS``.
     """
 
-    at: Line
+    at: BeamPoints
     omega: float
     u: Array
     u_s: Array
@@ -90,9 +90,9 @@ def stretched(blade: Blade, omega: float, terms: int) -> Beam:
         CodeError: if no steady state exists.
     """
     at = line(blade, terms)
-    u, u_s, _ = pinned(at.ends, terms, at.s)
-    v, v_s, v_ss = clamped(at.ends, terms, at.s)
-    stretch, slope = steady(blade, at, omega, terms)
+    u, u_s, _ = pinned_functions(at.ends, terms, at.s)
+    v, v_s, v_ss = clamped_functions(at.ends, terms, at.s)
+    stretch, slope = steady_stretch(blade, at, omega, terms)
     turn = v_s / stretch[:, None]
     where = STATIONS * blade.length
     return Beam(
@@ -104,8 +104,8 @@ def stretched(blade: Blade, omega: float, terms: int) -> Beam:
         turn=turn,
         curvature=(v_ss - turn * slope[:, None]) / stretch[:, None],
         tense=integral(at.weight * at.sections.EA * (stretch - 1) * stretch, turn),  # N = E A (λ − 1)
-        u_shape=pinned(at.ends, terms, where)[0],
-        v_shape=clamped(at.ends, terms, where)[0],
+        u_shape=pinned_functions(at.ends, terms, where)[0],
+        v_shape=clamped_functions(at.ends, terms, where)[0],
     )
 
 

@@ -24,7 +24,7 @@ JUMP = 1e-4
 
 
 @dataclass(frozen=True)
-class Line:
+class ReferenceLine:
     """Points on the reference line, in axes that rotate with the hub; leading dimensions (elements, points).
 
     Attributes:
@@ -44,7 +44,7 @@ def root_axes(blade: Blade) -> Array:
     return (cone * pitch).as_matrix()
 
 
-def line(blade: Blade, s: Array) -> Line:
+def line(blade: Blade, s: Array) -> ReferenceLine:
     """The line at arc lengths ``s`` (e, q), m; each row lies within one piece between kinks.
 
     The section's x axis is the tangent t. Its axes are the blade's, rotated by the smallest rotation that brings x onto
@@ -67,7 +67,7 @@ def line(blade: Blade, s: Array) -> Line:
     turn = Rotation.from_rotvec(np.outer(twist_at(blade, s.ravel()), [1.0, 0.0, 0.0]))
     axes = (swing * turn).as_matrix().reshape(*s.shape, 3, 3)
     hub = root @ [blade.hub_radius, 0.0, 0.0]
-    return Line(hub + place @ root.T, slope @ root.T, root @ axes)
+    return ReferenceLine(hub + place @ root.T, slope @ root.T, root @ axes)
 
 
 def moments(mass: Array) -> Array:

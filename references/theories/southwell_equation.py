@@ -25,7 +25,7 @@ from ...core.modes import Modes
 from ..protocol.interface import Independence, Motion
 from .assumed_modes import Bending, bendings
 from .ritz import Y, integral, part, stationary_modes, union
-from .spectral import pinned
+from .spectral import pinned_functions
 from .straight_beam import ClosedForm, line, refusal, tension, terms
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def cable(blade: Blade, planes: tuple[int, ...], terms: int) -> Array:
     In the plane of rotation they are lower by 1 than out of it. Uniform, δ = 0: j (2j − 1) out of the plane.
     """
     at = line(blade, terms)
-    w, slope, _ = pinned(at.ends, terms, at.s)
+    w, slope, _ = pinned_functions(at.ends, terms, at.s)
     flapwise = stationary_modes(integral(at.mass, w), integral(at.weight * tension(blade, at.s), slope))[0] ** 2
     return np.sort(np.concatenate([flapwise - 1.0 if plane == Y else flapwise for plane in planes]))
 

@@ -36,7 +36,7 @@ def gauss(ends: Array, count: int) -> tuple[Array, Array]:
     return s.ravel(), weight.ravel()
 
 
-def clamped(ends: Array, terms: int, s: Array) -> Array:
+def clamped_functions(ends: Array, terms: int, s: Array) -> Array:
     """Functions for bending: value and slope are zero at the root and continuous.
 
     Args:
@@ -55,8 +55,11 @@ def clamped(ends: Array, terms: int, s: Array) -> Array:
     return _assembled(ends, s, local, shared=2)
 
 
-def pinned(ends: Array, terms: int, s: Array) -> Array:
-    """Functions for stretch, torsion and cables: zero at the root and continuous; as ``clamped``, but of degree ``terms``."""
+def pinned_functions(ends: Array, terms: int, s: Array) -> Array:
+    """Functions for stretch, torsion and cables: zero at the root and continuous, of degree ``terms``.
+
+    Arguments and returned arrays are those of ``clamped_functions``.
+    """
     local = np.zeros((terms + 1, terms + 1))
     local[:2, :2] = [[0.5, 0.5], [-0.5, 0.5]]
     bubbles = legendre.legint(np.eye(terms)[1:].T, lbnd=-1, axis=0)

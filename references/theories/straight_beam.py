@@ -24,7 +24,7 @@ EXTRA = 8
 
 
 @dataclass(frozen=True)
-class Line:
+class BeamPoints:
     """A straight blade at quadrature points; the last point is the tip and represents the tip mass.
 
     Attributes:
@@ -52,7 +52,7 @@ def terms(blade: Blade, level: int) -> int:
     return round(5.0 * np.sqrt(level / LEVELS[0]))
 
 
-def line(blade: Blade, terms: int) -> Line:
+def line(blade: Blade, terms: int) -> BeamPoints:
     """The blade at the quadrature points for ``terms`` polynomials per interval."""
     ends = intervals(blade)
     s, weight = gauss(ends, terms + EXTRA)
@@ -62,7 +62,7 @@ def line(blade: Blade, terms: int) -> Line:
     mass, I_x, I_y, I_z = (weight * per_length for per_length in (at.mass, at.I_x, at.I_y, at.I_z))
     for inertia, lump in zip((mass, I_x, I_y, I_z), (lumps[0], *lumps[3:]), strict=True):
         inertia[-1] = lump
-    return Line(ends, s, weight, at, mass, I_x, I_y, I_z)
+    return BeamPoints(ends, s, weight, at, mass, I_x, I_y, I_z)
 
 
 def tension(blade: Blade, s: Array) -> Array:

@@ -23,7 +23,7 @@ from ...core.modes import STATIONS, Modes
 from ..protocol.interface import Independence, Motion
 from .assumed_modes import bendings
 from .ritz import X, Y, apart, coupled_modes, integral, part, shape_of, skew, stationary_modes, union
-from .spectral import clamped, pinned
+from .spectral import clamped_functions, pinned_functions
 from .straight_beam import ClosedForm, line, refusal, terms
 
 Array = NDArray[np.float64]
@@ -32,8 +32,8 @@ Array = NDArray[np.float64]
 def edgewise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Array, Array]:
     """M, C, K (2n, 2n) of stretch and edgewise bending at ``omega`` (rad/s), and the coordinates' shapes (21, 4, 2n)."""
     at = line(blade, terms)
-    s, strain, _ = pinned(at.ends, terms, at.s)
-    v = clamped(at.ends, terms, at.s)[0]
+    s, strain, _ = pinned_functions(at.ends, terms, at.s)
+    v = clamped_functions(at.ends, terms, at.s)[0]
     bending, _ = bendings(blade, terms)
     inertia = integral(at.mass, s)
     stretching = integral(at.weight * at.sections.EA, strain) - omega**2 * inertia
@@ -42,7 +42,7 @@ def edgewise(blade: Blade, omega: float, terms: int) -> tuple[Array, Array, Arra
         apart(inertia, bending.mass),
         skew(2 * omega * integral(at.mass, v, s)),
         apart(stretching, bending.stiffness(omega)),
-        shape_of([(X, pinned(at.ends, terms, where)[0]), (Y, clamped(at.ends, terms, where)[0])]),
+        shape_of([(X, pinned_functions(at.ends, terms, where)[0]), (Y, clamped_functions(at.ends, terms, where)[0])]),
     )
 
 

@@ -61,7 +61,7 @@ def test_no_torsional_modes_without_rotary_inertia(omega, monkeypatch):
 
 
 def test_torsion_of_a_straight_blade_couples_by_rounding_only():
-    tree = hinged_segments.plant(unit(), 6, 5.0)
+    tree = hinged_segments.hinge_segments(unit(), 6, 5.0)
     turns = tree.strain == TORSION
     for matrix in exudyn_tree.linearize(tree, 5.0)[:3]:
         for coupling in (matrix[turns][:, ~turns], matrix[~turns][:, turns]):
@@ -87,11 +87,14 @@ def test_twist_and_pitch_rotate_from_y_towards_z(turned):
 def test_elements_are_shorter_at_the_root_only_where_a_layer_is_thin():
     """Tension T = m Ω² (R L + L²/2): √(EI/T) = 1/50, so the element at ten of them from the root is twice as long as there."""
     blade, omega = unit(), 50 * np.sqrt(2)
-    ends = hinged_segments.plant(blade, 300, omega).ends
+    ends = hinged_segments.hinge_segments(blade, 300, omega).ends
     length = np.interp(0.2, (ends[1:] + ends[:-1]) / 2, np.diff(ends))
     assert length / np.diff(ends)[0] == pytest.approx(2.0, rel=0.01)
     even = [replace(blade, precone=np.pi / 2), replace(blade, root=np.array([np.inf] * 4 + [0.0, np.inf]))]
-    for ends in [hinged_segments.plant(blade, 8).ends, *(hinged_segments.plant(b, 8, omega).ends for b in even)]:
+    for ends in [
+        hinged_segments.hinge_segments(blade, 8).ends,
+        *(hinged_segments.hinge_segments(b, 8, omega).ends for b in even),
+    ]:
         np.testing.assert_allclose(ends, np.linspace(0, 1, 9), rtol=1e-6)
 
 
@@ -119,7 +122,7 @@ def test_steady_stretch_is_exact_in_the_limit():
     rate = 50 / 70
     exact, errors = np.tan(rate) / rate - 1, []
     for elements in (12, 24, 48):
-        tree = hinged_segments.plant(unit(), elements)
+        tree = hinged_segments.hinge_segments(unit(), elements)
         *_, q = exudyn_tree.linearize(tree, 50.0)
         errors.append(q[tree.strain == 0].sum() / exact - 1)
     assert abs(errors[2]) < 2e-4
@@ -129,7 +132,7 @@ def test_steady_stretch_is_exact_in_the_limit():
 def test_the_mass_matrix_follows_from_the_jacobian():
     """Exudyn's M against Σ Jᵀ (m, I) J, with the adapter's J (used for mode shapes), also at non-zero coordinates."""
     blade = replace(unit(0.2, I_y=0.01, I_z=0.03), twist=np.array([0.2, 0.9]), pitch=0.1)
-    tree = hinged_segments.plant(blade, 5)
+    tree = hinged_segments.hinge_segments(blade, 5)
     M, _, _, q = exudyn_tree.linearize(tree, 20.0)
     assert abs(q).max() > 0.01
     J = exudyn_tree.jacobian(tree, q, tree.centre)
@@ -148,7 +151,7 @@ def test_segments_have_the_mass_and_inertia_of_the_blade():
     """Beyond the first hinge, about the root: ∫m, ∫ms, ∫ms² + ∫I of a tapered blade, in closed form."""
     mass = section_mass(np.array([3.0, 1.0]), np.array([0.2, 0.1]), np.array([0.5, 0.3]))
     blade = replace(unit(), mass=mass, tip_mass=np.diag([2.0, 2, 2, 0.3, 0.1, 0.2]))
-    tree = hinged_segments.plant(blade, 4)
+    tree = hinged_segments.hinge_segments(blade, 4)
     start, hinges = 0.125, np.array([0.125, 0.375, 0.625, 0.875])
     at = hinges + tree.centre[:, 0]
     m = np.polynomial.Polynomial([3.0, -2.0])
@@ -219,7 +222,7 @@ def test_springs_at_the_root(root):
 
 
 def test_at_rest_only_the_derivative_by_velocities_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    tree = hinged_segments.plant(curved(), 8)
+    tree = hinged_segments.hinge_segments(curved(), 8)
     M, C, K, _ = exudyn_tree.linearize(tree, 0.0)
     whole = system.linearized
     monkeypatch.setattr(system, "linearized", lambda exu, mbs, still, full: whole(exu, mbs, full=full))

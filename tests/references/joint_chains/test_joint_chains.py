@@ -18,7 +18,7 @@ from southwell.references.joint_chains import drake as drake_chain
 from southwell.references.joint_chains import joint_chain
 from southwell.references.joint_chains import mujoco as mujoco_chain
 from southwell.references.joint_chains import pinocchio as pinocchio_chain
-from southwell.references.joint_chains.joint_chain import Plant
+from southwell.references.joint_chains.joint_chain import ChainModel
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 
@@ -89,18 +89,18 @@ def test_shapes_agree_with_pinocchio(code: Any) -> None:
 @pytest.mark.parametrize(
     ("make", "rtol"),
     [
-        pytest.param(drake_chain.plant, 1e-12, id="drake", marks=needs("pydrake", drake_chain.CODE)),
-        pytest.param(mujoco_chain.plant, 1e-9, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
+        pytest.param(drake_chain.build, 1e-12, id="drake", marks=needs("pydrake", drake_chain.CODE)),
+        pytest.param(mujoco_chain.build, 1e-9, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
     ],
 )
-def test_every_stage_agrees_with_pinocchio(make: Callable[[Chain], Plant], rtol: float) -> None:
+def test_every_stage_agrees_with_pinocchio(make: Callable[[Chain], ChainModel], rtol: float) -> None:
     """Mass, inertial force, its derivatives, and motion of the bodies, at strains of 0.1, far from the undeformed state."""
     pytest.importorskip("pinocchio")
     chain = discretize(replace(curved(), tip_mass=TIP_MASS), 5, "half_end", "body_fixed")
     q = 0.1 * np.random.default_rng(3).standard_normal(30)
     stages = []
-    for plant in (make(chain), pinocchio_chain.tree(chain)):
-        stages.append((plant.mass(q), *plant.inertial(q, 2.0), plant.jacobian(q)))
+    for model in (make(chain), pinocchio_chain.build(chain)):
+        stages.append((model.mass(q), *model.inertial(q, 2.0), model.jacobian(q)))
     for ours, theirs in zip(*stages, strict=True):
         assert ours.shape == theirs.shape
         np.testing.assert_allclose(ours, theirs, atol=rtol * np.abs(theirs).max(), rtol=0)

@@ -158,7 +158,7 @@ def test_a_joint_with_a_wrong_derivative_is_detected() -> None:
         model.appendBodyToJoint(link, pin.Inertia(2.4, np.zeros(3), np.zeros((3, 3))), pin.SE3.Identity())
     with pytest.raises(CodeError, match=r"dtau_dq: .* from symmetric"):
         pinocchio_chain.inertial(model, model.createData(), np.full(18, 0.01), 10.0)
-    sound = pinocchio_chain.plant(chain)
+    sound = pinocchio_chain.pinocchio_model(chain)
     pinocchio_chain.inertial(sound, sound.createData(), np.full(18, 0.01), 10.0)
 
 

@@ -85,7 +85,7 @@ def test_steady_stretch_of_a_rotating_bar() -> None:
     """u(L) = ρ Ω² (R L²/2 + L³/3)/E with zero Poisson's ratio, at strains of 1e-7."""
     bar, omega, length, hub = Material(2e11, 0.0, 7800.0), 1.0, 2.0, 0.5
     s = hexahedra.solid(blade(np.linspace(hub, hub + length, 5), 0.1, 0.1, across=(1, 1)), bar)
-    u, _ = hexahedra.steady(s, omega, hexahedra.motions(s, clamped(hub)))
+    u, _ = hexahedra.steady_displacements(s, omega, hexahedra.motions(s, clamped(hub)))
     tip = u[: len(s.nodes)][s.nodes[:, 0] == hub + length]
     exact = 7800.0 * omega**2 * (hub * length**2 / 2 + length**3 / 3) / 2e11
     np.testing.assert_allclose(tip, exact, rtol=1e-5)

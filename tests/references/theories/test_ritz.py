@@ -43,11 +43,17 @@ def test_spectral_convergence(code, blade: Blade) -> None:
 
 @pytest.mark.parametrize("ends", [[0.0, 1.0], [0.0, 0.3, 0.5, 1.0]], ids=["one interval", "three"])
 @pytest.mark.parametrize(
-    ("functions", "terms"), [(spectral.clamped, 2), (spectral.clamped, 9), (spectral.pinned, 1), (spectral.pinned, 7)]
+    ("functions", "terms"),
+    [
+        (spectral.clamped_functions, 2),
+        (spectral.clamped_functions, 9),
+        (spectral.pinned_functions, 1),
+        (spectral.pinned_functions, 7),
+    ],
 )
 def test_polynomials(ends: list[float], functions, terms: int) -> None:
     """The right number, independent, zero at the root, smooth as documented, and with correct derivatives."""
-    ends_, smooth = np.array(ends), 2 if functions is spectral.clamped else 1
+    ends_, smooth = np.array(ends), 2 if functions is spectral.clamped_functions else 1
     s, _ = spectral.gauss(ends_, 20)
     value, slope, second = functions(ends_, terms, s)
     assert np.linalg.matrix_rank(value) == value.shape[1] == terms * (len(ends) - 1)

@@ -67,7 +67,7 @@ def test_steady_stretch_of_a_uniform_blade() -> None:
     at = straight_beam.line(blade, FINE)
     k = omega / 70.0
     b = (1 + k * 0.1 * np.sin(k)) / (k * np.cos(k))
-    stretch, slope = exact_beam.steady(blade, at, omega, FINE)
+    stretch, slope = exact_beam.steady_stretch(blade, at, omega, FINE)
     np.testing.assert_allclose(stretch, k * (b * np.cos(k * at.s) - 0.1 * np.sin(k * at.s)), rtol=1e-12)
     np.testing.assert_allclose(slope, -(k**2) * (0.1 * np.cos(k * at.s) + b * np.sin(k * at.s)), atol=1e-9)
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from southwell.references.protocol.latest import latest
+from southwell.references.protocol.cache_last import cache_last
 
 
 def test_the_latest_result_is_kept_for_the_same_arguments() -> None:
     made = []
 
-    @latest
+    @cache_last
     def double(a: np.ndarray, n: int, sizes: tuple[int, ...] = ()) -> list[float]:
         made.append(n)
         return [*(2.0 * a), *sizes]

@@ -1,6 +1,6 @@
-"""What most adapters need, for the process that forks those of the codes: libraries, and the compiled functions of a blade.
+"""Modules that the fork server imports once: libraries and compiled functions that most adapters need.
 
-It imports no code. What is loaded here is not loaded in each of the processes.
+No code is imported here. A worker process does not load these modules again.
 """
 
 from ..core.blade import uniform_blade
