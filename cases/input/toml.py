@@ -34,7 +34,7 @@ def document(path: Path, absent: str = "correct the path") -> dict[str, Any]:
     except RecursionError:
         raise _too_deep(path) from None
     except ValueError:  # Python's limit on the digits of an integer
-        raise CaseError(f"{path}: a whole number of thousands of digits: correct it") from None
+        raise CaseError(f"{path}: integer too large: more than 4,300 digits; check the number") from None
     if _depth(found) > DEEPEST:
         raise _too_deep(path)
     return found
@@ -121,7 +121,9 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
         return f"{dotted}: missing: add it"
     value, node = _walk(kind, field, raw)
     if "matching regex" in message and isinstance(value, str):
-        message = f"not a name: {RULE}"
+        if re.fullmatch(r"[a-z0-9][a-z0-9.-]*", value.lower()):
+            return f"{full}: {_short(repr(value))}: capital letters, in a name that is typed: write {value.lower()!r}"
+        return f"{full}: {_short(repr(value))}: not a name: {RULE}"
     choices = _choices(node)
     if not choices:  # the tag of a structure belongs to its union, not to the structure's fields
         table, _, _ = field.rpartition(".")
@@ -129,7 +131,7 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
     if isinstance(value, str) and choices and "nvalid" in message:
         return f"{full}: {_short(repr(value))}: not one of its values: {nearest(value, choices)}"
     said = message[0].lower() + message[1:].replace("`", "")
-    return f"{full}: {_short(repr(value))}: {said}: wrong sign, unit or type? correct it"
+    return f"{full}: {_short(repr(value))}: {said}: check sign, unit and type"
 
 
 def _choices(node: Any) -> tuple[str, ...]:

@@ -119,4 +119,4 @@ def _blades(given: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unus
                 return [(variant.blade, variant.unused) for variant in case.variants]
             given = BladeFile(given)
         found = readers.reading(folder / given.file, given.mount(folder))
-        return [(found.blade, found.source.unused)]
+        return [(found.mounted(folder / given.file), found.source.unused)]

@@ -71,7 +71,7 @@ def command(
         )
     if os.path.lexists(out):
         raise CaseError(f"{out}: exists already: give another name, or remove it")
-    subjects = find_subjects(blade, (mounting or Mounting()).mount())
+    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=chosen != "beamdyn")
     if len(subjects) > 1:
         names = ", ".join(s.blade.name for s in subjects)
         raise CaseError(f"{blade}: {len(subjects)} blades ({names}): name one of them")

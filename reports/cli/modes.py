@@ -80,8 +80,9 @@ def modes(
         raise UsageError(
             f"--against {against}: with --json: the table of changes is not part of the JSON: leave one out"
         )
-    other = subjects.single(against, mount) if against else None
-    for subject in subjects.changed(subjects.subjects(case, mount), given):
+    rotating = speeds is None or any(speeds)
+    other = subjects.single(against, mount, rotating) if against else None
+    for subject in subjects.changed(subjects.subjects(case, mount, rotating), given):
         if speeds is None and not subject.speeds:
             raise UsageError(f"--rpm: missing: {case} does not define rotor speeds: give them, as in 0:15:5")
         blade = subject.blade

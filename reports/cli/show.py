@@ -47,7 +47,7 @@ def command(
     all
         Print all stations.
     """
-    subjects = find_subjects(blade, (mounting or Mounting()).mount())
+    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=False)
     console = output()
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))

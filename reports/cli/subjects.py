@@ -50,30 +50,33 @@ def changed(found: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
     return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in found]
 
 
-def single(name: str, mount: Mount) -> Subject:
-    """The only blade of a file or case.
+def single(name: str, mount: Mount, rotating: bool = True) -> Subject:
+    """The only blade of a file or case; ``rotating`` as in ``subjects``.
 
     Raises:
         CaseError: as ``subjects``, or if the case has several blades.
     """
-    found = subjects(name, mount if is_blade_file(name) else Mount())
+    found = subjects(name, mount if is_blade_file(name) else Mount(), rotating)
     if len(found) > 1:
         raise CaseError(f"{name}: {len(found)} blades ({', '.join(s.blade.name for s in found)}): name one of them")
     return found[0]
 
 
-def subjects(name: str, mount: Mount) -> list[Subject]:
+def subjects(name: str, mount: Mount, rotating: bool = True) -> list[Subject]:
     """The blade of a file, with the given mount, or the blades of a case, which define how they are mounted.
 
+    ``rotating``: whether the blade turns, so that its hub radius must be known.
+
     Raises:
-        CaseError: if there is no such file or case, or the file has an error.
+        CaseError: if there is no such file or case, the file has an error, or the hub radius is unknown.
     """
     if is_blade_file(name):
         found = readers.reading(Path(name), mount)
         files = ", ".join(path.name for path in found.source.files)
         about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
         speeds = () if found.speed is None else (found.speed,)
-        return [Subject(found.blade, speeds, RPM, about, found.source.notes, found.source.unused, found.source.files)]
+        blade = found.mounted(Path(name)) if rotating else found.blade
+        return [Subject(blade, speeds, RPM, about, found.source.notes, found.source.unused, found.source.files)]
     case = select(name)
     if mount != Mount():
         raise CaseError(f"{name}: a case defines how its blade is mounted: leave out --main, --length and the like")

@@ -32,7 +32,7 @@ class Decks:
 def case_of(name: str, decks: Decks) -> Case | MechanismCase:
     """A case of blades or of a mechanism, by name or file; or the default case of a blade file."""
     if is_blade_file(name):
-        (subject,) = subjects(name, decks.mount)
+        (subject,) = subjects(name, decks.mount, rotating=decks.speeds is None or any(decks.speeds[0]))
         speeds, units = decks.speeds or (subject.speeds, subject.units)
         if not speeds:
             raise UsageError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")

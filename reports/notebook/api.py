@@ -56,7 +56,7 @@ def read(
             ``"park-blade/windpact"``.
         main: the main file that defines how the blade is mounted on the hub.
         length: from root to tip, m, if no file states it.
-        hub_radius: from the rotor axis to the root, m.
+        hub_radius: from the rotor axis to the root, m; required if no file states it.
         precone: degrees, positive downwind.
         pitch: degrees; its sign is that of ``pitch_convention``.
         pitch_convention: ``southwell``: positive with the leading edge downwind; ``openfast``: upwind, as BlPitch.
@@ -84,7 +84,7 @@ def read(
         if root is not None:
             allowed.enter_context(files.root_allowed(Path(root)))
         if str(path).partition("/")[0] not in (*library.names(), *library.mechanisms()):
-            return readers.read(Path(path), mount)
+            return readers.reading(Path(path), mount).mounted(Path(path))
         if mount != Mount():
             raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")
         case = library.select(str(path))

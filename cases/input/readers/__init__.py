@@ -66,7 +66,7 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
         k = int(np.abs(found.blade.twist).argmax())
         raise CaseError(
             f"{path}: twist: {np.degrees(found.blade.twist[k]):.6g} degrees at {found.blade.stations[k]:g} m: more than half a "
-            "turn: another unit, or another column? correct it"
+            "turn: check the unit and the column"
         )
     return found
 
@@ -79,7 +79,7 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     """
     module = _BY_SUFFIX.get(path.suffix.lower())
     if module is None:
-        from . import beamdyn, bmodes, elastodyn, fst, hawc2, text
+        from . import beamdyn, bmodes, elastodyn, fst, hawc2, other_files, text
 
         lines = text.load(path)
         signs = (
@@ -93,9 +93,11 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
             ("hawc2", hawc2.is_htc),
         )
         module = next((name for name, sign in signs if sign(lines)), None)
+        if module is None and (what := other_files.description(lines)):
+            raise CaseError(f"{path}: {what}")
     if module is None:
         raise CaseError(
-            f"{path}: not a blade file of a known format ({', '.join(FORMATS)}): "
-            "none of their names is in it; were the comments behind the values removed?"
+            f"{path}: not a blade file of a known format ({', '.join(FORMATS)}): contains no keyword of these formats; were "
+            "the comments behind the values removed?"
         )
     return import_module(f".{module}", __package__).read

@@ -81,12 +81,11 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     ]
     if main is None:
         notes.append("no main file: straight, untwisted")
-    if stated is None:
-        open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
-        notes += [f"no ElastoDyn main file: {', '.join(open_)} taken as 0"] if open_ else []
+    if stated is None and mounted.unstated:
+        notes.append(f"no ElastoDyn main file: {', '.join(mounted.unstated)} taken as 0")
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
     left = (*_damping(text), *(_actuator(main) if main else ()), *(elastodyn_unused.of_main(hub) if hub else ()))
-    return Reading(blade, Source(NAME, files, axes, tuple(notes), left))
+    return Reading(blade, Source(NAME, files, axes, tuple(notes), left), unstated=mounted.unstated)
 
 
 DAMPING = "mu1 … mu6"

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
+from ....core.blade_checks import body_fault
 from ..errors import CaseError
 from .elastodyn import complete
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
@@ -106,7 +107,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
     axes = f"{OPENFAST_AXES}; mass and tension centres off the axis along the section's y"
-    speed = value(main, named, "rot_rpm") * value(main, {"rpm_mult": (0, "1"), **named}, "rpm_mult") * np.pi / 30
+    factor = value(main, {"rpm_mult": (0, "1"), **named}, "romg_mult", "rpm_mult")
+    speed = value(main, named, "rot_rpm", "romg") * factor * np.pi / 30
     return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)), speed)
 
 
@@ -115,6 +117,11 @@ def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
     scaled = [f for f in FACTORS if value(main, named, f) != 1]
     if scaled:
         out.append(f"multiplied: {', '.join(f'{f} = {value(main, named, f):g}' for f in scaled)}")
+    if "nselt" in named:
+        out.append(
+            f"not used: BModes' own mesh (nselt = {named['nselt'][1]}); here the mesh is refined to the accuracy, and "
+            "frequencies that BModes prints with few elements differ by up to several per cent"
+        )
     if p["sc_offst"].any():
         out.append("the line of shear centres is treated as the straight reference axis")
     return tuple(out)
@@ -135,4 +142,10 @@ def _tip(main: Text, named: Named) -> Array:
     m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
     cross = m * np.array([[0.0, -z, y], [z, 0.0, 0.0], [-y, 0.0, 0.0]])
     tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
-    return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
+    tip = in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
+    if tip.any() and (wrong := body_fault(tip, "kg")):
+        raise CaseError(
+            f"{main.at(named['ixx_tip'][0])}: tip_mass, ixx_tip, iyy_tip, izz_tip: {wrong}; moments of 0 leave out the tip's "
+            "rotary inertia"
+        )
+    return tip

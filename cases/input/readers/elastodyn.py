@@ -207,7 +207,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
             f"offsets used (largest): {largest}; rotated by the structural twist; `offsets = false` or --no-offsets leaves "
             "them out, as FAST itself does",
         )
-    return Reading(blade, Source(NAME, files, axes, notes, left))
+    return Reading(blade, Source(NAME, files, axes, notes, left), unstated=mounted.unstated)
 
 
 def _columns(names: list[str]) -> tuple[str, ...]:
@@ -227,6 +227,5 @@ def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns
     if main is not None:
         out.append("tower, nacelle, hub and drive train of the main file are not part of the blade")
     if main is None:
-        given = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
-        out.append("no main file" + (f": {', '.join(given)} taken as 0" if given else ""))
+        out.append("no main file" + (f": {', '.join(mounted.unstated)} taken as 0" if mounted.unstated else ""))
     return tuple(out)

@@ -20,6 +20,7 @@ from ....core.blade import Blade, BladeError
 from ..errors import CaseError
 from . import hawc2_htc
 from .elastodyn import complete
+from .hawc2_orientation import mounting
 from .matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
 from .source import Mount, Reading, Source
 from .text import ROUNDING, Table, Text, leading, load, table
@@ -59,18 +60,20 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     mount = mount or Mount()
-    text, htc, wanted, body = load(path), None, mount.subset, None
+    text, htc, subset, body, stated = load(path), None, mount.subset, None, None
     if is_htc(text):
         htc, text = text, None
     elif mount.main is not None:
         htc = load(mount.main)
     if htc is not None:
-        body = hawc2_htc.blade_body(htc)
-        file, given = hawc2_htc.properties(htc, body)
-        wanted = wanted or given
+        commands = hawc2_htc.commands(htc)
+        body = hawc2_htc.blade_body(htc, commands)
+        stated = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
+        file, stated_subset = hawc2_htc.properties(htc, body)
+        subset = subset or stated_subset
         text = text or load(file)
     assert text is not None
-    found = _subset(text, wanted)
+    found = _subset(text, subset)
     r = found["r"]
     r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
     found.need(
@@ -93,10 +96,13 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     else:
         notes.append("no htc file: the half-chord line is straight and untwisted; only `pitch` rotates the sections")
-    mounted = complete(mount, None)
-    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is None]
-    if open_:
-        notes.append(f"{', '.join(open_)} taken as 0: in HAWC2 they are other bodies'")
+    mounted = complete(mount, stated)
+    if stated is not None:
+        angles = ", ".join(f"{name} {np.degrees(getattr(stated, name)):.6g}°" for name in ("precone", "pitch"))
+        notes.append(f"orientation of the htc's bodies: hub_radius {stated.hub_radius:.6g} m, {angles}")
+    unstated = mounted.unstated
+    if unstated:
+        notes.append(f"{', '.join(unstated)} taken as 0: in HAWC2 the orientation of the bodies defines them")
     try:
         blade = Blade(
             name=path.stem,
@@ -112,7 +118,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
     left = hawc2_htc.left(body) if body is not None else ()
-    return Reading(blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), left))
+    return Reading(
+        blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), left), unstated=unstated
+    )
 
 
 def _between(r: Array, values: Array, at: Array) -> Array:
@@ -122,23 +130,23 @@ def _between(r: Array, values: Array, at: Array) -> Array:
     return (1.0 - t) * values[k] + t * values[k + 1]
 
 
-def _subset(text: Text, wanted: tuple[int, int] | None) -> Table:
+def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     heads, current = {}, 1
     for k, line in enumerate(text.lines):
         if found := _SET.match(line):
             current = int(found[1])
         elif found := _SUBSET.match(line):
             heads[current, int(found[1])] = (k, int(found[2]))
-    if wanted is None and len(heads) > 1:
+    if subset is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(
             f"{text.path}: {len(heads)} sets: subsets {names}: choose one with --subset, or give the htc with --main"
         )
-    wanted = wanted or next(iter(heads))
-    if wanted not in heads:
+    subset = subset or next(iter(heads))
+    if subset not in heads:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
-        raise CaseError(f"{text.path}: no set {wanted[0]}, subset {wanted[1]}: it has {names}: correct --subset")
-    k, count = heads[wanted]
+        raise CaseError(f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset")
+    k, count = heads[subset]
     first = next((j for j in range(k + 1, len(text.lines)) if leading(text.lines[j])), len(text.lines))
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
     found = table(text, first, count, FULL if wide else PLAIN)

@@ -76,15 +76,24 @@ def matches_format(text: Text) -> bool:
     return any(_BODIES.match(line) for line in text.lines)
 
 
-def blade_body(htc: Text) -> Body:
+def commands(htc: Text) -> Body:
+    """The commands of a file and of those that it continues in.
+
+    Raises:
+        CaseError: if a continuation file is missing, or there are too many.
+    """
+    return list(_commands(htc, htc.path, 0, []))
+
+
+def blade_body(htc: Text, commands: Body) -> Body:
     """The commands of the first main_body with sections and a name that begins with "blade".
 
     Raises:
-        CaseError: if there is none, or a continuation file is missing.
+        CaseError: if there is none.
     """
     body: Body = []
     inside = False
-    for command in _commands(htc, htc.path, 0, []):
+    for command in commands:
         low = [w.lower() for w in command.words]
         if low[:2] == ["begin", "main_body"]:
             body, inside = [], True
@@ -204,7 +213,9 @@ def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterato
         if command.words[0] != "continue_in_file":
             yield command
         elif depth == _DEEP:
-            raise CaseError(f"{command.at}: continue_in_file: the {depth}th within each other: does one name itself?")
+            raise CaseError(
+                f"{command.at}: continue_in_file: files are nested more than {depth} deep; circular include?"
+            )
         elif len(lengths) > MOST_FILES or sum(lengths) > MOST_LINES:
             raise CaseError(
                 f"{command.at}: continue_in_file: {len(lengths)} files, {sum(lengths)} lines: at most {MOST_FILES} files and "

@@ -216,8 +216,9 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         )
         named = os.environ.get(self.files) if self.files else None
         with files.reading_also(Path(named)) if named else nullcontext():
-            found = reading(self._path(name, folder), mount)
-        return self.mounted(replace(found.blade, name=name)), found.source.unused
+            path = self._path(name, folder)
+            found = reading(path, mount)
+        return self.mounted(replace(found.mounted(path), name=name)), found.source.unused
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, as ``read``."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.blade import Blade
+from ..errors import CaseError
 
 
 @dataclass(frozen=True)
@@ -64,11 +65,32 @@ class Source:
 
 @dataclass(frozen=True)
 class Reading:
-    """A blade, its source, and the rotor speed of the analysis in the file (rad/s; None if not given)."""
+    """A blade and its source.
+
+    Attributes:
+        blade: the blade.
+        source: its origin.
+        speed: rotor speed of the analysis in the file, rad/s; None if not given.
+        unstated: names of the fields of ``Mount`` that neither a file nor an option states, taken as 0.
+    """
 
     blade: Blade
     source: Source
     speed: float | None = None
+    unstated: tuple[str, ...] = ()
+
+    def mounted(self, path: Path) -> Blade:
+        """The blade, for rotation.
+
+        Raises:
+            CaseError: if its hub radius, which affects every frequency of a rotating blade, is unknown.
+        """
+        if "hub_radius" in self.unstated:
+            raise CaseError(
+                f"{path}: hub_radius: not in the files read ({self.source.format}), and needed at speed: give the main file "
+                "that states it (--main), or --hub-radius and --precone (0 if there is none)"
+            )
+        return self.blade
 
 
 @dataclass(frozen=True)
@@ -94,6 +116,11 @@ class Mount:
     subset: tuple[int, int] | None = None
     multipliers: tuple[float, float, float] | None = None
     offsets: bool | None = None
+
+    @property
+    def unstated(self) -> tuple[str, ...]:
+        """Names of the missing values among hub radius, precone and pitch."""
+        return tuple(name for name in ("hub_radius", "precone", "pitch") if getattr(self, name) is None)
 
 
 OPENFAST_AXES = (

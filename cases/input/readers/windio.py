@@ -80,9 +80,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     blade = beamdyn.assemble(called, path, _axis(layout), eta, stiffness, mass, mounted)
     blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(layout.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
-    open_ = [n for n in ("hub_radius", "precone", "pitch") if getattr(mounted, n) is None]
-    if open_:
-        notes.append(f"{', '.join(open_)} taken as 0")
+    if mounted.unstated:
+        notes.append(f"{', '.join(mounted.unstated)} taken as 0")
     if layout.version == 1 and layout.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
     if loose:
@@ -91,7 +90,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
     mu = layout.elastic.find("structural_damping", "mu") if layout.elastic.find("structural_damping") else None
     left = unused("structural_damping.mu", mu.numbers(), "s", path, "modes are undamped") if mu else ()
-    return Reading(blade, Source(f"{NAME} {layout.version}", (path,), axes, tuple(notes), left))
+    source = Source(f"{NAME} {layout.version}", (path,), axes, tuple(notes), left)
+    return Reading(blade, source, unstated=mounted.unstated)
 
 
 def _layout(top: Field) -> Layout:

@@ -150,7 +150,7 @@ def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str])
     table = str(DATA / "elastodyn_blade.dat")  # the .bmi states a speed
     for command in ("modes", "campbell"):
         with pytest.raises(SystemExit) as left:
-            cli.main([command, table, "--length", "40"])
+            cli.main([command, table, "--length", "40", "--hub-radius", "1"])
         assert left.value.code == 2
         assert "does not define rotor speeds: give them" in capsys.readouterr().err
 

@@ -162,7 +162,7 @@ def test_a_blade_file_is_in_the_folder_of_the_study(capsys: pytest.CaptureFixtur
     (inner / "study.toml").write_text(given)
     status, _, err = run(capsys, "inner/study.toml", "--out", "other.jsonl")
     assert (status, err.count("\n")) == (2, 1)
-    assert f"outside {inner}: files that a file names are read from its folder only" in err
+    assert f"outside {inner}: a file may name files in its folder only" in err
 
 
 def test_a_log_has_the_remaining_time_of_this_run(

@@ -72,7 +72,11 @@ def test_the_half_chord_line_may_begin_beside_the_axis(blades: tuple[Blade, Blad
     ("old", "new", "phrase"),
     [
         ("./iea15_bodies.htc", "./nowhere.htc", r"iea15.htc: line 2: continue_in_file: ./nowhere.htc: not found"),
-        ("./iea15_bodies.htc", "./iea15.htc", r"iea15.htc: line 2: continue_in_file: the 10th within each other"),
+        (
+            "./iea15_bodies.htc",
+            "./iea15.htc",
+            r"iea15.htc: line 2: continue_in_file: files are nested more than 10 deep",
+        ),
         ("./iea15_bodies.htc ;", ";", r"iea15.htc: line 2: continue_in_file: no name: add it"),
     ],
 )
