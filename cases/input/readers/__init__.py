@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.blade import Blade
+from ....core.blade import Blade, BladeError
 from .. import files
 from ..errors import CaseError
 from ..names import LONGEST, named
@@ -49,7 +49,12 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     """
     deck = path.suffix.lower() not in _BY_SUFFIX
     with files.reading(path, *([mount.main] if mount and mount.main else []), deck=deck):
-        found = recognise(path)(path, mount)
+        try:
+            found = recognise(path)(path, mount)
+        except (
+            BladeError
+        ) as error:  # of a value that a reader adds to a valid blade, such as the tip mass of a main file
+            raise CaseError(f"{path}: {error}") from error
     if mount is not None:
         for option, given, format in (
             ("multipliers", mount.multipliers, "ElastoDyn"),

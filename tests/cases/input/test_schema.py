@@ -128,6 +128,8 @@ BAD = [
     ("length = 6.0", "lenght = 6.0", ["blade.lenght", "unknown key", "did you mean length?"]),
     ("modes = 3", "modes = 3\nmotion = 4", ["compare.motion", "did you mean motions?"]),
     ("[compare]", "[comparison]", ["comparison: unknown key: did you mean compare?"]),
+    ("length = 6.0", "length = 1e-15", ["blade: length: 1e-15 m", "check the unit"]),
+    ("E = 7e10", "E = 1e-320", ["blade: stiffness: diagonal", "must be positive"]),
     ('name = "', 'name = "K', ["name: 'K", "capital letters", "write 'k"]),
     ("length = 6.0", "length = -6.0", ["blade.length: -6.0", "> 0.0", "check sign, unit and type"]),
     ("length = 6.0", "length = nan", ["blade.length: nan", "not a finite number"]),
