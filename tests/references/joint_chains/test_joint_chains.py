@@ -146,8 +146,8 @@ def test_an_unsupported_blade_is_declined_with_a_reason(code: Any, changed: dict
 
 def test_derivatives_without_their_symmetry_are_an_error() -> None:
     K, C = np.eye(3), np.array([[0.0, 1, 0], [-1, 0, 2], [0, -2, 0]])
-    joint_chain.check(K, C, 1e-9, "code")
+    joint_chain.require_symmetries(K, C, 1e-9, "code")
     with pytest.raises(CodeError, match=r"dtau_dq: 1\.0e-06 from symmetric: code's"):
-        joint_chain.check(K + 1e-6 * np.eye(3, k=1), C, 1e-9, "code")
+        joint_chain.require_symmetries(K + 1e-6 * np.eye(3, k=1), C, 1e-9, "code")
     with pytest.raises(CodeError, match=r"dtau_dv: 2\.0e\+00 from skew"):
-        joint_chain.check(K, C + np.eye(3), 1e-9, "code")
+        joint_chain.require_symmetries(K, C + np.eye(3), 1e-9, "code")
