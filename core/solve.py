@@ -191,6 +191,6 @@ def rigid_strain_bias(
     computed at a speed (rad/s) on two meshes, the finer one last; without rigid strains there is none.
     """
     meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
-    if meshes.softer is None:
+    if meshes.softened is None:
         return [(np.ones(count), np.zeros(count)) for _ in runs]
-    return [without_bias(*(meshes.bias(n, meshes.of(n).at(omega)) for n in elements)) for omega, elements in runs]
+    return [without_bias(*(meshes.bias(n, meshes.uniform(n).at(omega)) for n in elements)) for omega, elements in runs]

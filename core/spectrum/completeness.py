@@ -53,8 +53,8 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
         counted = below(p, shift)
     if counted != found:
         raise MissedModesError(
-            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: request "
-            "another number of modes or elements, and report this blade"
+            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: change "
+            "the number of modes or elements; please report this as a bug"
         )
 
 

@@ -24,7 +24,9 @@ from .eigen import Eigen
 Array = NDArray[np.float64]
 
 _VECTOR_TOLERANCE = 1e-9  # relative error of the vectors; that of the frequencies is its square
-_MAX_SOLVE_ERROR = 1e-4  # relative error of a solution with K above which K is lost to rounding; usual are 1e-12
+_MAX_SOLVE_ERROR = (
+    1e-4  # relative error of a solution with K above which K is dominated by rounding error; usual are 1e-12
+)
 _FIRST_LOOK, _LOOK_EVERY = 13, 12  # numbers of vectors, for each of a block, before the first check; between checks
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
@@ -67,7 +69,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
 
     Raises:
         UnstableError: if K is not positive definite.
-        EigensolverError: if the basis is full before the modes have converged, or K is lost to rounding.
+        EigensolverError: if the basis is full before the modes have converged, or K is dominated by rounding error.
         MissedModesError: if a mode is missing; see ``completeness``.
     """
     width = len(near.vectors) if near else _width(p)
@@ -114,7 +116,7 @@ def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None, widt
 
     Raises:
         UnstableError: if K is not positive definite.
-        EigensolverError: if K is lost to rounding.
+        EigensolverError: if K is dominated by rounding error.
     """
     n = len(p.residual)
     w = _start(width, 2 * n).copy() if near is None else near.vectors.copy()
@@ -126,7 +128,7 @@ def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None, widt
     if not lost < _MAX_SOLVE_ERROR:
         unstable = "" if p.factor.positive else "not positive definite: the steady state is unstable; or it is "
         raise EigensolverError(
-            f"the stiffness of {len(p.K)} elements is {unstable}lost to rounding (relative error of a solution {lost:.1e}): "
+            f"the stiffness of {len(p.K)} elements is {unstable}dominated by rounding error (of {lost:.1e} in a solution): "
             "use fewer elements, or check units"
         )
     if not p.factor.positive:
@@ -206,7 +208,7 @@ def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
     return _quotients(p, x)[0]
 
 
-@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # what is not finite is refused
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # non-finite values are rejected
 def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
     m, n = len(x), x.shape[2]

@@ -59,15 +59,15 @@ class Meshes:
         return 4 if (self.mass, self.stiffness) == ("consistent", "corotational") else 2
 
     @cached_property
-    def softer(self) -> Blade | None:
+    def softened(self) -> Blade | None:
         """The blade with twice the compliance of rigid strains; None if no strain is rigid."""
         return sections.softened(self.blade)
 
-    def of(self, elements: int) -> MeshSolver:
+    def uniform(self, elements: int) -> MeshSolver:
         """Solver on elements of equal length."""
         return self._solver(elements, elements)
 
-    def level(self, level: int, fastest: float) -> MeshSolver:
+    def graded(self, level: int, fastest: float) -> MeshSolver:
         """Solver on the mesh graded for the speed ``fastest`` (rad/s), halved ``level`` times."""
         if not self.nodes:
             self.nodes.append(mesh.coarse(self.blade, max(_FEWEST, self.count), fastest))
@@ -82,17 +82,17 @@ class Meshes:
             key: the number of equal elements, or minus the level of the graded mesh.
             solved: the modes of that mesh.
         """
-        if self.softer is None:
+        if self.softened is None:
             return np.zeros(len(solved.modes.frequencies))
-        with_twice = self._solver(key, key if key > 0 else self.nodes[-key], softer=True)
+        with_twice = self._solver(key, key if key > 0 else self.nodes[-key], softened=True)
         return with_twice.at(solved.modes.omega, solved.state.shape).modes.frequencies / solved.modes.frequencies - 1.0
 
-    def _solver(self, key: int, elements: int | Array, *, softer: bool = False) -> MeshSolver:
-        if (key, softer) not in self.made:
-            blade = self.softer if softer and self.softer else self.blade
+    def _solver(self, key: int, elements: int | Array, *, softened: bool = False) -> MeshSolver:
+        if (key, softened) not in self.made:
+            blade = self.softened if softened and self.softened else self.blade
             body = discretize(blade, elements, self.mass, self.stiffness, self.load)
-            self.made[key, softer] = MeshSolver(body, self.count, self.effects, self.gravity)
-        return self.made[key, softer]
+            self.made[key, softened] = MeshSolver(body, self.count, self.effects, self.gravity)
+        return self.made[key, softened]
 
 
 def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
@@ -108,18 +108,18 @@ def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
 _FAILURES = (SteadyStateError, UnstableError, ArithmeticError)
 
 
-def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Modes:
+def refined(meshes: Meshes, omega: float, fastest: float, requested: float) -> Modes:
     """Halve the elements of the graded mesh until all uncertainties are small enough."""
     solved: list[Solved] = []
     best: Modes | None = None
     for level in itertools.count():
-        one = meshes.level(level, fastest)
-        if level > 2 and one.body.elements > MAX_ELEMENTS:
+        solver = meshes.graded(level, fastest)
+        if level > 2 and solver.body.elements > MAX_ELEMENTS:
             break
-        before = meshes.level(level - 1, fastest) if solved else None
-        near = steady.carried_over(before.body, solved[-1].state.shape, one.body) if before else None
+        before = meshes.graded(level - 1, fastest) if solved else None
+        near = steady.carried_over(before.body, solved[-1].state.shape, solver.body) if before else None
         try:
-            solved.append(one.at(omega, near))
+            solved.append(solver.at(omega, near))
         except _FAILURES as error:
             if best is not None:
                 break
@@ -130,25 +130,29 @@ def refined(meshes: Meshes, omega: float, fastest: float, wanted: float) -> Mode
         last = solved[-1].modes
         if len(solved) < 3 or len({len(s.modes.frequencies) for s in solved[-3:]}) > 1:
             continue
-        found = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
-        rounded = one.rounding(solved[-1])
+        estimate = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
+        rounded = solver.rounding(solved[-1])
         factor, of_factor = without_bias(*(meshes.bias(k - level, solved[-1 - k]) for k in (2, 1)))
-        values = factor * found.values
+        values = factor * estimate.values
         order = np.argsort(values)
-        sure = (found.of_values + of_factor + rounded)[order]
-        now = replace(last, frequencies=values[order], uncertainty=sure, rounding=rounded, shapes=last.shapes[order])
-        if best is None or sure.max() < best.uncertainty.max():
+        uncertainty = (estimate.of_values + of_factor + rounded)[order]
+        now = replace(
+            last, frequencies=values[order], uncertainty=uncertainty, rounding=rounded, shapes=last.shapes[order]
+        )
+        if best is None or uncertainty.max() < best.uncertainty.max():
             best = now
-        if (sure <= wanted).all() or rounded.max() > 0.5 * sure.max():  # accurate enough, or limited by rounding
+        if (
+            uncertainty <= requested
+        ).all() or rounded.max() > 0.5 * uncertainty.max():  # accurate enough, or limited by rounding
             break
     if best is None:
         raise EigensolverError(
             f"omega: {omega:.6g} rad/s: fewer modes on fine meshes than on coarse ones: request fewer modes"
         )
-    if best.uncertainty.max() > wanted:
+    if best.uncertainty.max() > requested:
         warnings.warn(
             f"omega: {omega:.6g} rad/s: relative uncertainty {best.uncertainty.max():.1e} with {best.elements} elements "
-            f"exceeds the requested accuracy {wanted:.1e}",
+            f"exceeds the requested accuracy {requested:.1e}",
             AccuracyWarning,
             stacklevel=3,
         )
@@ -161,15 +165,15 @@ def as_given(meshes: Meshes, omega: float, elements: int, fastest: float) -> Mod
     Otherwise the error depends on the positions of the stations and follows no order of convergence: the uncertainty is the
     difference from the refined frequencies.
     """
-    one = meshes.of(elements)
-    solved = one.at(omega)
-    rounded, last = one.rounding(solved), solved.modes
-    sure = None
+    solver = meshes.uniform(elements)
+    solved = solver.at(omega)
+    rounded, last = solver.rounding(solved), solved.modes
+    uncertainty = None
     if elements // 4 >= max(_FEWEST, meshes.count) and _aligned(meshes.blade, elements // 4, elements // 2, elements):
-        sure = _coarser(meshes, last)
-    if sure is None:
-        sure = _from_default(meshes, last, fastest)
-    return replace(last, uncertainty=sure + rounded, rounding=rounded)
+        uncertainty = _coarser(meshes, last)
+    if uncertainty is None:
+        uncertainty = _from_default(meshes, last, fastest)
+    return replace(last, uncertainty=uncertainty + rounded, rounding=rounded)
 
 
 def _aligned(blade: Blade, *meshes: int) -> bool:
@@ -183,7 +187,7 @@ def _coarser(meshes: Meshes, last: Modes) -> Array | None:
     """(m,) uncertainties from a half and a quarter of the elements; None if these have no steady state."""
     n, m = last.elements, len(last.frequencies)
     try:
-        coarse, half = (meshes.of(k).at(last.omega) for k in (n // 4, n // 2))
+        coarse, half = (meshes.uniform(k).at(last.omega) for k in (n // 4, n // 2))
         bias = meshes.bias(n // 4, coarse)
     except _FAILURES:
         return None
@@ -202,6 +206,6 @@ def _from_default(meshes: Meshes, last: Modes, fastest: float) -> Array:
     except _FAILURES:
         return np.full(len(last.frequencies), np.inf)
     m = min(len(last.frequencies), len(true.frequencies))
-    sure = np.full(len(last.frequencies), np.inf)
-    sure[:m] = np.abs(last.frequencies[:m] / true.frequencies[:m] - 1.0) + true.uncertainty[:m]
-    return sure
+    uncertainty = np.full(len(last.frequencies), np.inf)
+    uncertainty[:m] = np.abs(last.frequencies[:m] / true.frequencies[:m] - 1.0) + true.uncertainty[:m]
+    return uncertainty
