@@ -198,5 +198,6 @@ def _failed(error: Exception) -> EigenError:
 def unstable() -> UnstableError:
     """The error to raise if K is not positive definite."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: the state is unstable in this discretisation"
+        "the stiffness about the steady state is not positive definite: the state is unstable in this discretisation; use more "
+        "elements, or check the stiffness"
     )
