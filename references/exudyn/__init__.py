@@ -1,4 +1,4 @@
-"""Exudyn: ANCF cable, kinematic tree, and mechanisms with closed loops.
+"""Exudyn: ANCF cable, geometrically exact beam, kinematic tree, and mechanisms with closed loops.
 
-Input: a blade or a mechanism. Output: its modes. The three models share one engine.
+Input: a blade or a mechanism. Output: its modes. The four models share one engine.
 """

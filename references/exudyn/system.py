@@ -90,6 +90,19 @@ def linearized(exu: Any, mbs: Any, still: bool = False, full: bool = False) -> t
     return mass, np.zeros_like(mass), stiffness
 
 
+def forces(exu: Any, mbs: Any) -> tuple[Array, Array]:
+    """Internal forces (n,) and their derivative (n, n) at the initial values, without inertia and constraints."""
+    settings, solver = _settings(exu, False), exu.MainSolverStatic()
+    solver.InitializeSolver(mbs, settings)
+    own = slice(solver.GetODE2size())
+    solver.ComputeODE2RHS(mbs)
+    force = -np.array(solver.GetSystemResidual())[own]
+    solver.ComputeJacobianODE2RHS(mbs, scalarFactor_ODE2=-1.0, scalarFactor_ODE2_t=0.0, scalarFactor_ODE1=0.0)
+    stiffness = np.array(solver.GetSystemJacobian())[own, own]
+    solver.FinalizeSolver(mbs, settings)
+    return force, stiffness
+
+
 def _settings(exu: Any, full: bool) -> Any:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False

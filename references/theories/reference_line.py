@@ -84,18 +84,19 @@ def moments(mass: Array) -> Array:
     return out
 
 
-def element_ends(blade: Blade, elements: int, most: int) -> Array:
+def element_ends(blade: Blade, elements: int, most: int, step_elements: bool = True) -> Array:
     """Arc lengths (n+1,) of the ends of at least ``elements`` elements; see ``grading`` for uncoupled blades.
 
     Every interval between two kinks of a property or of the line is divided into the same number of elements, so that
     each element is smooth and the order of convergence is preserved. A blade with more than ``most`` intervals has
     proportionally more elements, so that refinements stay distinct. A step of a property is one element at every refinement,
-    unless it is so soft that this would be inaccurate.
+    unless it is so soft that this would be inaccurate. Without ``step_elements`` it is the end of the element before it.
     """
     ends, wide = _intervals(blade)
     pieces = np.where(wide, -(-elements // min(int(wide.sum()), most)), 1)
     parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
-    return np.append(np.concatenate(parts), ends[-1])
+    kept = [part for part, kept in zip(parts, wide, strict=True) if kept or step_elements]
+    return np.concatenate([[0.0], np.concatenate(kept)[1:], ends[-1:]])
 
 
 def steps(blade: Blade) -> int:

@@ -20,7 +20,8 @@ class Can:
         lacks: physical effects it leaves out.
         estimate: gives a bracket instead of a converged number.
         twin: is given core's own discretisation and held to rounding.
-        coupled: sections whose strains or motions couple.
+        coupled: sections whose mass centres lie off the axis.
+        anisotropic: sections whose strains couple.
         hinged: a root that is not clamped.
         tip: a mass at the tip.
         thin: sections without moments of inertia.
@@ -38,6 +39,7 @@ class Can:
     estimate: bool = False
     twin: bool = False
     coupled: bool = False
+    anisotropic: bool = False
     hinged: bool = False
     tip: bool = True
     thin: bool = True
@@ -49,16 +51,17 @@ class Can:
 
 CODES = {
     "exudyn-ancf": Can(taper=False, unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
-    "exudyn-tree": Can(coupled=True, hinged=True, sheared=True, curved=True),
+    "exudyn-tree": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True),
+    "exudyn-beam": Can(coupled=True, sheared=True, curved=True),
     "scikit-fem": Can(hinged=True),
-    "scikit-fem-reissner": Can(coupled=True, hinged=True, sheared=True, curved=True),
-    "pinocchio": Can(twin=True, coupled=True, sheared=True, curved=True),
-    "drake": Can(twin=True, coupled=True, sheared=True, curved=True),
-    "mujoco": Can(twin=True, coupled=True, sheared=True, curved=True),
+    "scikit-fem-reissner": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True),
+    "pinocchio": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
+    "drake": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
+    "mujoco": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "scikit-fem-solid": Can(taper=False, twist=False, tip=False, thin=False, solid=True),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",), solid=True),
-    "sharpy": Can(coupled=True, sheared=True, curved=True),
+    "sharpy": Can(coupled=True, anisotropic=True, sheared=True, curved=True),
     "frame3dd": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), stations=False),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
@@ -73,6 +76,7 @@ class Asks:
 
     Attributes:
         coupled: sections whose mass centres lie off the axis.
+        anisotropic: sections whose strains couple.
         hinged: a hinge or spring at the root.
         tip: a mass at the tip.
         thin: sections without moments of inertia.
@@ -89,6 +93,7 @@ class Asks:
     twist: bool = False
     unlike: bool = False
     coupled: bool = False
+    anisotropic: bool = False
     hinged: bool = False
     tip: bool = False
     thin: bool = False
@@ -112,7 +117,9 @@ BLADES = {
     "wright-flapwise": Asks(thin=True),
     "nrel-5mw": Asks(taper=True, twist=True, unlike=True, gentle=-1.0, stations=True),
     "nrel-5mw-beamdyn": Asks(taper=True, twist=True, unlike=True, sheared=True, stations=True),
-    "iea-15": Asks(taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True, stations=True),
+    "iea-15": Asks(
+        taper=True, twist=True, unlike=True, coupled=True, anisotropic=True, sheared=True, curved=True, stations=True
+    ),
     "windpact-1.5/centred": Asks(taper=True, twist=True, unlike=True, gentle=-1.0, stations=True),
     "windpact-1.5/offset": Asks(taper=True, twist=True, unlike=True, coupled=True, stations=True),
     "windpact-1.5/bmodes": Asks(taper=True, twist=True, unlike=True, coupled=True, stations=True),
@@ -124,7 +131,15 @@ BLADES = {
     "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
     "hodges-rutkowski": Asks(taper=True, stations=True),
     "curved-solid": Asks(
-        taper=True, twist=True, unlike=True, coupled=True, sheared=True, curved=True, stations=True, solid=True
+        taper=True,
+        twist=True,
+        unlike=True,
+        coupled=True,
+        anisotropic=True,
+        sheared=True,
+        curved=True,
+        stations=True,
+        solid=True,
     ),
     "prebent-beam": Asks(twist=True, unlike=True, sheared=True, curved=True),
     "pretwisted-beam": Asks(twist=True, unlike=True, gentle=0.0),
@@ -147,7 +162,7 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "hinged", "tip", "thin", "sheared", "curved", "stations")
+NEEDS = ("taper", "twist", "unlike", "coupled", "anisotropic", "hinged", "tip", "thin", "sheared", "curved", "stations")
 
 
 def solves(can: Can, asks: Asks) -> bool:
