@@ -67,7 +67,8 @@ def _largest_change(
     rates = [(abs(m.rate) / units[m.coordinate], abs(m.acceleration) / units[m.coordinate]) for m in moving]
     times = [advance / (rate + np.sqrt(acceleration)) for rate, acceleration in rates for advance in ADVANCES]
     omega = max(max(rate, np.sqrt(acceleration)) for rate, acceleration in rates)
-    changes = (_change(linear, advancing or moving, time, omega) for time in times)
+    reduced = residual_at(linear.tree, linear.state.q, independent=linear.names).reduced
+    changes = (_change(linear, reduced, advancing or moving, time, omega) for time in times)
     return max(changes, key=lambda change: change[0])
 
 
@@ -75,8 +76,13 @@ def _units(linear: Linearization) -> Array:
     return coordinate_units(linear.tree, length_at(linear.tree, linear.state.kinematics.poses))
 
 
-def _change(linear: Linearization, moving: list[Motion], time: float, omega: float) -> tuple[float, str]:
-    """The largest relative change after these motions alone have continued for ``time`` (s), and the name of what changes."""
+def _change(
+    linear: Linearization, reduced: Array, moving: list[Motion], time: float, omega: float
+) -> tuple[float, str]:
+    """The largest relative change after these motions alone have continued for ``time`` (s), and the name of what changes.
+
+    ``reduced`` (i,): the balance at the first instant.
+    """
     here = linear.state
     tree = _after(linear.tree, moving, time)
     q = here.q.copy()
@@ -93,11 +99,11 @@ def _change(linear: Linearization, moving: list[Motion], time: float, omega: flo
     except MechanismError:  # a loop that cannot follow, or goes through a singularity
         return np.inf, "a loop"
     size = rounding_at(tree, later)
-    reduced = later.reduced - residual_at(linear.tree, here.q, independent=linear.names).reduced
+    unbalanced = later.reduced - reduced
     scale = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
     root = np.sqrt(np.maximum(scale, 1e-6 * size / _units(linear)[linear.partition.independent]))
     root = np.where(root > 0, root, 1.0)
-    changes = {"the balance": float((np.abs(reduced) / np.where(size > 0, size, 1.0)).max())}
+    changes = {"the balance": float((np.abs(unbalanced) / np.where(size > 0, size, 1.0)).max())}
     for name, power in (("M", 2), ("C", 1), ("K", 0)):
         difference = np.abs(getattr(then, name) - getattr(linear, name)) / root / root[:, None]
         changes[WORDS[name]] = float(omega**power * difference.max())
