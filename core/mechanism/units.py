@@ -123,6 +123,7 @@ def in_units(mechanism: Mechanism, units: Units) -> Mechanism:
         values = s.stiffness * time**2 / mass, s.damping * time / mass, s.free_length / length
         return Spring(s.body_a, s.body_b, s.point_a / length, s.point_b / length, *values)
 
+    x, y, z = (g * time**2 / length for g in mechanism.gravity)
     return Mechanism(
         bodies=tuple(Body(b.name, b.inertia * pair / (mass * length**2)) for b in mechanism.bodies),
         joints=tuple(_joint(j, length) for j in mechanism.joints),
@@ -131,7 +132,7 @@ def in_units(mechanism: Mechanism, units: Units) -> Mechanism:
         springs=tuple(map(rescaled_point_spring, mechanism.springs)),
         beams=tuple(_beam(b, units) for b in mechanism.beams),
         loads=tuple(Load(f.body, f.force * time**2 / (mass * length), f.axes_of) for f in mechanism.loads),
-        gravity=tuple(g * time**2 / length for g in mechanism.gravity),
+        gravity=(x, y, z),
     )
 
 

@@ -11,6 +11,7 @@ the number of negative eigenvalues of H(ω) proves that no mode below ω is miss
 """
 
 import warnings
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ from .completeness import below
 from .eigen import Eigen
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_OPERATOR: Any = LinearOperator
 
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 _MAX_REAL_PART = 1e-6  # of an eigenvalue, as a fraction of its modulus: rounding
@@ -60,7 +64,7 @@ def stabilised(p: ChainPencil, count: int) -> Eigen | None:
     return Eigen(frequencies[:count], x[:, :count])
 
 
-def _nearest_zero(p: ChainPencil, count: int) -> tuple[Array, NDArray[np.complex128], Array] | None:
+def _nearest_zero(p: ChainPencil, count: int) -> tuple[Array, Complex, Array] | None:
     """Frequencies (m,) ascending, vectors (dn, m) and energies (m,) of the lowest modes; None if one grows or decays."""
     n = len(p.residual)
 
@@ -73,8 +77,10 @@ def _nearest_zero(p: ChainPencil, count: int) -> tuple[Array, NDArray[np.complex
     start = np.random.default_rng(1921).normal(size=(2, n))
     start = step(allowed(p.links, start).ravel())
     try:
-        operator = LinearOperator((2 * n, 2 * n), step, dtype=float)
-        values, w = eigs(operator, k=min(2 * count, 2 * n - 2), v0=start, maxiter=_MAX_RESTARTS)
+        operator = _OPERATOR((2 * n, 2 * n), step, dtype=float)
+        values, w = cast(
+            tuple[Complex, Complex], eigs(operator, k=min(2 * count, 2 * n - 2), v0=start, maxiter=_MAX_RESTARTS)
+        )
     except ArpackError:
         return None
     eigenvalues, x = -1.0 / values, w[:n]

@@ -18,7 +18,7 @@ def at_zero(x: Array, values: Array) -> Array:
         basis = np.column_stack([basis, powers * basis[:, -1]])
     q, r = np.linalg.qr(basis[:-1])
     at = np.linalg.solve(r.T, basis[-1])  # p_j(0), from the same combinations of powers
-    return np.tensordot(q @ at, values, axes=1)
+    return np.einsum("k,k...->...", q @ at, values)
 
 
 def degree(x: Array, values: Array) -> int:

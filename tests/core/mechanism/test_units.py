@@ -5,7 +5,7 @@ In other units a code sees other numbers: this finds every tolerance that is an 
 
 import re
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -27,8 +27,8 @@ ACCEPTED = {
     "slider-crank on a table": linkages.slider_crank,
     "spatial loop": linkages.spatial_loop,
     **{
-        f"random loop closed by a {loop} joint": lambda loop=loop, k=k: linkages.random_loop(
-            [linkages.KINDS[(k + i) % 6] for i in range(3)], loop, [False, True, False], k
+        f"random loop closed by a {loop} joint": partial(
+            linkages.random_loop, [linkages.KINDS[(k + i) % 6] for i in range(3)], loop, [False, True, False], k
         )
         for k, loop in enumerate(linkages.LOOPS)
     },

@@ -52,7 +52,9 @@ def test_a_missing_mode_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     for missing in (0, 1, 2):
 
         def one_less(p, count, missing=missing):
-            return tuple(np.delete(part, missing, axis=-1) for part in complete(p, count))
+            modes = complete(p, count)
+            assert modes is not None
+            return tuple(np.delete(part, missing, axis=-1) for part in modes)
 
         monkeypatch.setattr(gyroscopic, "_nearest_zero", one_less)
         with pytest.raises(UnstableError):

@@ -38,7 +38,9 @@ def test_the_rows_are_of_a_complete_run_and_its_verdicts_follow_from_the_numbers
     judged = [c for c in run.cells if c.frequency and c.reference and c.uncertainty is not None]
     assert len(judged) > 100
     for cell in judged:
-        difference = cell.frequency / cell.reference - 1.0  # pyright: ignore[reportOptionalOperand]
+        assert cell.frequency
+        assert cell.reference
+        difference = cell.frequency / cell.reference - 1.0
         assert cell.difference == pytest.approx(difference, abs=1e-12)
         within = abs(difference) + (cell.uncertainty or 0.0) <= cell.target
         if cell.verdict in ("pass", "coarse", "fail", "inconclusive"):
