@@ -11,7 +11,7 @@ from .blade import Blade, without_rotary_inertia
 from .effects import ALL_EFFECTS, Effects
 from .element.discretize import Mass, discretize
 from .element.measures import LARGEST_STRAIN, Measure
-from .element.mesh import Chain
+from .element.mesh import Mesh
 from .modes import Modes
 from .spectrum.mesh_solver import MeshSolver
 from .spectrum.refinement import Meshes, as_given, refined, without_bias
@@ -171,9 +171,9 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
 
 
 def chain_modes(
-    body: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
+    body: Mesh, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
-    """The lowest modes of a chain, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
+    """The lowest modes of a mesh, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
     solver = MeshSolver(body, count, effects, gravity)
     solved = solver.at(next(_checked([omega], count)))
     return replace(solved.modes, rounding=solver.rounding(solved))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.effects import Effects
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ...core.steady.blade_state import Steady
 from ..verify import core_faults, core_solver
 
@@ -19,7 +19,7 @@ def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
     """Core omits effects without declaring it."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+        def wrong(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
             return right(body, omega, gravity, replace(effects, **lacks), guess)
 
         return wrong
@@ -31,7 +31,7 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     """Spin softening is multiplied by ``factor``; effects in ``lacks`` are also omitted."""
 
     def make(right: Balance) -> Balance:
-        def wrong(body: Chain, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+        def wrong(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
             state = right(body, omega, gravity, replace(effects, **lacks), guess)
             return replace(state, pencil=core_faults.softened(body, state, omega, factor))
 
@@ -53,11 +53,11 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     return make
 
 
-def chained(alter: Callable[[Chain, Blade], Chain]) -> Callable[[Any], Any]:
+def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
     """The chain is altered after discretisation."""
 
     def make(right: Any) -> Any:
-        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Chain:
+        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
             return alter(right(blade, *args, **kwargs), blade)
 
         return wrong
@@ -101,17 +101,17 @@ def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
     return make
 
 
-def whole_end(chain: Chain, blade: Blade) -> Chain:
+def whole_end(chain: Mesh, blade: Blade) -> Mesh:
     """The last element's whole mass at the tip, instead of its half."""
     lumps = chain.lumps.copy()
     lumps[-1] += lumps[-1] - blade.tip_mass
     return replace(chain, lumps=lumps)
 
 
-def scaled_tip(factor: float) -> Callable[[Chain, Blade], Chain]:
+def scaled_tip(factor: float) -> Callable[[Mesh, Blade], Mesh]:
     """The tip body's inertia times ``factor``."""
 
-    def alter(chain: Chain, blade: Blade) -> Chain:
+    def alter(chain: Mesh, blade: Blade) -> Mesh:
         lumps = chain.lumps.copy()
         lumps[-1] += (factor - 1.0) * blade.tip_mass
         return replace(chain, lumps=lumps)
@@ -119,7 +119,7 @@ def scaled_tip(factor: float) -> Callable[[Chain, Blade], Chain]:
     return alter
 
 
-def mirrored_tip(chain: Chain, blade: Blade) -> Chain:
+def mirrored_tip(chain: Mesh, blade: Blade) -> Mesh:
     """The tip body's inertia reflected in the x–z plane."""
     lumps, flip = chain.lumps.copy(), np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     lumps[-1] += flip @ blade.tip_mass @ flip - blade.tip_mass

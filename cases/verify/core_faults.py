@@ -16,14 +16,14 @@ from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, 
 from ...core.effects import Effects
 from ...core.element.discretize import Mass, discretize
 from ...core.element.measures import Measure
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ...core.modes import Modes
 from ...core.spectrum import mesh_solver as solution
 from ...core.spectrum.lanczos import lanczos
 from ...core.steady.blade_state import Steady
 from ...core.tree import pencil
 from ...core.tree.mode_shapes import mode_shapes
-from ...core.tree.pencil import ChainPencil, Shape
+from ...core.tree.pencil import Shape, TreePencil
 
 OFFSET = 0.25
 """Shift of the reference axis, as a fraction of the radius of gyration √(EI_z/EA) at midspan."""
@@ -116,13 +116,13 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, effects: Eff
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
 
 
-def softened(body: Chain, state: Steady, omega: float, factor: float) -> ChainPencil:
+def softened(body: Mesh, state: Steady, omega: float, factor: float) -> TreePencil:
     """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
     softening = spin_softening(body, state.shape, omega)
     return replace(state.pencil, K=state.pencil.K + (factor - 1.0) * softening)
 
 
-def spin_softening(body: Chain, shape: Shape, omega: float) -> np.ndarray:
+def spin_softening(body: Mesh, shape: Shape, omega: float) -> np.ndarray:
     """The part of the elements' stiffness (n, d + 6, d + 6) due to the centrifugal force of the displaced mass.
 
     It is the stiffness at speed minus that at rest, about the same shape, of a model without geometric stiffness.
@@ -132,7 +132,7 @@ def spin_softening(body: Chain, shape: Shape, omega: float) -> np.ndarray:
     return turning - standing
 
 
-def _modes(body: Chain, p: ChainPencil, shape: Shape, omega: float, count: int) -> Modes:
+def _modes(body: Mesh, p: TreePencil, shape: Shape, omega: float, count: int) -> Modes:
     found = lanczos(p, count)
     return Modes(omega, found.frequencies, mode_shapes(body, shape, pencil.on_nodes(p, found.vectors)), body.elements)
 

@@ -18,7 +18,7 @@ from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
 from ..element.measures import LARGEST_STRAIN, constant_strain
-from ..element.mesh import Chain
+from ..element.mesh import Mesh
 from ..modes import STATIONS, Modes
 from ..space import spatial as sp
 from ..space.inertia import about_centre, transformed
@@ -31,7 +31,7 @@ from .ties import CondensationError
 Array = NDArray[np.float64]
 
 
-def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
+def mesh_from_segments(segments: Sequence[Segment], root: Array) -> Mesh:
     """Join segments end to end.
 
     Args:
@@ -50,7 +50,7 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
         nodes.append(nodes[-1] @ x)
     centres, bodies = _centred(np.array([s.inertia for s in segments]))
     none = np.zeros((n, 6, 6))
-    return Chain(
+    return Mesh(
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
         beams=Beams(
@@ -69,7 +69,7 @@ def chain_from_segments(segments: Sequence[Segment], root: Array) -> Chain:
 
 
 def chain_modes(
-    chain: Chain, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = solve.NO_GRAVITY
+    mesh: Mesh, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = solve.NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a chain turning steadily at ``omega`` (rad/s); see ``solve.modes``.
 
@@ -77,7 +77,7 @@ def chain_modes(
         SteadyStateError: no steady state at this speed.
         UnstableError: the steady state is not stable.
     """
-    return solve.chain_modes(chain, omega, count, effects=effects, gravity=gravity)
+    return solve.chain_modes(mesh, omega, count, effects=effects, gravity=gravity)
 
 
 def segment_modes(
@@ -89,8 +89,8 @@ def segment_modes(
     infinite for fewer than four. Torsion and stretch converge with second order, bending with fourth; second is assumed.
 
     Args:
-        segments: as for ``chain_from_segments``.
-        root: as for ``chain_from_segments``.
+        segments: as for ``mesh_from_segments``.
+        root: as for ``mesh_from_segments``.
         omega: rotor speed, rad/s.
         count: number of modes (fewer if there are fewer).
         allow_large_strain: accept steady strains above ``LARGEST_STRAIN``.
@@ -101,7 +101,7 @@ def segment_modes(
         LargeStrainError: steady strains above ``LARGEST_STRAIN``.
         UnstableError: the steady state is not stable.
     """
-    fine = chain_modes(chain_from_segments(segments, root), omega, count)
+    fine = chain_modes(mesh_from_segments(segments, root), omega, count)
     if fine.strain > LARGEST_STRAIN and not allow_large_strain:
         raise LargeStrainError(
             f"omega: {omega:.6g} rad/s: steady strain {fine.strain:.0%}: too large for linear elements: the speed is too high "
@@ -112,7 +112,7 @@ def segment_modes(
     if len(segments) < 4:
         return unknown
     half = joined(segments)
-    levels = [chain_modes(chain_from_segments(s, root), omega, m).frequencies for s in (joined(half), half)]
+    levels = [chain_modes(mesh_from_segments(s, root), omega, m).frequencies for s in (joined(half), half)]
     if min(len(f) for f in levels) < m:
         return unknown
     sure = accuracy.estimate(np.array([*levels, fine.frequencies]), order=2).of_finest

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..space import spatial as sp
 from .beams import Beams, Points
 from .measures import constant_strain, joined, part
-from .mesh import Chain, JointLink
+from .mesh import JointLink, Mesh
 
 Array = NDArray[np.float64]
 
@@ -16,17 +16,17 @@ CLAMPED: Array = np.full(6, np.inf)
 """Stiffness of a joint that connects rigidly."""
 
 
-def hub(like: Chain, pose: Array) -> Chain:
+def hub(like: Mesh, pose: Array) -> Mesh:
     """A tree without links: node 0, fixed to the rotating hub at ``pose`` (4, 4); for branches of the kind of ``like``."""
     none = slice(0, 0)
     b = like.beams
     beams = Beams(part(b.law, none), b.stiffness[none], _sliced(b.points), b.preload[none], b.inner_preload[none])
-    return Chain(pose[None], np.zeros((1, 6, 6)), beams, _sliced(like.samples), 0.0, np.zeros((1, 3)))
+    return Mesh(pose[None], np.zeros((1, 6, 6)), beams, _sliced(like.samples), 0.0, np.zeros((1, 3)))
 
 
 def attached(
-    tree: Chain, node: int, branch: Chain, at_a: Array, at_b: Array | None = None, stiffness: Array = CLAMPED
-) -> Chain:
+    tree: Mesh, node: int, branch: Mesh, at_a: Array, at_b: Array | None = None, stiffness: Array = CLAMPED
+) -> Mesh:
     """A tree with a branch on a joint.
 
     Args:
@@ -56,7 +56,7 @@ def attached(
         preload=np.concatenate([a.preload, none, b.preload]),
         inner_preload=np.concatenate([a.inner_preload, none, b.inner_preload]),
     )
-    return Chain(
+    return Mesh(
         nodes=np.concatenate([tree.nodes, moved @ branch.nodes]),
         lumps=np.concatenate([tree.lumps, branch.lumps]),
         beams=beams,
@@ -69,7 +69,7 @@ def attached(
     )
 
 
-def around_hub(blade: Chain, count: int) -> Chain:
+def around_hub(blade: Mesh, count: int) -> Mesh:
     """A rotor of ``count`` equal blades, clamped at equal angles to a hub that rotates about z."""
     rotor = hub(blade, np.eye(4))
     for k in range(count):

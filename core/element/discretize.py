@@ -1,4 +1,4 @@
-"""A blade as a chain: rigid bodies at nodes along the blade, joined by beam elements."""
+"""A blade as a mesh: rigid bodies at nodes along the blade, joined by beam elements."""
 
 from dataclasses import replace
 from typing import Any, Literal
@@ -16,7 +16,7 @@ from . import sections
 from .beams import Beams, Points
 from .branches import attached, hub
 from .measures import Measure, StrainLaw
-from .mesh import Chain
+from .mesh import Mesh
 from .sections import StaticSolution
 
 Array = NDArray[Any]
@@ -29,7 +29,7 @@ def discretize(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     load: Array | None = None,
-) -> Chain:
+) -> Mesh:
     """Divide a blade into elements.
 
     Args:
@@ -75,7 +75,7 @@ def discretize(
         if load is not None:
             force += _half_end_force(blade, s, load)
     lumps[-1] += blade.tip_mass
-    chain = Chain(
+    mesh = Mesh(
         nodes=nodes,
         lumps=lumps,
         beams=Beams(
@@ -91,9 +91,9 @@ def discretize(
         corner=corner,
     )
     if clamped(blade):
-        return chain
+        return mesh
     frame = sp.pose(sp.rotation(0, blade.twist[0]).T, np.zeros(3))  # the root's axes in those of the first section
-    return attached(hub(chain, nodes[0]), 0, chain, frame, frame, blade.root)
+    return attached(hub(mesh, nodes[0]), 0, mesh, frame, frame, blade.root)
 
 
 MIN_SHARED = 16

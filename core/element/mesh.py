@@ -35,7 +35,7 @@ class JointLink:
 
 
 @dataclass(frozen=True)
-class Chain:
+class Mesh:
     """Nodes and elements over a tree of which node 0 is fixed to the rotating hub; a blade is a tree with one branch.
 
     Attributes:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects import Effects
-from ..element.mesh import Chain
+from ..element.mesh import Mesh
 from ..space import spatial as sp
 from ..steady.blade_state import Steady
 from ..tree.pencil import linearize
@@ -69,7 +69,7 @@ def estimate(f: Array, order: int) -> Estimate:
 
 
 def rounding(
-    body: Chain, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
+    body: Mesh, state: Steady, omega: float, gravity: Array, effects: Effects, vectors: NDArray[np.complex128]
 ) -> Array:
     """(m,) error of frequencies due to rounding, rad/s: three times the change caused by rounding the relative poses.
 

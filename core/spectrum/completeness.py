@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import kernels
-from ..tree.pencil import ChainPencil
+from ..tree.pencil import TreePencil
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ class MissedModesError(ArithmeticError):
     """The eigensolver missed a mode or found one twice."""
 
 
-def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
+def check(p: TreePencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
     """Prove that the frequencies are the lowest ones with their multiplicities.
 
     The count is taken in the gap above the last frequency. If that frequency belongs to a cluster of which only some modes
@@ -58,6 +58,6 @@ def check(p: ChainPencil, frequencies: Array, beyond: Array, rounding: float = 0
         )
 
 
-def below(p: ChainPencil, omega: float) -> int:
+def below(p: TreePencil, omega: float) -> int:
     """Number of natural frequencies between 0 and ``omega`` (rad/s), which must not be one of them."""
     return kernels.negative_pivots(p.K, p.C, p.M, p.links.arrays, omega)

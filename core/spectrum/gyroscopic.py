@@ -20,7 +20,7 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigs
 from ..tree.elimination import solve
 from ..tree.links import allowed
 from ..tree.matrices import product
-from ..tree.pencil import ChainPencil
+from ..tree.pencil import TreePencil
 from .completeness import below
 from .eigen import Eigen
 
@@ -39,8 +39,8 @@ class GyroscopicStabilityWarning(UserWarning):
     """A steady state is stable by gyroscopic forces alone."""
 
 
-def stabilised(p: ChainPencil, count: int) -> Eigen | None:
-    """The ``count`` lowest modes of a chain with an indefinite K; None unless they are proved to be stable and complete."""
+def stabilised(p: TreePencil, count: int) -> Eigen | None:
+    """The ``count`` lowest modes of a tree with an indefinite K; None unless they are proved to be stable and complete."""
     negative = below(p, 0.0)
     found = None if negative % 2 else _nearest_zero(p, count + negative // 2 + _EXTRA_MODES)
     if found is None:
@@ -64,7 +64,7 @@ def stabilised(p: ChainPencil, count: int) -> Eigen | None:
     return Eigen(frequencies[:count], x[:, :count])
 
 
-def _nearest_zero(p: ChainPencil, count: int) -> tuple[Array, Complex, Array] | None:
+def _nearest_zero(p: TreePencil, count: int) -> tuple[Array, Complex, Array] | None:
     """Frequencies (m,) ascending, vectors (dn, m) and energies (m,) of the lowest modes; None if one grows or decays."""
     n = len(p.residual)
 

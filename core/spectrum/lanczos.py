@@ -1,4 +1,4 @@
-"""The lowest gyroscopic modes of a chain, by block Lanczos on the inverse problem of ``eigen``: one K-solve per step.
+"""The lowest gyroscopic modes of a mesh, by block Lanczos on the inverse problem of ``eigen``: one K-solve per step.
 
 A⁻¹S is skew in the A product, A = diag(K, M), so in exact arithmetic the result of a step overlaps only with its own block
 and the preceding one. Overlaps due to rounding are removed by repeated orthogonalisation against the whole basis. Blocks of
@@ -17,7 +17,7 @@ from ..compiled import kernels
 from ..tree.elimination import solve
 from ..tree.links import allowed
 from ..tree.matrices import product
-from ..tree.pencil import ChainPencil
+from ..tree.pencil import TreePencil
 from . import completeness, eigen
 from .eigen import Eigen
 
@@ -58,8 +58,8 @@ class Lowest(Eigen):
     start: Start
 
 
-def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
-    """The ``count`` lowest modes of a chain about a state where K is symmetric.
+def lanczos(p: TreePencil, count: int, near: Start | None = None) -> Lowest:
+    """The ``count`` lowest modes of a tree about a state where K is symmetric.
 
     With ``near``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to all
     of that pencil's is not found, and ``completeness`` reports it as missing.
@@ -82,7 +82,7 @@ def lanczos(p: ChainPencil, count: int, near: Start | None = None) -> Lowest:
             width = min(2 * width, MAX_WIDTH)
 
 
-def _lowest(p: ChainPencil, count: int, near: Start | None, width: int) -> Lowest:
+def _lowest(p: TreePencil, count: int, near: Start | None, width: int) -> Lowest:
     """``lanczos`` with this number of vectors in a block."""
     a = _operator(p)
     w = _start_vectors(p, a, near, width)
@@ -101,7 +101,7 @@ def _lowest(p: ChainPencil, count: int, near: Start | None, width: int) -> Lowes
     return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
 
-def _operator(p: ChainPencil) -> kernels.Operator:
+def _operator(p: TreePencil) -> kernels.Operator:
     try:
         factor = p.factor
     except np.linalg.LinAlgError:
@@ -111,7 +111,7 @@ def _operator(p: ChainPencil) -> kernels.Operator:
     )
 
 
-def _start_vectors(p: ChainPencil, a: kernels.Operator, near: Start | None, width: int) -> Array:
+def _start_vectors(p: TreePencil, a: kernels.Operator, near: Start | None, width: int) -> Array:
     """The first block (w, 2n) of the basis.
 
     Raises:
@@ -186,7 +186,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
     return _Ritz(basis[:size], mu[positive], z[:, positive], beyond[beyond > smallest])
 
 
-def _massive(p: ChainPencil) -> tuple[Array, Array]:
+def _massive(p: TreePencil) -> tuple[Array, Array]:
     """Projectors of the nodes' twists on directions with mass, and Ad, of lumped masses; see ``krylov.hpp``."""
     if p.M.shape[1] > 12:
         return np.zeros((0, 6, 6)), np.zeros((0, 6, 6))
@@ -202,14 +202,14 @@ def _massive(p: ChainPencil) -> tuple[Array, Array]:
     return massive[1:], lever
 
 
-def frequencies_of(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
+def frequencies_of(p: TreePencil, vectors: NDArray[np.complex128]) -> Array:
     """(m,) frequencies by the gyroscopic Rayleigh quotient of vectors (n, m)."""
     x = np.ascontiguousarray(np.stack([vectors.real.T, vectors.imag.T], axis=1))
     return _quotients(p, x)[0]
 
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # non-finite values are rejected
-def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
+def _quotients(p: TreePencil, x: Array) -> tuple[Array, Array]:
     """Frequencies (m,) by the gyroscopic Rayleigh quotient, and κ = x*Kx, of x (m, 2, n) by real and imaginary parts."""
     m, n = len(x), x.shape[2]
     rows = x.reshape(2 * m, n)
@@ -219,7 +219,7 @@ def _quotients(p: ChainPencil, x: Array) -> tuple[Array, Array]:
 
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # as in ``_quotients``
-def solve_error(p: ChainPencil, v: Array) -> float:
+def solve_error(p: TreePencil, v: Array) -> float:
     """Relative error of the solution x = K⁻¹ M v in the energy norm, for the first row of v (k, 2n)."""
     n = v.shape[1] // 2
     force = product(p.M, 1.0, p.links, v[:1, :n])
@@ -231,7 +231,7 @@ def solve_error(p: ChainPencil, v: Array) -> float:
     return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
 
 
-def _width(p: ChainPencil) -> int:
+def _width(p: TreePencil) -> int:
     """Number of vectors in a block: one more than the tree has tips, at most ``MAX_WIDTH``."""
     tips = len(p.links.parent) - len(np.unique(p.links.parent[p.links.parent > 0]))
     return min(1 + tips, MAX_WIDTH)

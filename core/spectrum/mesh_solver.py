@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects import ALL_EFFECTS, Effects
-from ..element.mesh import Chain
+from ..element.mesh import Mesh
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import Steady, SteadyStateError
 from ..tree import pencil
 from ..tree.mode_shapes import mode_shapes
-from ..tree.pencil import ChainPencil, Shape
+from ..tree.pencil import Shape, TreePencil
 from . import accuracy, gyroscopic
 from .completeness import MissedModesError
 from .eigen import Eigen, UnstableError
@@ -33,12 +33,12 @@ class Solved:
 
 @dataclass
 class MeshSolver:
-    """A chain, its ``steady.coordinates`` at the last values of Ω², and the start of a basis from the modes at the last speed.
+    """A mesh, its ``steady.coordinates`` at the last values of Ω², and the start of a basis from the modes at the last speed.
 
     ``restarts`` counts the speeds at which that basis missed a mode and the modes were computed again without it.
     """
 
-    body: Chain
+    body: Mesh
     count: int
     effects: Effects
     gravity: Array
@@ -72,7 +72,7 @@ class MeshSolver:
         modes = Modes(omega, found.frequencies, shapes, body.elements, strain=strain, seconds=seconds)
         return Solved(modes, state, found.vectors)
 
-    def _lowest(self, p: ChainPencil) -> tuple[Eigen, Start | None]:
+    def _lowest(self, p: TreePencil) -> tuple[Eigen, Start | None]:
         try:
             if self.start is not None:
                 try:
@@ -104,7 +104,7 @@ def _free_root(omega: float) -> UnstableError:
     )
 
 
-def balance(body: Chain, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
+def balance(body: Mesh, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
     """The steady state with the given effects, and the pencil about it."""
     if effects.geometric and effects.prestretch:
         state = steady.steady(body, omega, gravity, guess)

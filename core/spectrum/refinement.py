@@ -20,7 +20,7 @@ from ..element.measures import Measure
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import SteadyStateError
-from . import accuracy, mesh
+from . import accuracy, grading
 from .eigen import UnstableError
 from .lanczos import EigensolverError
 from .mesh_solver import MeshSolver, Solved
@@ -70,9 +70,9 @@ class Meshes:
     def graded(self, level: int, fastest: float) -> MeshSolver:
         """Solver on the mesh graded for the speed ``fastest`` (rad/s), halved ``level`` times."""
         if not self.nodes:
-            self.nodes.append(mesh.coarse(self.blade, max(_FEWEST, self.count), fastest))
+            self.nodes.append(grading.coarse(self.blade, max(_FEWEST, self.count), fastest))
         while len(self.nodes) <= level:
-            self.nodes.append(mesh.halved(self.nodes[-1]))
+            self.nodes.append(grading.halved(self.nodes[-1]))
         return self._solver(-level, self.nodes[level])
 
     def bias(self, key: int, solved: Solved) -> Array:

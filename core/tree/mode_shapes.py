@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..element.mesh import Chain
+from ..element.mesh import Mesh
 from ..space import spatial as sp
 from .pencil import Shape
 
 Array = NDArray[np.float64]
 
 
-def mode_shapes(body: Chain, shape: Shape, twists: Array) -> NDArray[np.complex128]:
+def mode_shapes(body: Mesh, shape: Shape, twists: Array) -> NDArray[np.complex128]:
     """(m, q, 4) displacement and rotation about x at the mesh's sample points, in the hub's axes.
 
     Args:
@@ -26,7 +26,7 @@ def mode_shapes(body: Chain, shape: Shape, twists: Array) -> NDArray[np.complex1
     return sampled[::2] + 1j * sampled[1::2]
 
 
-def sampling_matrix(body: Chain, shape: Shape) -> Array:
+def sampling_matrix(body: Mesh, shape: Shape) -> Array:
     """(q, 4, 18) displacement and rotation about x of sample points, in the hub's axes, from (ξ_a, ξ_b, β) in the nodes'."""
     p = body.samples
     k = p.element

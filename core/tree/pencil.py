@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..compiled import kernels
 from ..effects import ALL_EFFECTS, Effects
-from ..element.mesh import Chain
+from ..element.mesh import Mesh
 from ..space import spatial as sp
 from . import elimination, joint_links, matrices
 from .elimination import Factor
@@ -24,7 +24,7 @@ _ROUNDING = 1e-13  # relative rounding in the stiffness of a rigid motion
 
 
 @dataclass(frozen=True)
-class ChainPencil:
+class TreePencil:
     """Residual (dn,) on (ρ, β), and M, C, K (n, d + 6, d + 6) of the elements, see ``matrices``.
 
     The inertia of a node is part of the first element that begins there, or, at a tip, of the one that ends there. A direction
@@ -62,24 +62,24 @@ class Shape:
     joints: Array = field(default_factory=lambda: np.zeros((0, 6)))
 
 
-def undeformed(chain: Chain) -> Shape:
+def undeformed(mesh: Mesh) -> Shape:
     """The undeformed shape."""
-    beta = np.zeros((len(chain.nodes) - 1, chain.beams.inner))
-    return Shape(chain.nodes, beta, chain.between, np.zeros((len(chain.joints), 6)))
+    beta = np.zeros((len(mesh.nodes) - 1, mesh.beams.inner))
+    return Shape(mesh.nodes, beta, mesh.between, np.zeros((len(mesh.joints), 6)))
 
 
-def assembled(chain: Chain, relative: Array, beta: Array, joints: Array) -> Shape:
+def assembled(mesh: Mesh, relative: Array, beta: Array, joints: Array) -> Shape:
     """The shape with these relative poses (n, 4, 4), in which those of joints are replaced by their coordinates (j, 6)."""
-    for joint, q in zip(chain.joints, joints, strict=True):
+    for joint, q in zip(mesh.joints, joints, strict=True):
         relative[joint.link] = joint_links.pose(joint, q)
-    return Shape(kernels.placed(chain.parent, chain.nodes[0], relative), beta, relative, joints)
+    return Shape(kernels.placed(mesh.parent, mesh.nodes[0], relative), beta, relative, joints)
 
 
-def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> ChainPencil:
+def linearize(mesh: Mesh, shape: Shape, omega: float, gravity: Array, effects: Effects = ALL_EFFECTS) -> TreePencil:
     """Residual and pencil at a shape.
 
     Args:
-        chain: the nodes and elements.
+        mesh: the nodes and elements.
         shape: where.
         omega: rotor speed, rad/s.
         gravity: (3,) m/s², in the hub's axes.
@@ -87,32 +87,32 @@ def linearize(chain: Chain, shape: Shape, omega: float, gravity: Array, effects:
     """
     nodes, relative, corner, beta, lumps, force, fall = (
         np.ascontiguousarray(a)
-        for a in (shape.nodes, shape.relative, chain.corner, shape.beta, chain.lumps, chain.force, gravity)
+        for a in (shape.nodes, shape.relative, mesh.corner, shape.beta, mesh.lumps, mesh.force, gravity)
     )
     f, M, C, K, spring, g, of_C, of_K = kernels.tree_parts(
-        chain.beams.arrays, nodes, relative, corner, beta, lumps, force, chain.parent, omega, fall, effects.geometric
+        mesh.beams.arrays, nodes, relative, corner, beta, lumps, force, mesh.parent, omega, fall, effects.geometric
     )
-    links = Links(chain.parent, sp.adjoint(sp.inverse(relative)), np.zeros((0, 6, 6)))
-    for joint in chain.joints:
+    links = Links(mesh.parent, sp.adjoint(sp.inverse(relative)), np.zeros((0, 6, 6)))
+    for joint in mesh.joints:
         f[joint.link], K[joint.link, :, :12], K[joint.link, :12], spring[joint.link] = 0.0, 0.0, 0.0, 0.0
     residual = gathered(links, f, g)
-    if chain.joints:
-        links = _with_joints(chain, shape, links, residual, K, spring, effects.geometric)
+    if mesh.joints:
+        links = _with_joints(mesh, shape, links, residual, K, spring, effects.geometric)
     kernels.tree_sum(links.arrays, M, C, K, spring, lumps, of_C, of_K)
     if not effects.coriolis:
         C[:] = 0.0
-    return ChainPencil(allowed(links, residual.reshape(1, -1))[0], M, C, K, links)
+    return TreePencil(allowed(links, residual.reshape(1, -1))[0], M, C, K, links)
 
 
 def _with_joints(
-    chain: Chain, shape: Shape, links: Links, residual: Array, K: Array, spring: Array, geometric: bool
+    mesh: Mesh, shape: Shape, links: Links, residual: Array, K: Array, spring: Array, geometric: bool
 ) -> Links:
     """Add the joints' forces to the residual (n, d) and their stiffness to K and ``spring``; the links with what they clamp."""
     clamped = np.zeros((len(residual), 6, 6))
-    for joint, q in zip(chain.joints, shape.joints, strict=True):
+    for joint, q in zip(mesh.joints, shape.joints, strict=True):
         k = joint.link
         carried = residual[k, :6].copy() if geometric else np.zeros(6)
-        its = joint_links.response(joint, q, carried, chain.beams.preload[k])
+        its = joint_links.response(joint, q, carried, mesh.beams.preload[k])
         clamped[k], spring[k] = its.clamped, its.stiffness
         residual[k, :6] += its.force
         turning = sp.coadjoint(
@@ -123,19 +123,19 @@ def _with_joints(
     return Links(links.parent, links.to_child, clamped)
 
 
-def on_nodes(p: ChainPencil, vectors: NDArray[np.complex128]) -> Array:
+def on_nodes(p: TreePencil, vectors: NDArray[np.complex128]) -> Array:
     """(2m, n, d) ξ_b and β of the elements, the real and the imaginary parts of vectors (dn, m) of (ρ, β) in turn."""
     return twists(p.links, np.stack([vectors.real.T, vectors.imag.T], axis=1).reshape(-1, len(vectors)))
 
 
-def has_free_motion(p: ChainPencil) -> bool:
+def has_free_motion(p: TreePencil) -> bool:
     """Whether a joint allows a rigid-body motion without stiffness, apart from rounding."""
     if not p.links.clamped.size:
         return False
     return any(_rigid_motion_is_free(p, int(k)) for k in np.flatnonzero(p.links.clamped.any(axis=(1, 2))))
 
 
-def _rigid_motion_is_free(p: ChainPencil, link: int) -> bool:
+def _rigid_motion_is_free(p: TreePencil, link: int) -> bool:
     """Whether the joint at a link allows all that lies beyond to move without stiffness."""
     clamped = p.links.clamped[link]
     free = np.linalg.svd(np.eye(6) - clamped)[0][:, : 6 - round(float(np.trace(clamped)))]

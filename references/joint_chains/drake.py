@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ..protocol import install
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
@@ -85,7 +85,7 @@ def _drake(module: str) -> Any:
     return import_module(f"pydrake.{module}")
 
 
-def build(chain: Chain) -> DrakeChain:
+def build(chain: Mesh) -> DrakeChain:
     """A hub rotating about z, then six links on joints of one coordinate for every node except the clamped one."""
     tree, pose = _drake("multibody.tree"), _drake("math").RigidTransform
     made = _drake("multibody.plant").MultibodyPlant(0.0)

@@ -18,7 +18,7 @@ from scipy.linalg import block_diag
 from ...core import curve
 from ...core.blade import Blade, clamped
 from ...core.element.discretize import discretize, divide
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
@@ -101,7 +101,7 @@ class JointChain(BladeAdapter):
     independence: Independence
     distribution: str
     max_elements: int
-    build: Callable[[Chain], ChainModel]
+    build: Callable[[Mesh], ChainModel]
     levels: tuple[int, ...] = (10, 20, 30)
     order: int = 2
 
@@ -144,7 +144,7 @@ def rounding(
     return 0.5 * (np.einsum("im,ij,jm->m", size, error, size) + kinetic) / np.abs(energy)
 
 
-def places(chain: Chain) -> Array:
+def places(chain: Mesh) -> Array:
     """(e, 4, 4) undeformed pose of each body in the frame of the previous one, of the first in the hub's.
 
     A body's frame is that of the end of the element before it, and its joints are along its axes. At a kink the next
@@ -154,7 +154,7 @@ def places(chain: Chain) -> Array:
     return before @ chain.beams.undeformed
 
 
-def bodies(chain: Chain) -> Array:
+def bodies(chain: Mesh) -> Array:
     """(e, 6, 6) inertia of each body, in the frame that ``places`` gives it."""
     return transformed(chain.lumps[1:], sp.inverse(chain.corner))
 
@@ -191,7 +191,7 @@ def require_symmetries(stiffness: Array, gyroscopic: Array, rounding: float, cod
             )
 
 
-def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: Chain) -> tuple[Array, Array]:
+def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: Mesh) -> tuple[Array, Array]:
     """Coordinates (n,) at which the elements' forces ``elastic @ q`` balance the steady inertial forces.
 
     The load, Ω², is raised in steps only if Newton's method fails with the full load.
@@ -216,7 +216,7 @@ def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: C
     return q, stiffness
 
 
-def _newton(model: ChainModel, elastic: Array, omega: float, q: Array, chain: Chain) -> tuple[Array, Array] | None:
+def _newton(model: ChainModel, elastic: Array, omega: float, q: Array, chain: Mesh) -> tuple[Array, Array] | None:
     """Newton's method until the energy of its step, the square of the error in the energy norm, is at rounding; None if
     it fails.
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ..protocol import install
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
@@ -100,7 +100,7 @@ def _mujoco() -> Any:
     return import_module("mujoco")
 
 
-def build(chain: Chain) -> MujocoChain:
+def build(chain: Mesh) -> MujocoChain:
     """A hub rotating about z, then a body on six joints for every node except the clamped one.
 
     MuJoCo's compiler requires inertias of solids. The chain may have point masses, so its inertias are set after

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.element.mesh import Chain
+from ...core.element.mesh import Mesh
 from ..protocol import install
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries
 
@@ -46,7 +46,7 @@ class PinocchioChain:
         return np.array([pin.getJointJacobian(self.model, self.data, k, axes)[:4, 1:] for k in last])
 
 
-def build(chain: Chain) -> PinocchioChain:
+def build(chain: Mesh) -> PinocchioChain:
     """Build the chain in Pinocchio."""
     model = pinocchio_model(chain)
     return PinocchioChain(model, _workspace(model), chain.elements)
@@ -73,7 +73,7 @@ def _pinocchio() -> Any:
     return pinocchio
 
 
-def pinocchio_model(chain: Chain) -> Any:
+def pinocchio_model(chain: Mesh) -> Any:
     """Pinocchio's model: a hub rotating about z, then a body on four joints for every node except the clamped one."""
     pin = _pinocchio()
     model = pin.Model()

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from southwell.core.tree.pencil import ChainPencil
+from southwell.core.tree.pencil import TreePencil
 
 
-def dense(p: ChainPencil, matrix: np.ndarray) -> np.ndarray:
+def dense(p: TreePencil, matrix: np.ndarray) -> np.ndarray:
     """The sum (dn, dn) of the elements' matrices (n, d + 6, d + 6) of a pencil, on (ρ, β) of one element after the other."""
     n, d = len(matrix), matrix.shape[1] - 6
     beyond, out = to_twists(p, d), np.zeros((d * n, d * n))
@@ -21,7 +21,7 @@ def dense(p: ChainPencil, matrix: np.ndarray) -> np.ndarray:
     return free @ out @ free
 
 
-def to_twists(p: ChainPencil, d: int) -> np.ndarray:
+def to_twists(p: TreePencil, d: int) -> np.ndarray:
     """(dn, dn) from (ρ, β) to (ξ_b, β) of one element after the other: Ad ξ_b = ρ + ξ_a."""
     out = np.eye(d * len(p.links.parent))
     for k, (a, to_child) in enumerate(zip(p.links.parent, p.links.to_child, strict=True)):

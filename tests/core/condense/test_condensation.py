@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as ss
 
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_from_segments, chain_modes
+from southwell.core.condense.compressed import chain_modes, mesh_from_segments
 from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.condensation import segments_in_place as in_place
 from southwell.core.condense.segments import segment_from_matrix
@@ -97,10 +97,10 @@ def test_rigid_ties_restrain_warping_and_average_ties_give_way() -> None:
 
 def test_condensed_cantilever_against_timoshenko() -> None:
     """20 segments, three frequencies in each plane: exact characteristic equation at rest, core's beam at 10 rad/s."""
-    chain = chain_from_segments([cantilever_segment("average")] * 20, at(HUB))
-    at_rest = chain_modes(chain, 0.0, 6)
+    mesh = mesh_from_segments([cantilever_segment("average")] * 20, at(HUB))
+    at_rest = chain_modes(mesh, 0.0, 6)
     np.testing.assert_allclose(at_rest.frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
-    turning, beam = chain_modes(chain, 10.0, 6), modes(square_beam(), 10.0, 80, 6)
+    turning, beam = chain_modes(mesh, 10.0, 6), modes(square_beam(), 10.0, 80, 6)
     np.testing.assert_allclose(turning.frequencies, beam.frequencies, rtol=2e-4)
     assert (mac(turning, beam).diagonal() > 0.9999).all()
 
@@ -111,7 +111,7 @@ def test_rigid_ties_miss_the_target_on_the_cantilever() -> None:
     Finer meshes give 0.62 to 0.63 %. With three Gauss points along the span, which lock, this mesh gave 1.1 % and the
     finest 0.66 %.
     """
-    found = chain_modes(chain_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
+    found = chain_modes(mesh_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
     assert (found / np.repeat(timoshenko(3), 2) - 1 > 0.005).all()
 
 
@@ -121,7 +121,7 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
     D = np.concatenate([-np.eye(6), sp.adjoint(whole.undeformed)], axis=1)
     alone = segment_from_matrix(D.T @ whole.stiffness @ D, whole.undeformed, whole.inertia)
     np.testing.assert_allclose(alone.stiffness, whole.stiffness, rtol=1e-9, atol=1e-9 * np.abs(whole.stiffness).max())
-    found, expected = (chain_modes(chain_from_segments([s] * 20, at(HUB)), 10.0, 6).frequencies for s in (alone, whole))
+    found, expected = (chain_modes(mesh_from_segments([s] * 20, at(HUB)), 10.0, 6).frequencies for s in (alone, whole))
     np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
@@ -132,7 +132,7 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
 @pytest.mark.parametrize("omega", [0.0, SPEED])
 def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     """20 segments in place, five lowest frequencies (the fifth is torsion) within 0.5 %, mode by mode."""
-    found = chain_modes(chain_from_segments(segments_in_place(), at(ROOT)), omega, 6)
+    found = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 6)
     whole = twisted_modes(omega)
     np.testing.assert_allclose(found.frequencies[:5], whole.frequencies[:5], rtol=2e-3)
     assert (mac(found, whole).diagonal()[:5] > 0.999).all()
@@ -143,7 +143,7 @@ def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
     """Segments shorter than their chord: too stiff by per cents with rigid ties; slightly too soft with average ties."""
     whole = twisted_modes(0.0).frequencies[:5]
     rigid, average = (
-        chain_modes(chain_from_segments(segments_apart(kind), at(ROOT)), 0.0, 8).frequencies
+        chain_modes(mesh_from_segments(segments_apart(kind), at(ROOT)), 0.0, 8).frequencies
         for kind in ("rigid", "average")
     )
     assert (rigid[:4] / whole[:4] - 1 > 0.02).all()
@@ -167,15 +167,15 @@ def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float
     on = [np.flatnonzero(np.abs(model.points[:, 0] - v) < 1e-9) for v in x]
     ties_ = [(ties.average if k else ties.rigid)(model, on[k], f, f"{k}") for k, f in enumerate(frames)]
     masses = hexahedra.lumped_by_part(twisted(), STEEL, cuts())
-    found = chain_modes(chain_from_segments(in_place(model, ties_, masses), at(ROOT)), omega, 5).frequencies
-    parallel = chain_modes(chain_from_segments(segments_in_place(), at(ROOT)), omega, 5).frequencies
+    found = chain_modes(mesh_from_segments(in_place(model, ties_, masses), at(ROOT)), omega, 5).frequencies
+    parallel = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 5).frequencies
     np.testing.assert_allclose(found, parallel, rtol=within)
 
 
 def test_the_compressed_model_agrees_with_the_general_solver() -> None:
-    chain = chain_from_segments(segments_in_place(), at(ROOT))
-    dense = modal.modes(modal.linearize(mechanism(chain, SPEED)), 6).frequencies
-    np.testing.assert_allclose(dense, chain_modes(chain, SPEED, 6).frequencies, rtol=1e-9)
+    mesh = mesh_from_segments(segments_in_place(), at(ROOT))
+    dense = modal.modes(modal.linearize(mechanism(mesh, SPEED)), 6).frequencies
+    np.testing.assert_allclose(dense, chain_modes(mesh, SPEED, 6).frequencies, rtol=1e-9)
 
 
 def test_segments_have_the_mass_of_the_blade() -> None:
@@ -189,7 +189,7 @@ def test_segments_have_the_mass_of_the_blade() -> None:
     R = ties.motion(model.points, model.directions, np.eye(4))
     np.testing.assert_allclose(total, (R.T * model.mass) @ R, atol=1e-12 * total.max())
     assert where[0, 3] == pytest.approx(ROOT + SPAN)
-    at_centres = chain_from_segments(
+    at_centres = mesh_from_segments(
         bodies, at(ROOT)
     ).beams.points.mass  # so that second-order motion is that of the centres
     assert np.abs(at_centres[:, 3:, :3]).max() < 1e-12 * total[0, 0]

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as ss
 
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_from_segments, chain_modes, segment_modes
+from southwell.core.condense.compressed import chain_modes, mesh_from_segments, segment_modes
 from southwell.core.condense.joined import joined
 from southwell.core.condense.segments import Segment, between, segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
@@ -68,7 +68,7 @@ def uniform_segments(n: int) -> list[Segment]:
 
 
 def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
-    return chain_modes(chain_from_segments(uniform_segments(n), at(PARK.hub_radius)), omega, count).frequencies
+    return chain_modes(mesh_from_segments(uniform_segments(n), at(PARK.hub_radius)), omega, count).frequencies
 
 
 def test_two_joined_segments_are_one_of_twice_the_length() -> None:
@@ -114,7 +114,7 @@ def test_torsion_is_that_of_masses_in_the_middle() -> None:
     k12, _, undeformed = beam_segment(length)
     body = inertia(1.2 * length, [1e2 * length, 60.0, 60.0], [length / 2, 0, 0])
     found = chain_modes(
-        chain_from_segments([segment_from_matrix(k12, undeformed, body)] * n, np.eye(4)), 0.0, 20
+        mesh_from_segments([segment_from_matrix(k12, undeformed, body)] * n, np.eye(4)), 0.0, 20
     ).frequencies
     beta = (np.arange(1, 4) - 0.5) * np.pi / PARK.length
     exact = 2 / length * np.sqrt(7e10 / 2.6 * 4e-7 / 1e2) * np.tan(beta * length / 2)
@@ -245,7 +245,7 @@ def lump(**changes) -> FiniteElements:
         (lambda: lump(points=np.zeros((42, 2))), r"points has shape \(42, 2\)"),
         (lambda: lump(stiffness=ss.csr_array(np.tri(42))), "not symmetric"),
         (lambda: lump(stiffness=ss.csr_array(np.full((42, 42), np.inf))), "not finite"),
-        (lambda: chain_from_segments([], np.eye(4)), "segments: none given"),
+        (lambda: mesh_from_segments([], np.eye(4)), "segments: none given"),
     ],
 )
 def test_bad_ties_and_models_are_refused(act, match: str) -> None:

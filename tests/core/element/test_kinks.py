@@ -153,11 +153,11 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
 
 
 def test_bodies_of_the_joint_chain_are_at_the_ends_of_the_elements() -> None:
-    chain = discretize(with_all(), 9, "half_end", "body_fixed")
+    mesh = discretize(with_all(), 9, "half_end", "body_fixed")
     here = np.eye(4)
-    for k, place in enumerate(joint_chain.places(chain), 1):
+    for k, place in enumerate(joint_chain.places(mesh), 1):
         here = here @ place
-        np.testing.assert_allclose(here, chain.nodes[k] @ chain.corner[k - 1], atol=1e-12)
+        np.testing.assert_allclose(here, mesh.nodes[k] @ mesh.corner[k - 1], atol=1e-12)
 
 
 TAKE_KINKS = ("pinocchio", "mujoco", "drake", "scikit-fem-reissner")

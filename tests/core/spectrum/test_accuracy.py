@@ -15,7 +15,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
-from southwell.core.spectrum import accuracy, mesh
+from southwell.core.spectrum import accuracy, grading
 from southwell.core.spectrum.refinement import AccuracyWarning
 from southwell.references.scikit_fem.reissner import CODE
 from southwell.reports.cli.app import main
@@ -53,9 +53,9 @@ def random_blade(seed: int) -> tuple[Blade, float]:
 
 def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies on a very fine graded mesh, and their relative change when its elements are halved."""
-    nodes = mesh.coarse(blade, 300, omega)
+    nodes = grading.coarse(blade, 300, omega)
     coarse, fine = (
-        solve.chain_modes(discretize(blade, s), omega, count).frequencies for s in (nodes, mesh.halved(nodes))
+        solve.chain_modes(discretize(blade, s), omega, count).frequencies for s in (nodes, grading.halved(nodes))
     )
     return fine, np.abs(fine / coarse - 1.0)
 
@@ -176,14 +176,14 @@ def test_the_uncertainty_without_convergence_is_three_times_the_spread(f: tuple[
 
 def test_the_mesh_has_nodes_at_stations_and_is_fine_at_the_root() -> None:
     blade, _ = random_blade(6)
-    nodes = mesh.coarse(blade, 10, 0.0)
+    nodes = grading.coarse(blade, 10, 0.0)
     assert {round(s, 9) for s in blade.stations} <= {round(s, 9) for s in nodes}
     assert np.diff(nodes).max() <= blade.length / 10 * (1 + 1e-9)
     layer = np.sqrt(1.0 / (30.0**2 * 50.0))
-    fine = mesh.coarse(cable(1.0), 10, 30.0)
+    fine = grading.coarse(cable(1.0), 10, 30.0)
     assert fine[1] <= layer < fine[3]
     assert (fine[0], fine[-1]) == (0.0, 10.0)
-    np.testing.assert_allclose(mesh.halved(fine)[::2], fine)
+    np.testing.assert_allclose(grading.halved(fine)[::2], fine)
 
 
 @pytest.mark.parametrize(

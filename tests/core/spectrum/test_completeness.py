@@ -15,14 +15,14 @@ from southwell.core.spectrum import completeness, eigen, lanczos
 from southwell.core.spectrum import mesh_solver as solution
 from southwell.core.spectrum.completeness import MissedModesError
 from southwell.core.tree import elimination
-from southwell.core.tree.pencil import ChainPencil
+from southwell.core.tree.pencil import TreePencil
 from southwell.tests.support.dense import dense
 
 ROUND = uniform_blade("round", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=1e6, mass=10.0)
 FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
 
 
-def pencil(blade, omega: float, elements: int, **how: Any) -> ChainPencil:
+def pencil(blade, omega: float, elements: int, **how: Any) -> TreePencil:
     return solution.balance(discretize(blade, elements, **how), omega, np.zeros(3), ALL_EFFECTS).pencil
 
 
@@ -95,7 +95,7 @@ def test_stiffness_lost_to_rounding_is_not_called_unstable(monkeypatch: pytest.M
 def test_stiffness_that_may_be_either_is_called_both(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lanczos, "solve_error", lambda *_: 1e-2)
     indefinite = property(lambda p: elimination.factor(p.K, p.links)._replace(positive=False))
-    monkeypatch.setattr(ChainPencil, "factor", indefinite)
+    monkeypatch.setattr(TreePencil, "factor", indefinite)
     with pytest.raises(
         lanczos.EigensolverError, match=r"the steady state is unstable; or it is dominated by rounding error"
     ):

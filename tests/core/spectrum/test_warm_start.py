@@ -28,9 +28,9 @@ def linearised(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The speed (rad/s) of every linearisation of Newton's method, as they come."""
     speeds, linearize = [], steady.linearize
 
-    def noted(chain, shape, omega, gravity):
+    def noted(mesh, shape, omega, gravity):
         speeds.append(omega)
-        return linearize(chain, shape, omega, gravity)
+        return linearize(mesh, shape, omega, gravity)
 
     monkeypatch.setattr(steady, "linearize", noted)
     return speeds

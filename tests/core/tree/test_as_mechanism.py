@@ -38,7 +38,7 @@ ROOTS = {
 
 
 def assert_agreement(blade: Blade, omega: float, elements: int, gravity: Array = NONE, **options: Any) -> None:
-    """The six lowest frequencies as a mechanism and as a chain."""
+    """The six lowest frequencies as a mechanism and as a mesh."""
     built = as_mechanism.mechanism(discretize(blade, elements, **options), omega, tuple(gravity.tolist()))
     hub, *others = built.motions
     frozen = (Motion(hub.coordinate, law=Polynomial([0.0, omega])), *others)  # gravity turns, seen from the blade

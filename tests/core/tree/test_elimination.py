@@ -9,11 +9,11 @@ from southwell.core.space import spatial as sp
 from southwell.core.spectrum import completeness
 from southwell.core.tree import elimination, matrices
 from southwell.core.tree.links import Links, allowed, gathered, twists
-from southwell.core.tree.pencil import ChainPencil
+from southwell.core.tree.pencil import TreePencil
 from southwell.tests.support.dense import dense, to_twists
 
 
-def random(n: int, d: int, tree: str = "chain", joints: tuple[int, ...] = ()) -> ChainPencil:
+def random(n: int, d: int, tree: str = "chain", joints: tuple[int, ...] = ()) -> TreePencil:
     """A tree with K > 0, M > 0 and C skew; the given links are massless joints that clamp two to five directions."""
     rng = np.random.default_rng(n * d)
     a, M, C = rng.normal(size=(3, n, d + 6, d + 6))
@@ -30,7 +30,7 @@ def random(n: int, d: int, tree: str = "chain", joints: tuple[int, ...] = ()) ->
         "bushy": np.array([int(rng.integers(0, k + 1)) for k in range(n)]),
         "star": np.array([0 if k % 4 == 0 else k for k in range(n)]),  # branches of four links
     }
-    return ChainPencil(np.zeros(n * d), M, C, K, Links(parents[tree].astype(np.int64), to_child, clamped))
+    return TreePencil(np.zeros(n * d), M, C, K, Links(parents[tree].astype(np.int64), to_child, clamped))
 
 
 CASES = [(n, d, "chain", ()) for n, d in ((1, 6), (2, 12), (7, 12), (7, 6))]

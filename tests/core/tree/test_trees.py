@@ -9,7 +9,7 @@ from southwell.core.blade import Blade, section_mass, section_stiffness, uniform
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.branches import CLAMPED, around_hub, attached, hub
 from southwell.core.element.discretize import discretize
-from southwell.core.element.mesh import Chain
+from southwell.core.element.mesh import Mesh
 from southwell.core.mechanism.description import inertia
 from southwell.core.space import spatial as sp
 from southwell.core.space.inertia import transformed
@@ -37,15 +37,15 @@ def blade(seed: int = 1, **changes) -> Blade:
     return Blade("b", np.append(0.0, np.cumsum(steps)), stiffness, mass, **(given | changes))
 
 
-def state(mesh: Chain, omega: float, gravity=(0.0, 0.0, 0.0)) -> Steady:
+def state(mesh: Mesh, omega: float, gravity=(0.0, 0.0, 0.0)) -> Steady:
     return balance(mesh, omega, np.array(gravity), ALL_EFFECTS)
 
 
-def frequencies(mesh: Chain, omega: float, count: int) -> np.ndarray:
+def frequencies(mesh: Mesh, omega: float, count: int) -> np.ndarray:
     return lanczos(state(mesh, omega).pencil, count).frequencies
 
 
-def elastic_hub() -> Chain:
+def elastic_hub() -> Mesh:
     """Three blades on a hub with inertia, on a shaft that twists and bends, with one blade on hinges."""
     branch = discretize(blade(), 4)
     shaft = np.array([np.inf, 3e6, 3e6, 4e5, np.inf, 9e5])
@@ -60,7 +60,7 @@ def elastic_hub() -> Chain:
     return rotor
 
 
-def grafted() -> Chain:
+def grafted() -> Mesh:
     """A blade that carries another one at its middle, on a sliding and turning joint with springs, and a rigid tip fin."""
     trunk, twig = discretize(blade(1), 5), discretize(blade(2, hub_radius=0.0, precone=0.0), 3)
     frame = sp.exp(np.array([0.1, -0.2, 0.3, 0.4, 0.9, -0.2]))

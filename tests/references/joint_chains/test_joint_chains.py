@@ -13,7 +13,7 @@ from southwell.cases.input.library import load
 from southwell.core import solve
 from southwell.core.blade import Blade, without_rotary_inertia
 from southwell.core.element.discretize import discretize
-from southwell.core.element.mesh import Chain
+from southwell.core.element.mesh import Mesh
 from southwell.references.joint_chains import drake as drake_chain
 from southwell.references.joint_chains import joint_chain
 from southwell.references.joint_chains import mujoco as mujoco_chain
@@ -93,7 +93,7 @@ def test_shapes_agree_with_pinocchio(code: Any) -> None:
         pytest.param(mujoco_chain.build, 1e-9, id="mujoco", marks=needs("mujoco", mujoco_chain.CODE)),
     ],
 )
-def test_every_stage_agrees_with_pinocchio(make: Callable[[Chain], ChainModel], rtol: float) -> None:
+def test_every_stage_agrees_with_pinocchio(make: Callable[[Mesh], ChainModel], rtol: float) -> None:
     """Mass, inertial force, its derivatives, and motion of the bodies, at strains of 0.1, far from the undeformed state."""
     pytest.importorskip("pinocchio")
     chain = discretize(replace(curved(), tip_mass=TIP_MASS), 5, "half_end", "body_fixed")

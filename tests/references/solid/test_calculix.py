@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from southwell.core.condense import exported, ties
-from southwell.core.condense.compressed import chain_from_segments, chain_modes
+from southwell.core.condense.compressed import chain_modes, mesh_from_segments
 from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.matrix_files import read
 from southwell.core.condense.segments import between
@@ -59,7 +59,7 @@ def test_twisted_blade_three_ways(omega: float) -> None:
     ours = twisted_modes(omega, coriolis=False)
     np.testing.assert_allclose(theirs.frequencies[:5], ours.frequencies[:5], rtol=1e-3)
     assert (mac(theirs, ours).diagonal()[:5] > 0.99).all()
-    chain = chain_from_segments(segments_in_place(), at(ROOT))
+    chain = mesh_from_segments(segments_in_place(), at(ROOT))
     compressed = chain_modes(chain, omega, 6, effects=Effects(coriolis=False))
     np.testing.assert_allclose(compressed.frequencies[:5], theirs.frequencies[:5], rtol=2.5e-3)
     assert (mac(theirs, compressed).diagonal()[:5] > 0.99).all()
@@ -83,7 +83,7 @@ def test_segment_from_calculixs_matrices() -> None:
     EA, EI = SQUARE.young * SIDE**2, SQUARE.young * SIDE**4 / 12
     f = np.linalg.inv(piece.stiffness)
     np.testing.assert_allclose(np.diagonal(f)[[0, 4, 5]], length / np.array([EA, EI, EI]), rtol=1e-8)
-    found = chain_modes(chain_from_segments([piece] * 20, at(HUB)), 0.0, 6).frequencies
+    found = chain_modes(mesh_from_segments([piece] * 20, at(HUB)), 0.0, 6).frequencies
     np.testing.assert_allclose(found, np.repeat(timoshenko(3), 2), rtol=2e-4)
     even = segment(model, *(tie(model, x, np.eye(len(weights[0]))) for x in (0.0, length)))
     assert np.linalg.inv(even.stiffness)[0, 0] > 1.1 * length / EA

@@ -10,7 +10,7 @@ import scipy.sparse as ss
 from southwell.cases.condense import condensed, condensing
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import Run
-from southwell.core.condense.compressed import chain_from_segments, chain_modes
+from southwell.core.condense.compressed import chain_modes, mesh_from_segments
 from southwell.references.solid import calculix, hexahedra
 from southwell.references.solid.mesh import Bricks, blade, clamped
 from southwell.reports.cli import app as cli
@@ -88,7 +88,7 @@ def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> Non
     found = condensing.condense(toml(folder, WHOLE)).blade
     assert_same(found.segments, in_house(), 1e-7, "undeformed stiffness")
     assert_same(found.segments, in_house(), 1e-3, "inertia")
-    expected = chain_modes(chain_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
+    expected = chain_modes(mesh_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
     np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
 
 
