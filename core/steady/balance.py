@@ -174,7 +174,7 @@ def _forces_of_unit_strain(tree: Tree, state: State, units: Array) -> Array:
     """(n,) forces on a coordinate from a unit strain of all stiffnesses that it carries: they bound its rounding."""
     k, c = state.kinematics, state.cartesian
     twist = np.repeat([length_at(tree, k.poses), 1.0], 3)
-    inner = units[tree.inner[:, None] + np.arange(6)]
+    inner = units[tree.first_internal[:, None] + np.arange(6)]
     bodies = np.tile(twist, len(k.poses))
     wrench = np.append((abs(c.K) @ np.append(bodies, inner)).reshape(-1, 6), np.zeros((1, 6)), axis=0)
     np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ twist)[:, None, :])

@@ -82,7 +82,7 @@ def _without_guess(tree: Tree, q: Array) -> str:
     except MechanismError:
         return ""
     distance = np.abs(state.q - q) / coordinate_units(tree, length_at(tree, state.kinematics.poses))
-    distance[tree.inner[:, None] + np.arange(6)] = 0.0  # internal coordinates of beams are not informative
+    distance[tree.first_internal[:, None] + np.arange(6)] = 0.0  # internal coordinates of beams are not informative
     furthest = np.argsort(-distance)[:3]
     values = ", ".join(f"{tree.coordinates[j]} = {round(float(state.q[j]), 9):.4g}" for j in furthest)
     return f"; without a guess, a steady state was found at {values}"

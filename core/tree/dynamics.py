@@ -108,7 +108,7 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
     """
-    out = _Sum(len(k.poses) + len(tree.inner))  # g = M Ẏ + Φᶜ_Zᵀ λ − Q, which Φᴶ and Φᴹ must balance (eq. 1)
+    out = _Sum(len(k.poses) + len(tree.first_internal))  # g = M Ẏ + Φᶜ_Zᵀ λ − Q, which Φᴶ and Φᴹ must balance (eq. 1)
     _bodies(tree, k, out)
     for spring in tree.mechanism.springs:
         _spring(tree, k, spring, out)

@@ -44,10 +44,10 @@ class Kinematics:
     @cached_property
     def B(self) -> Array:
         """(b + m, 6, n) velocity transformation; the last m rows select the internal coordinates of beams that have them."""
-        m = len(self.tree.inner)
+        m = len(self.tree.first_internal)
         pick = np.zeros((m, 6, len(self.q)))
         for k in range(6):
-            pick[np.arange(m), k, self.tree.inner + k] = 1.0
+            pick[np.arange(m), k, self.tree.first_internal + k] = 1.0
         return np.concatenate([transformation(self.tree, self.J), pick])
 
     @cached_property
@@ -61,7 +61,7 @@ class Kinematics:
         return self._with_inner(transformation(self.tree, self.J2))
 
     def _with_inner(self, rows: Array) -> Array:
-        return np.concatenate([rows, np.zeros((len(self.tree.inner), *rows.shape[1:]))])
+        return np.concatenate([rows, np.zeros((len(self.tree.first_internal), *rows.shape[1:]))])
 
 
 def transformation(tree: Tree, J: Array) -> Array:
@@ -114,8 +114,8 @@ def projected(k: Kinematics, wrenches: Array, J: Array | None = None) -> Array:
     """Bᵀ w (n,) for wrenches w (b + m, 6); ``J`` (6, n) replaces the screws if given."""
     b = len(k.poses)
     out = np.einsum("in,ni->n", k.J if J is None else J, carried(k.tree, wrenches[:b]))
-    if len(k.tree.inner):
-        out[k.tree.inner[:, None] + np.arange(6)] += wrenches[b:]
+    if len(k.tree.first_internal):
+        out[k.tree.first_internal[:, None] + np.arange(6)] += wrenches[b:]
     return out
 
 

@@ -41,7 +41,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     tree = Tree(
         mechanism=mechanism,
         coordinates=tuple(added.names),
-        before=before,
+        parent=before,
         fixed=np.array(added.fixed).reshape(n, 4, 4),
         screw=np.array(added.screw).reshape(n, 6),
         bodies=bodies,
@@ -50,7 +50,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertia=np.array(inertia),
         welds=tuple(zip(originals, range(len(names), len(bodies)), strict=True)),
         weld_names=tuple(j.name for j in cuts),
-        inner=inside,
+        first_internal=inside,
         batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
     )
     _check_axes(tree)

@@ -49,7 +49,7 @@ class Tree:
     Attributes:
         mechanism: the mechanism.
         coordinates: (n) names.
-        before: (n,) parent link of each coordinate's link, −1 for the ground.
+        parent: (n,) parent link of each coordinate's link, −1 for the ground.
         fixed: (n, 4, 4) pose of the screw's frame in the parent link.
         screw: (n, 6) unit twist in that frame.
         bodies: (b) names, copies beyond cut joints last.
@@ -58,13 +58,13 @@ class Tree:
         inertia: (b, 6, 6) in the bodies' frames.
         welds: pairs (body, copy) of body indices that a cut joint welds together.
         weld_names: the cut joints' names.
-        inner: (i,) the first of the six internal coordinates of each beam that has them.
+        first_internal: (i,) the first of the six internal coordinates of each beam that has them.
         batches: the beams.
     """
 
     mechanism: Mechanism
     coordinates: tuple[str, ...]
-    before: NDArray[np.intp]
+    parent: NDArray[np.intp]
     fixed: Array
     screw: Array
     bodies: tuple[str, ...]
@@ -73,14 +73,14 @@ class Tree:
     inertia: Array
     welds: tuple[tuple[int, int], ...]
     weld_names: tuple[str, ...]
-    inner: NDArray[np.intp]
+    first_internal: NDArray[np.intp]
     batches: tuple[Batch, ...]
 
     @cached_property
     def links(self) -> Links:
         """The links for the sweeps of ``links``, with all twists and wrenches at the ground's origin, in its axes: Ad = 1."""
         n = len(self.coordinates)
-        return Links(self.before.astype(np.int64) + 1, np.tile(np.eye(6), (n, 1, 1)), np.zeros((0, 6, 6)))
+        return Links(self.parent.astype(np.int64) + 1, np.tile(np.eye(6), (n, 1, 1)), np.zeros((0, 6, 6)))
 
     @cached_property
     def moves_link(self) -> NDArray[np.bool_]:
@@ -107,7 +107,7 @@ class Tree:
     @property
     def joints(self) -> int:
         """Number of coordinates of joints, which come before the internal ones of beams."""
-        return int(self.inner[0]) if len(self.inner) else len(self.coordinates)
+        return int(self.first_internal[0]) if len(self.first_internal) else len(self.coordinates)
 
     def body(self, name: str) -> int:
         """Index of a body; −1 is the ground."""

@@ -34,7 +34,7 @@ def moving(name: str) -> tuple[Kinematics, dynamics.Cartesian]:
     tree = trees()[name] if name not in CASES else compile_tree(at_time(CASES[name]()[0], 0.0))
     n = len(tree.coordinates)
     q, v, a = 0.1 * np.random.default_rng(5).normal(size=(3, n))
-    if len(tree.inner):  # beams with mass are carried steadily
+    if len(tree.first_internal):  # beams with mass are carried steadily
         v, a = np.eye(n)[0], np.zeros(n)
     k = kinematics(tree, q, v, a)
     return k, dynamics.cartesian(tree, k)
@@ -45,7 +45,7 @@ def path(tree: Tree, body: int) -> list[int]:
     out, link = [], int(tree.link[body])
     while link >= 0:
         out.append(link)
-        link = int(tree.before[link])
+        link = int(tree.parent[link])
     return out
 
 
