@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..element.beams import Beams
 from ..mechanism.description import GROUND, Mechanism, MechanismError
-from ..mechanism.units import length_of
+from ..mechanism.length import length_of
 from .links import Links, twists
 
 Array = NDArray[np.float64]

@@ -13,9 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from southwell import multibody as mb
-from southwell.core.mechanism.units import Units, coordinate_units, in_units, own_units
+from southwell.core.mechanism.length import coordinate_units
 from southwell.tests.core.steady.test_periodic import REFUSED
 from southwell.tests.support import linkages, mechanisms
+from southwell.tests.support.rescaling import Units, in_units, own_units
 
 pytestmark = pytest.mark.numerical
 
