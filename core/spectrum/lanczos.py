@@ -29,6 +29,7 @@ _MAX_SOLVE_ERROR = (
 )
 _FIRST_LOOK, _LOOK_EVERY = 13, 12  # numbers of vectors, for each of a block, before the first check; between checks
 _FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
+_CLUSTER = 0.02  # relative width of a cluster of modes that do not converge
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 MAX_WIDTH = 8
 """Largest number of vectors in a block; see ``krylov.hpp``."""
@@ -182,7 +183,15 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
     if not positive.any() or not np.isfinite(mu).all():
         raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
     if error[positive].max() > 1e-6:
-        raise EigensolverError(f"Lanczos did not find {count} modes in a basis of {size}: request fewer modes")
+        lowest, highest = 1.0 / mu.max(), 1.0 / mu[positive].min()
+        if highest < (1.0 + _CLUSTER) * lowest:
+            raise EigensolverError(
+                f"more modes than can be told apart lie between {lowest:.6g} and {highest:.6g} rad/s, as they do without "
+                "torsional or bending stiffness: check GJ and EI"
+            )
+        raise EigensolverError(
+            f"{count} modes did not converge in a basis of {size} vectors: request another number of modes"
+        )
     return _Ritz(basis[:size], mu[positive], z[:, positive], beyond[beyond > smallest])
 
 

@@ -100,3 +100,10 @@ def test_stiffness_that_may_be_either_is_called_both(monkeypatch: pytest.MonkeyP
         lanczos.EigensolverError, match=r"the steady state is unstable; or it is dominated by rounding error"
     ):
         solve.mesh_modes(FLAT, 8.0, 40, 5)
+
+
+def test_modes_too_close_to_be_told_apart_are_refused_with_their_frequency() -> None:
+    """Without torsional stiffness torsion modes have the frequency of the propeller moment, Ω √((I_z − I_y)/(I_z + I_y))."""
+    soft = uniform_blade("b", 10.0, 1.0, EA=1e8, GJ=1e-6, EI_y=1e5, EI_z=3e5, mass=5.0, I_y=0.01, I_z=0.02)
+    with pytest.raises(lanczos.EigensolverError, match=r"between 5\.77\d+ and 5\.77\d+ rad/s.*check GJ and EI"):
+        solve.modes(soft, 10.0, count=6)
