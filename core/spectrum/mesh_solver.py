@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..effects import ALL_EFFECTS, Effects
+from ..element.measures import LARGEST_STRAIN
 from ..element.mesh import Mesh
 from ..modes import Modes
 from ..steady import blade_state as steady
@@ -63,6 +64,12 @@ class MeshSolver:
         except (UnstableError, EigensolverError) as error:
             if pencil.has_free_motion(state.pencil):
                 raise _free_root(omega) from error
+            strain = steady.largest_strain(body, state.shape)
+            if isinstance(error, UnstableError) and strain > LARGEST_STRAIN:
+                raise UnstableError(
+                    f"omega: {omega:.6g} rad/s: the steady state is unstable, with an axial or shear strain of {strain:.0%}: "
+                    "the blade is too soft for this speed; check units, or lower the speed"
+                ) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {body.elements} elements: {error}") from error
         self.known.pop(omega**2, None)  # the latest is the last one
         self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])

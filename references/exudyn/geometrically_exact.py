@@ -40,7 +40,7 @@ from ...core.blade import (
 )
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
-from ..protocol.interface import BladeAdapter, CodeError, Independence
+from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import JUMP, element_ends, line, moments
 from . import system as ex
@@ -70,7 +70,7 @@ class ExudynGeometricallyExact(BladeAdapter):
 
     name = "exudyn-beam"
     title = "Exudyn, geometrically exact beam"
-    independence = Independence("Exudyn", "geometrically exact beam on SE(3)", "exudyn-beam's adapter")
+    independence = Independence("Exudyn", "geometrically exact beam on SE(3)", "exudyn-beam's adapter", REFERENCE_LINE)
     levels = (12, 24, 48)
     order = 2
     hint = ex.HINT

@@ -65,6 +65,13 @@ class Core(BladeAdapter):
         return self.returned(solve.modes(self.given(blade), omega, elements, count, effects=self.kept))
 
 
+class Answering(Core):
+    """Answers what it declines."""
+
+    def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        return self.modes(blade, omega, elements, count)
+
+
 def failures(code: Any, *, among: str = "") -> dict[str, str]:
     """Check → what it said, of those that fail; ``among`` names the only ones to ask."""
     asked: tuple[Check, ...] = tuple(c for c in CHECKS if re.search(among, c.name))
@@ -196,7 +203,7 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
     "six digits, unsaid": (Core(returned=lambda m: printed(m, 6)), {"units"}),
     "five digits, six said": (Core(returned=lambda m: printed(m, 5), digits=6), {"units"}),
     "too few digits to judge": (Core(returned=lambda m: printed(m, 4), digits=4), {"declarations"}),
-    "declines, and answers": (Core(refused=lambda b: "coned" if b.precone else None), {"refusals"}),
+    "declines, and answers": (Answering(refused=lambda b: "coned" if b.precone else None), {"refusals"}),
     "declines without a word": (
         Core(refused=lambda b: " " if b.precone else None, solved=lambda b: "coned" if b.precone else None),
         {"refusals"},

@@ -57,6 +57,13 @@ class Core(MechanismAdapter):
         )
 
 
+class Answering(Core):
+    """Answers what it declines."""
+
+    def solve_mechanism(self, mechanism: mb.Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+        return self.mechanism_modes(mechanism, guess)
+
+
 def failures(code: Core) -> set[str]:
     return {str(o.check) for o in (judge(code, c) for c in FOR_MECHANISMS) if o.verdict == "fail"}
 
@@ -103,7 +110,7 @@ FAULTS: dict[str, tuple[Core, str]] = {
     "steady state dropped": (Core(returned=lambda a: replace(a, steady=0 * a.steady)), "damped slide"),
     "whatever is asked": (Core(answers_all=True), "no steady state"),
     "refuses and answers": (
-        Core(refused=lambda m: "bushings" if m.beams else None, answers_all=True),
+        Answering(refused=lambda m: "bushings" if m.beams else None, answers_all=True),
         "mechanism refusals",
     ),
     "refuses a pendulum": (Core(refused=lambda m: "hinges" if len(m.bodies) == 1 else None), "mechanism declarations"),

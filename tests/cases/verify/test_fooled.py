@@ -5,7 +5,6 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -214,10 +213,3 @@ def test_nor_does_either_of_an_answer_of_a_given_discretisation(d, u, more, rest
         (d, u, rest, None if limit is None else limit + more),
     ):
         assert RANK[discretised(d2, u2, target, rest2, limit2, "x")[0]] >= RANK[first]
-
-
-def test_a_target_in_a_history_line_of_an_earlier_version_is_unknown() -> None:
-    from southwell.cases.regression.history import Point
-
-    line = b'["beam","code",10.0,1,"flapwise",10.0,1e-5,1e-6,"pass",0.1]'
-    assert msgspec.json.decode(line, type=Point).target is None

@@ -46,8 +46,8 @@ def test_measured_points_have_bars_and_both_have_a_legend(files: list[UserResult
 
 
 def test_points_that_are_not_seen_are_counted(files: list[UserResults]) -> None:
-    wanted = SimpleNamespace(speeds=(0.0, 20 * np.pi / 30))
-    diagram: Any = SimpleNamespace(blade=SimpleNamespace(name="mine"), wanted=wanted)
+    request = SimpleNamespace(speeds=(0.0, 20 * np.pi / 30))
+    diagram: Any = SimpleNamespace(blade=SimpleNamespace(name="mine"), request=request)
     assert points.outside(files, diagram, top=100.0) == "2 of 6 added points outside"
     assert points.outside(files, diagram, top=1.9 * 2 * np.pi) == "4 of 6 added points outside"
     assert points.outside([], diagram, top=1.0) == ""
