@@ -99,7 +99,7 @@ def placed(parent: NDArray[np.int64], first: Array, relative: Array) -> Array:
     """The poses (n+1, 4, 4) of the nodes from that of node 0 and the relative ones (n, 4, 4)."""
 
 def product(matrix: Array, sign: float, links: Links, x: Array) -> Array:
-    """``matrices.product``."""
+    """``links.product``."""
 
 def twists(links: Links, x: Array) -> None:
     """Replace ρ by ξ_b in vectors x (k, n, d), in place."""

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigs
 
 from ..tree.elimination import solve
-from ..tree.links import allowed
-from ..tree.matrices import product
+from ..tree.links import allowed, product
 from ..tree.pencil import TreePencil
 from .completeness import below
 from .eigen import Eigen

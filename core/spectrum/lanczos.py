@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from ..compiled import kernels
 from ..tree.elimination import solve
-from ..tree.links import allowed
-from ..tree.matrices import product
+from ..tree.links import allowed, product
 from ..tree.pencil import TreePencil
 from . import completeness, eigen
 from .eigen import Eigen

@@ -47,7 +47,7 @@ def factor(K: Array, links: Links) -> Factor:
     """Factor K.
 
     Args:
-        K: (n, d + 6, d + 6) of the elements, see ``matrices``; not symmetric out of balance.
+        K: (n, d + 6, d + 6) of the elements, see ``links``; not symmetric out of balance.
         links: the tree.
 
     Raises:

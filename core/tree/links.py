@@ -4,6 +4,9 @@ Link k leads from node ``parent[k]`` to node k + 1; parents come before their ch
 holds (ρ, β) of one link after the other: the difference ρ = Ad ξ_b − ξ_a of the twists of its ends in the axes of its end a,
 and its internal coordinates. With v = ρ, Y = B v is the recursion ``ξ_b = Ad⁻¹ (ρ + ξ_a)`` (D. S. Bae and E. J. Haug, Mech.
 Struct. Mach. 15, 1987, 359), and its transpose sums the wrenches on all that lies beyond a link. B is never formed.
+
+A matrix of the tree acts element by element on (ξ_a, ρ, β); its product with a vector x is Bᵀ (matrix) B x. Strains depend on
+ρ, not on the twists: in these coordinates, the stiffness of short elements does not amplify rounding errors.
 """
 
 from dataclasses import dataclass
@@ -56,3 +59,15 @@ def allowed(links: Links, x: Array) -> Array:
     out = x.reshape(len(x), len(links.parent), -1).copy()
     out[..., :6] -= (links.clamped @ out[..., :6, None])[..., 0]
     return out.reshape(x.shape)
+
+
+def product(matrix: Array, sign: float, links: Links, x: Array) -> Array:
+    """Products Bᵀ (matrix) B x (k, dn) with the rows of x (k, dn) (Park et al. 2010, eq. 10).
+
+    Args:
+        matrix: (n, d + 6, d + 6) of the elements, d = 12, or 6 without internal coordinates.
+        sign: 1 for a symmetric matrix, −1 for a skew one.
+        links: the tree.
+        x: the vectors.
+    """
+    return kernels.product(matrix, sign, links.arrays, np.ascontiguousarray(x))

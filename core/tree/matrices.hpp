@@ -1,4 +1,4 @@
-// Products of a tree's matrices, element by element, with vectors; matrices.py has the coordinates (ξ_a, ρ, β).
+// Products of a tree's matrices, element by element, with vectors; links.py has the coordinates (ξ_a, ρ, β).
 //
 // D is the number of coordinates of an element's matrix: 18, or 12 without internal coordinates.
 #pragma once

@@ -1,7 +1,7 @@
 """The rotating tree: its Cartesian pencil M ξ̈ + C ξ̇ + K ξ about a given shape.
 
 All nodes rotate with the hub. Twists and wrenches of node k are in the axes of node k, and ξ is relative to the hub. In these
-axes B is constant, so that M̂ = BᵀMB, Ĉ = BᵀCB and K̂ = BᵀKB (``links``, ``matrices``).
+axes B is constant, so that M̂ = BᵀMB, Ĉ = BᵀCB and K̂ = BᵀKB (``links``).
 """
 
 from dataclasses import dataclass, field
@@ -14,9 +14,9 @@ from ..compiled import kernels
 from ..effects import ALL_EFFECTS, Effects
 from ..element.mesh import Mesh
 from ..space import spatial as sp
-from . import elimination, joint_links, matrices
+from . import elimination, joint_links
 from .elimination import Factor
-from .links import Links, allowed, gathered, twists
+from .links import Links, allowed, gathered, product, twists
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ _ROUNDING = 1e-13  # relative rounding in the stiffness of a rigid motion
 
 @dataclass(frozen=True)
 class TreePencil:
-    """Residual (dn,) on (ρ, β), and M, C, K (n, d + 6, d + 6) of the elements, see ``matrices``.
+    """Residual (dn,) on (ρ, β), and M, C, K (n, d + 6, d + 6) of the elements, see ``links``.
 
     The inertia of a node is part of the first element that begins there, or, at a tip, of the one that ends there. A direction
     that a joint clamps bears no load and does not move.
@@ -142,7 +142,7 @@ def _rigid_motion_is_free(p: TreePencil, link: int) -> bool:
     x = np.zeros((free.shape[1], len(p.links.parent), len(p.residual) // len(p.links.parent)))
     x[:, link, :6] = free.T  # no strain beyond the joint
     x = x.reshape(len(x), -1)
-    K = x @ matrices.product(p.K, 1.0, p.links, x).T
+    K = x @ product(p.K, 1.0, p.links, x).T
     moved = np.concatenate([np.zeros((len(x), 1, 6)), twists(p.links, x)[..., :6]], axis=1)
     begins = np.abs(moved[:, p.links.parent])
     cancelled = np.einsum("mki,kij,mkj->", begins, np.abs(p.K[:, :6, :6]), begins)

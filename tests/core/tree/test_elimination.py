@@ -7,8 +7,8 @@ import pytest
 
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import completeness
-from southwell.core.tree import elimination, matrices
-from southwell.core.tree.links import Links, allowed, gathered, twists
+from southwell.core.tree import elimination
+from southwell.core.tree.links import Links, allowed, gathered, product, twists
 from southwell.core.tree.pencil import TreePencil
 from southwell.tests.support.dense import dense, to_twists
 
@@ -44,8 +44,8 @@ def test_products_are_those_of_the_dense_matrix(case, vectors: int) -> None:
     p = random(*case)
     x = allowed(p.links, np.random.default_rng(1).normal(size=(vectors, len(p.residual))))
     for matrix, sign in ((p.K, 1.0), (p.M, 1.0), (p.C, -1.0)):
-        product = allowed(p.links, matrices.product(matrix, sign, p.links, x))
-        np.testing.assert_allclose(product, x @ dense(p, matrix).T, atol=1e-10)
+        projected = allowed(p.links, product(matrix, sign, p.links, x))
+        np.testing.assert_allclose(projected, x @ dense(p, matrix).T, atol=1e-10)
 
 
 @pytest.mark.parametrize("case", CASES)
