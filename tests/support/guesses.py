@@ -44,7 +44,7 @@ def assert_same(tree: Tree, guess: Mapping[str, float] | None, expected: State, 
         try:
             found = STEADY(tree, perturbed(tree, guess or {}, k))
         except MechanismError as error:  # nothing near this guess
-            if "without a guess one is found" not in str(error):
+            if "without a guess, a steady state was found" not in str(error):
                 raise
             found = STEADY(tree)
         again = about(tree, found, linear.names)
