@@ -14,7 +14,7 @@ Index = NDArray[np.intp]
 _LAPACK: Any = lapack
 
 TOLERANCE = 1e-9
-"""Singular values below this fraction of the largest count as zero."""
+"""Singular values below this fraction of the largest count as zero, unless the errors of the matrix are known."""
 
 _TIE = (
     1e-8  # relative difference of columns' lengths, above rounding, by which pivots choose the later of equal columns
@@ -33,7 +33,7 @@ class Ranked:
 
     Attributes:
         left: (m, r) left singular vectors, divided by the equations' units.
-        sizes: (r,) singular values above ``TOLERANCE``.
+        sizes: (r,) singular values that are not zero.
         right: (r, n) right singular vectors, times the unknowns' units.
         null: (n, n − r) basis of the null space, orthonormal in these units.
         left_null: (m, m − r) basis of the null space of the transpose, likewise.
@@ -47,7 +47,7 @@ class Ranked:
 
     @property
     def rank(self) -> int:
-        """The number of singular values above ``TOLERANCE``."""
+        """The number of singular values that are not zero."""
         return len(self.sizes)
 
     def solve(self, b: Array, damping: float = 0.0) -> Array:
@@ -56,13 +56,17 @@ class Ranked:
         return self.right.T @ scaled.T
 
 
-def ranked(A: Array, equations: Array | float = 1.0, unknowns: Array | float = 1.0) -> Ranked:
+def ranked(
+    A: Array, equations: Array | float = 1.0, unknowns: Array | float = 1.0, error: Array | None = None
+) -> Ranked:
     """Decompose a matrix (m, n); any size may be 0.
 
     Args:
         A: the matrix.
         equations: (m,) units of its rows.
         unknowns: (n,) units of the unknowns that it multiplies.
+        error: (n,) e: entry ij of A in these units, which is square, is exact to e_i e_j. If given, a small singular value
+            counts as zero only if these errors can explain it: long chains of soft elements have smaller ones.
 
     Raises:
         NotFiniteError: an entry is not finite.
@@ -77,9 +81,13 @@ def ranked(A: Array, equations: Array | float = 1.0, unknowns: Array | float = 1
         u, s, vt = scipy.linalg.svd(scaled)
     except np.linalg.LinAlgError:  # divide and conquer, six times as fast, may fail to converge
         u, s, vt = scipy.linalg.svd(scaled, lapack_driver="gesvd")
-    r = int((s > TOLERANCE * s[0]).sum())
+    keep = np.zeros(max(m, n), bool)
+    keep[: len(s)] = s > TOLERANCE * s[0]
+    if error is not None:
+        keep |= s > np.maximum((np.abs(u.T) @ error) * (np.abs(vt) @ error), n * np.finfo(float).eps * s[0])
     u, v = u / row, vt.T * column
-    return Ranked(u[:, :r], s[:r], v[:, :r].T, v[:, r:], u[:, r:])
+    left, right = keep[:m], keep[:n]
+    return Ranked(u[:, left], s[keep[: len(s)]], v[:, right].T, v[:, ~right], u[:, ~left])
 
 
 @dataclass(frozen=True)
@@ -100,8 +108,8 @@ class Regular:
         return scipy.linalg.lu_solve(self.factors, b, check_finite=False)
 
 
-def factored(A: Array) -> Regular | Ranked:
-    """Factor a matrix (n, n): by LU if its condition number proves full rank, else as ``ranked``.
+def factored(A: Array, error: Array | None = None) -> Regular | Ranked:
+    """Factor a matrix (n, n): by LU if its condition number proves full rank, else as ``ranked``, with this ``error``.
 
     Since κ₁ ≥ κ₂/n, and LAPACK's estimate of κ₁ is hardly ever below a third of it (Higham, *Accuracy and Stability of
     Numerical Algorithms*, 2002, sec. 15.3), ``10 n κ₁ < 1/TOLERANCE`` implies full rank by the criterion above.
@@ -114,7 +122,7 @@ def factored(A: Array) -> Regular | Ranked:
         lu, pivot, info = _LAPACK.dgetrf(A)
         if info == 0 and _LAPACK.dgecon(lu, float(np.abs(A).sum(0).max()))[0] > 10.0 * len(A) * TOLERANCE:
             return Regular((lu, pivot))
-    return ranked(A)
+    return ranked(A, error=error)
 
 
 def check_finite(A: Array) -> None:

@@ -137,7 +137,8 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
     check_finite(here.reduced)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = reduced / root[:, None] / root
-    return Tangent(scaled, factored(scaled), root**2, rounding, units[part.free])
+    error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(least, 0.0)) / root
+    return Tangent(scaled, factored(scaled, error), root**2, rounding, units[part.free])
 
 
 def rounding_at(tree: Tree, here: Residual) -> Array:
