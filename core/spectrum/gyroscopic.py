@@ -33,6 +33,10 @@ _MAX_REAL_PART = 1e-6  # of an eigenvalue, as a fraction of its modulus: roundin
 _MAX_RESTARTS = 100  # of ARPACK
 _MIN_GAP = 1e-6  # relative distance of two frequencies between which modes are counted
 
+MAX_NEGATIVE = 32
+"""Largest number of negative eigenvalues of K for which stability is examined: a uniform shaft above its 16th critical speed
+has that many. More are those of a cable that the mesh does not resolve, and half as many modes would have to converge."""
+
 
 class GyroscopicStabilityWarning(UserWarning):
     """A steady state is stable by gyroscopic forces alone."""
@@ -41,10 +45,12 @@ class GyroscopicStabilityWarning(UserWarning):
 def stabilised(p: TreePencil, count: int) -> Eigen | None:
     """The ``count`` lowest modes of a tree with an indefinite K; None unless they are proved to be stable and complete."""
     negative = below(p, 0.0)
-    found = None if negative % 2 else _nearest_zero(p, count + negative // 2 + _EXTRA_MODES)
-    if found is None:
+    if negative % 2 or negative > MAX_NEGATIVE:
         return None
-    frequencies, x, energy = found
+    lowest = _nearest_zero(p, count + negative // 2 + _EXTRA_MODES)
+    if lowest is None:
+        return None
+    frequencies, x, energy = lowest
     if 2 * int((energy < 0).sum()) != negative:
         return None
     gaps = np.flatnonzero(frequencies[1:] > (1.0 + _MIN_GAP) * frequencies[:-1])

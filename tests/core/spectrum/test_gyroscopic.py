@@ -59,3 +59,17 @@ def test_a_missing_mode_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(gyroscopic, "_nearest_zero", one_less)
         with pytest.raises(UnstableError):
             modes(replace(shaft(), name=str(missing)), 2.0 * CRITICAL, 20, 4)
+
+
+def test_a_cable_that_the_mesh_does_not_resolve_is_refused_without_iteration(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half as many modes as its stiffness has negative eigenvalues would have to converge: that took a minute."""
+
+    def never(*_: object) -> None:
+        raise AssertionError("the modes are iterated")
+
+    monkeypatch.setattr(gyroscopic, "_nearest_zero", never)
+    stiffness, mass = section_stiffness(1e9, 10.0, 1e-4, 2e-4), section_mass(1.0, 1e-13, 2e-13)
+    ends = np.array([0.0, 10.0])
+    cable = Blade("cable", ends, np.repeat(stiffness, 2, 0), np.repeat(mass, 2, 0), np.zeros(2))
+    with pytest.raises(UnstableError, match="not positive definite"):
+        modes(cable, 31.4, 250, count=2)
