@@ -26,9 +26,9 @@ from ..input import library
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
+from ..run.executors import Serial
 from ..verify import matrix, mechanism_case
 from ..verify.mechanism_case import MechanismCase
-from ..verify.pool import Serial
 
 Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader"]
 

@@ -1,8 +1,7 @@
 """The run of a study: its tasks on any executor, each answer written once, as soon as it arrives."""
 
-import signal
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import Executor, Future
 from itertools import islice
 from queue import SimpleQueue
 
@@ -53,7 +52,7 @@ def run(
         submit(window)
         while pending:
             future = ended.get()
-            lines = _result(future)
+            lines = future.result()
             journal.put(pending.pop(future), lines)
             done += 1
             on_progress(done)
@@ -64,13 +63,3 @@ def run(
         for future, number in pending.items():  # answers that arrived while another one failed
             if future.done() and not future.cancelled() and not future.exception():
                 journal.put(number, future.result())
-
-
-def _result(future: Future[bytes]) -> bytes:
-    """The result of a task; a worker that was interrupted is that of an interrupted run."""
-    error = future.exception()
-    if isinstance(error, SystemExit):
-        if error.code == 128 + signal.SIGINT:
-            raise KeyboardInterrupt
-        raise BrokenExecutor("a worker process was ended from outside")
-    return future.result()

@@ -15,10 +15,10 @@ import msgspec
 from ...references.protocol.process import Failure
 from ...references.protocol.store import Store, machine, opened
 from ..judge.results import Cell, Control
+from ..run.executors import Serial
 from . import stored
 from .columns import Column
 from .identity import digest
-from .pool import Serial
 
 
 class Cached(Executor):

@@ -12,8 +12,8 @@ from cyclopts.validators import Number
 from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
+from ...cases.run.cluster import SLURM
 from ...cases.verify import journal
-from ...cases.verify.executors import SLURM
 from ..shared.writing import writable
 from .errors import IncompleteError, UsageError
 

@@ -21,8 +21,8 @@ from ...cases.campbell.tracking import Solver
 from ...cases.input.changes import parse
 from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
+from ...cases.run.executors import Processes
 from ...cases.verify import matrix
-from ...cases.verify.pool import Pool
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ...references.protocol import registry
@@ -203,7 +203,7 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
         source="; ".join(subject.about),
         modes=diagram.request.modes,
     )
-    pool, watch = Pool(os.cpu_count() or 1), Watch()
+    pool, watch = Processes(os.cpu_count() or 1), Watch()
     try:
         with watch:
             run = matrix.run([case], registry.names(), pool, watch.show, parts=False)
@@ -238,7 +238,7 @@ def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1
         here = solver(blade, request, progress, units.at)
         if workers == 1:
             return campbell(blade, request, here)
-        pool = Pool(min(workers, len(request.speeds)))
+        pool = Processes(min(workers, len(request.speeds)))
         stack.callback(pool.stop)
         return campbell(blade, request, _shared(blade, request, pool, here, progress, units))
 

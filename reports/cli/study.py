@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 from msgspec import UNSET
 
+from ...cases.run.executors import executor
 from ...cases.study import parquet
 from ...cases.study.journal import StudyJournal, read
 from ...cases.study.plan import Header, header
@@ -16,7 +17,6 @@ from ...cases.study.schema import Study
 from ...cases.study.schema import read as read_study
 from ...cases.study.statistics import Outcome, outcome, spreads
 from ...cases.verify.appending import JournalError
-from ...cases.verify.executors import executor
 from ..campbell import tables
 from ..campbell.tables import Sheet
 from ..shared import not_used

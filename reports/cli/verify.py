@@ -16,12 +16,12 @@ from ...cases.input.library import is_blade_file
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case
 from ...cases.judge.results import Run, Setting
+from ...cases.run.executors import executor
+from ...cases.run.software import Software
 from ...cases.verify import matrix, user_results
 from ...cases.verify import names as names_of
-from ...cases.verify.executors import executor
 from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
-from ...cases.verify.software import Software
 from ...references.protocol import launch, registry, store
 from ...references.protocol.description import describe
 from ...references.protocol.process import Limits

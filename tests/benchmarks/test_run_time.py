@@ -4,7 +4,7 @@ import pytest
 
 from southwell.benchmarks import run_time
 from southwell.benchmarks.run_time import CORE, EXACT, Cost, Growth
-from southwell.cases.verify.pool import Serial
+from southwell.cases.run.executors import Serial
 from southwell.references.protocol import registry
 
 CODE = "yoo-shin"

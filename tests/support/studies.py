@@ -7,12 +7,12 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
+from southwell.cases.run.executors import Serial
 from southwell.cases.study.journal import StudyJournal
 from southwell.cases.study.plan import header, tasks
 from southwell.cases.study.rows import Row, Task, encoded
 from southwell.cases.study.run import run
 from southwell.cases.study.schema import Study, read
-from southwell.cases.verify.pool import Serial
 
 TEXT = """
 name = "small"

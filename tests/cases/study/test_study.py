@@ -13,12 +13,12 @@ import pytest
 from southwell.cases.campbell.sweep import sweep
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
+from southwell.cases.run.executors import Serial
 from southwell.cases.study.journal import StudyJournal, read
 from southwell.cases.study.plan import header
 from southwell.cases.study.rows import Row, Task
 from southwell.cases.study.run import run
 from southwell.cases.study.statistics import outcome, spreads
-from southwell.cases.verify.pool import Serial
 from southwell.references.protocol import sources
 
 from ...support.studies import solved, stub, study, text

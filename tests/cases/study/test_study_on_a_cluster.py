@@ -9,7 +9,7 @@ from time import monotonic, sleep
 
 import pytest
 
-from southwell.cases.verify.executors import executor
+from southwell.cases.run.executors import executor
 from southwell.tests.support.studies import lines, solved, study, text
 
 from ...support import clusters

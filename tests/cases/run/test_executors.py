@@ -14,9 +14,8 @@ from typing import Any
 import pytest
 
 from southwell.cases.input.errors import CaseError
-from southwell.cases.verify.executors import executor
-from southwell.cases.verify.pool import Pool
-from southwell.cases.verify.software import Software, installed
+from southwell.cases.run.executors import Processes, executor
+from southwell.cases.run.software import Software, installed
 from southwell.tests.support.studies import deadly, sleeping, solved, stub, study, tasks_of
 
 from ...support import clusters
@@ -24,7 +23,7 @@ from ...support import clusters
 
 def test_processes_of_this_machine_by_default() -> None:
     with executor(1) as pool:
-        assert isinstance(pool, Pool)
+        assert isinstance(pool, Processes)
         assert pool.submit(os.getpid).result(60) != os.getpid()
     with pytest.raises(RuntimeError, match="shutdown"):
         pool.submit(os.getpid)
@@ -32,11 +31,11 @@ def test_processes_of_this_machine_by_default() -> None:
 
 STOPPED = """
 import os, signal, sys, time
-from southwell.cases.verify.pool import Pool
+from southwell.cases.run.executors import Processes
 
 if __name__ == "__main__":
     for number in range(12):
-        pool = Pool(2)
+        pool = Processes(2)
         tasks = [pool.submit(int, "no number") for _ in range(2)]
         time.sleep(0.05 * number)
         if sys.argv[1] == "interrupted":  # as by Ctrl-C, which every process of the group receives
@@ -76,7 +75,7 @@ def test_without_dask_there_is_a_hint(module: str, monkeypatch: pytest.MonkeyPat
 )
 def test_an_address_without_a_scheduler_is_one_line(address: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
-    monkeypatch.setattr("southwell.cases.verify.executors.CONNECT", 0.5)
+    monkeypatch.setattr("southwell.cases.run.cluster.CONNECT", 0.5)
     with (
         pytest.raises(CaseError, match=f"--scheduler {address}: no Dask scheduler answers .*{said}"),
         executor(1, address),
@@ -99,7 +98,7 @@ def cluster() -> Iterator[Any]:
 
 @pytest.mark.slow
 def test_workers_with_other_software_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("southwell.cases.verify.cluster.installed", lambda _: (("exudyn", "0.1"),))
+    monkeypatch.setattr("southwell.cases.run.cluster.installed", lambda _: (("exudyn", "0.1"),))
     with executor(scheduler=cluster.scheduler_address, software=Software(("exudyn",))) as pool:
         error = pool.submit(os.getpid).exception(60)
     assert isinstance(error, CaseError)
