@@ -12,6 +12,7 @@ from ..element.mesh import Mesh
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import Steady, SteadyStateError
+from ..steady.continuation import LATEST
 from ..tree import pencil
 from ..tree.mode_shapes import mode_shapes
 from ..tree.pencil import Shape, TreePencil
@@ -72,7 +73,7 @@ class MeshSolver:
                 ) from error
             raise type(error)(f"omega: {omega:.6g} rad/s: {body.elements} elements: {error}") from error
         self.known.pop(omega**2, None)  # the latest is the last one
-        self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-steady.LATEST :])
+        self.known = dict([*self.known.items(), (omega**2, steady.coordinates(body, state.shape))][-LATEST:])
         shapes = mode_shapes(body, state.shape, pencil.on_nodes(state.pencil, found.vectors))
         strain = steady.largest_strain(body, state.shape)
         seconds = time.perf_counter() - begun

@@ -1,16 +1,19 @@
 """The balance of forces at a configuration with closed loops: the unbalanced forces, their derivative and their rounding."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..rank import TOLERANCE, Ranked, Regular, check_finite, factored, ranked
 from ..tree import dynamics, partition
+from ..tree.closure import CLOSED, close_loops
 from ..tree.kinematics import projected
 from ..tree.scales import coordinate_units, length_at, weld_units
 from ..tree.state import State, driven_by_loops, loop_jacobian, not_driven, state_at
+from ..tree.strained import out_of_range
 from ..tree.topology import Tree
 
 Array = NDArray[Any]
@@ -21,22 +24,93 @@ BALANCE_TOLERANCE = 1e-11
 STIFFNESS_ROUNDING = 1e-13
 """Rounding of a stiffness, as a fraction of the forces and stiffnesses of which it is the sum."""
 
+SMALL_CORRECTION = 0.05
+"""Length of a correction, rad or fraction of the mechanism's length, near a solution."""
+
+_CONTRACTION = 0.5  # largest ratio of successive corrections
+_NO_STEP, _NEGLIGIBLE_STEP, _SHORT_STEP = 1e-15, 1e-13, 1e-9  # lengths: of no step; if balanced; always accepted
+
 
 @dataclass(frozen=True)
-class Residual:
-    """The unbalanced forces at a configuration with closed loops.
+class Balance:
+    """The unbalanced forces at a configuration with closed loops; an iterate of ``newton``.
 
     Attributes:
+        tree: the mechanism.
         state: the state of motion.
         part: partition of the free coordinates.
         forces: (f,) generalised forces on the free coordinates, including those that loop reactions balance.
         reduced: (i,) along the independent coordinates, where reactions do no work.
+        dead: (f,) constant forces on the free coordinates, subtracted from ``forces``.
+        trust: coordinates (n,) and the distance from them, rad or fraction of the length, at which Newton's method ends.
     """
 
+    tree: Tree
     state: State
     part: partition.Partition
     forces: Array
     reduced: Array
+    dead: Array | float = 0.0
+    trust: tuple[Array, float] | None = None
+
+    @cached_property
+    def tangent(self) -> "Tangent":
+        """The derivative of the reduced forces."""
+        return tangent_at(self.tree, self)
+
+    @cached_property
+    def step(self) -> Array:
+        """Newton's step (f,) of the free coordinates."""
+        return self.tangent.step(self)
+
+    @cached_property
+    def length(self) -> float:
+        """Length of the step; see ``Tangent.length``."""
+        return self.tangent.length(self.step)
+
+    @property
+    def balanced(self) -> bool:
+        """Whether each independent coordinate is balanced, apart from rounding."""
+        return bool((np.abs(self.reduced) <= BALANCE_TOLERANCE * self.tangent.rounding).all())
+
+    @cached_property
+    def _moved(self) -> "Balance | None":
+        return self.after(self.step) if np.isfinite(self.length) else None
+
+    @cached_property
+    def contraction(self) -> float:
+        """Length of the simplified correction after the step, with the same tangent, as a fraction of the step."""
+        if self._moved is None:
+            return np.inf
+        return self.tangent.length(self.tangent.step(self._moved)) / self.length
+
+    def converged(self, previous: Self | None) -> bool:
+        """Whether the step is negligible: the forces balance, and the next correction would not be smaller."""
+        if self.length < _NO_STEP:
+            return True
+        return self.balanced and (self.length < _NEGLIGIBLE_STEP or self.contraction > _CONTRACTION)
+
+    def following(self) -> "Balance | None":
+        """The balance after the step, if the corrections contract or are short, within the trusted distance.
+
+        Near the solution a first correction may grow (P. Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, sec. 2.1.1).
+        """
+        near = max(self.length, self.length * self.contraction) < SMALL_CORRECTION
+        if self._moved is None or not (self.contraction <= _CONTRACTION or near or self.length < _SHORT_STEP):
+            return None
+        origin, radius = self.trust or (self.state.q, np.inf)
+        return self._moved if self.tangent.length((self._moved.state.q - origin)[self.part.free]) <= radius else None
+
+    def after(self, step: Array) -> "Balance | None":
+        """The balance after a step (f,) of the free coordinates; None if loops do not close or beams are out of range."""
+        q = self.state.q.copy()
+        q[self.part.free] += step
+        q, gap = close_loops(self.tree, q, self.part.free)
+        if np.abs(gap).max(initial=0.0) > CLOSED:
+            return None
+        names = tuple(self.tree.coordinates[j] for j in self.part.independent)
+        moved = replace(balance_at(self.tree, q, self.dead, names), trust=self.trust)
+        return None if out_of_range(self.tree, moved.state.kinematics.poses) else moved
 
 
 @dataclass(frozen=True)
@@ -57,12 +131,12 @@ class Tangent:
     rounding: Array
     units: Array
 
-    def step(self, here: Residual) -> Array:
+    def step(self, here: Balance) -> Array:
         """Newton's step (f,) of the free coordinates; of least norm along motions without stiffness."""
         root = np.sqrt(self.scale)
         return -here.part.spread(self.K.solve(here.reduced / root) / root)
 
-    def relaxation(self, here: Residual, weight: float, allow_unstable: bool) -> Array:
+    def relaxation(self, here: Balance, weight: float, allow_unstable: bool) -> Array:
         """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own.
 
         With ``allow_unstable``, the added stiffness has the sign of its own: the step leads towards an unstable equilibrium.
@@ -80,7 +154,7 @@ class Tangent:
         """(i,) signs of the stiffness that ``relaxation`` adds."""
         return np.copysign(1.0, np.diagonal(self.matrix)) if allow_unstable else np.ones(len(self.matrix))
 
-    def norm(self, here: Residual) -> float:
+    def norm(self, here: Balance) -> float:
         """Size of a residual in these scales."""
         return float(np.linalg.norm(here.reduced / np.sqrt(self.scale)))
 
@@ -88,14 +162,8 @@ class Tangent:
         """Largest component of a step (f,) of the free coordinates, in their units."""
         return float(np.abs(step / self.units).max(initial=0.0))
 
-    def balanced(self, here: Residual) -> bool:
-        """Whether each independent coordinate is balanced, apart from rounding."""
-        return bool((np.abs(here.reduced) <= BALANCE_TOLERANCE * self.rounding).all())
 
-
-def residual_at(
-    tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None
-) -> Residual:
+def balance_at(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tuple[str, ...] | None = None) -> Balance:
     """The balance at coordinates q (n,) with closed loops, less ``dead`` forces (f,) on the free ones."""
     state = state_at(tree, q)
     free = partition.free_coordinates(tree)
@@ -104,7 +172,7 @@ def residual_at(
         reactions = -transposed_jacobian(tree, state, free).solve(forces).reshape(-1, 6)
         state = replace(state, multipliers=reactions, cartesian=dynamics.cartesian(tree, state.kinematics, reactions))
     part = partition.partition(tree, state.kinematics, independent)
-    return Residual(state, part, forces, part.onto(forces))
+    return Balance(tree, state, part, forces, part.onto(forces), dead)
 
 
 def transposed_jacobian(tree: Tree, state: State, free: NDArray[np.intp]) -> Ranked:
@@ -114,7 +182,7 @@ def transposed_jacobian(tree: Tree, state: State, free: NDArray[np.intp]) -> Ran
     return ranked(J.T, 1.0 / coordinate_units(tree, length)[free], 1.0 / weld_units(tree, length))
 
 
-def tangent_at(tree: Tree, here: Residual) -> Tangent:
+def tangent_at(tree: Tree, here: Balance) -> Tangent:
     """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): in moving loops, rates and accelerations change with q."""
     state, part, k = here.state, here.part, here.state.kinematics
     R, K = part.R, part.among_free(state.tangent[2])
@@ -141,7 +209,7 @@ def tangent_at(tree: Tree, here: Residual) -> Tangent:
     return Tangent(scaled, factored(scaled, error), root**2, rounding, units[part.free])
 
 
-def rounding_at(tree: Tree, here: Residual) -> Array:
+def rounding_at(tree: Tree, here: Balance) -> Array:
     """(i,) size of the forces of which the reduced ones are the sum.
 
     R is rounded relative to its norm, not to each entry: where loops transmit forces, Rᵀ times their reactions vanishes only to

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,18 +18,15 @@ from ..space import spatial as sp
 from ..tree import elimination, joint_links
 from ..tree.links import twists
 from ..tree.pencil import Shape, TreePencil, assembled, linearize, undeformed
-from . import extrapolation
+from .continuation import extrapolated, follow
+from .newton import newton
 
 Array = NDArray[np.float64]
 
-_MAX_STEPS = 40
 _EPS = float(np.finfo(float).eps)
 _STALL_FACTOR, _CONVERGED_FACTOR = 10.0, 1e-4  # multiples of the rounding energy: of a stalled step; of the next one
 _MIN_REDUCTION = 1e-2  # ratio of the energies of successive steps above which the iteration has stalled
-LATEST = 8  # number of speeds from which the next steady state is extrapolated
-_FIRST_STEP = 0.5  # of continuation, as a fraction of the loads
-_MIN_STEP, _SMALLEST_LOAD = 1e-3, 1e-9  # smallest step, as a fraction of the loads reached and of all
-_MAX_STATES = 300  # number of states that continuation tries
+_LONGEST_STEP, _DIVERGED = 0.5, 10.0  # rad or fractions of the length: a longer step is damped; ends the iteration
 
 
 class SteadyStateError(ValueError):
@@ -49,42 +48,24 @@ class Steady:
 def steady(mesh: Mesh, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
     """The steady state at ``omega`` (rad/s) under ``gravity`` (3,), m/s², in the hub's axes.
 
-    Newton's method starts from ``start``, then from the undeformed shape; if both fail, the loads are raised from zero.
+    Newton's method starts from ``start``, then from the undeformed shape. If both fail, it follows the state while Ω², gravity
+    and the given loads grow together from zero.
 
     Raises:
         SteadyStateError: if none is found near the undeformed blade.
     """
     for shape in (start, undeformed(mesh)):
-        if shape is not None:
-            try:
-                return _newton(mesh, shape, omega, gravity)
-            except SteadyStateError:
-                pass  # the start is too far away
-    return _continued(mesh, omega, gravity)
-
-
-def _continued(mesh: Mesh, omega: float, gravity: Array) -> Steady:
-    """The steady state by continuation: Ω², gravity and the given loads grow together from zero.
-
-    Each state starts from an extrapolation of the previous ones. A success doubles the step, a failure halves it.
-    """
-    state, known = None, {0.0: coordinates(mesh, undeformed(mesh))}
-    done, step = 0.0, _FIRST_STEP
-    for _ in range(_MAX_STATES):
-        fraction = min(1.0, done + step)
-        try:
-            guess = _shape(mesh, _extrapolated(known, fraction))
-            state = _newton(_loaded(mesh, fraction), guess, omega * fraction**0.5, gravity * fraction)
-        except SteadyStateError:
-            step *= 0.5
-            if step < _MIN_STEP * done or step < _SMALLEST_LOAD:
-                break
-            continue
-        if fraction == 1.0:
+        if shape is not None and (state := _newton(mesh, shape, omega, gravity)):
             return state
-        known = dict([*known.items(), (fraction, coordinates(mesh, state.shape))][-LATEST:])
-        done, step = fraction, 2.0 * step
-    raise _no_state(mesh, omega, state, done)
+
+    def solve(fraction: float, guess: Array) -> tuple[Steady, Array] | None:
+        state = _newton(_loaded(mesh, fraction), _shape(mesh, guess), omega * fraction**0.5, gravity * fraction)
+        return state and (state, coordinates(mesh, state.shape))
+
+    reached, state = follow(solve, coordinates(mesh, undeformed(mesh)))
+    if state is None or reached < 1.0:
+        raise _no_state(mesh, omega, state, reached)
+    return state
 
 
 def _loaded(mesh: Mesh, fraction: float) -> Mesh:
@@ -96,14 +77,14 @@ def _loaded(mesh: Mesh, fraction: float) -> Mesh:
     return replace(mesh, force=fraction * mesh.force, beams=beams)
 
 
-def _no_state(mesh: Mesh, omega: float, state: Steady | None, done: float) -> SteadyStateError:
-    """The error of a continuation that ended at the fraction ``done`` of the loads, in ``state``."""
+def _no_state(mesh: Mesh, omega: float, state: Steady | None, reached: float) -> SteadyStateError:
+    """The error of a continuation that ended at the fraction ``reached`` of the loads, in ``state``."""
     if state is None:
         return SteadyStateError(
-            f"omega: no steady state at {omega:.6g} rad/s, nor at {done:.0e} of its loads: check units"
+            f"omega: no steady state at {omega:.6g} rad/s, nor at {reached:.0e} of its loads: check units"
         )
     strain = largest_strain(mesh, state.shape)
-    end = f"omega: no steady state at {omega:.6g} rad/s; the loads were raised up to {done:.3g} of theirs, where the "
+    end = f"omega: no steady state at {omega:.6g} rad/s; loads were raised up to {reached:.3g} of theirs, where the "
     if strain > measures.LARGEST_STRAIN:
         return SteadyStateError(
             f"{end}strain is {strain:.0%}: the blade is too soft in tension or shear; check units or lower the loads"
@@ -111,45 +92,78 @@ def _no_state(mesh: Mesh, omega: float, state: Steady | None, done: float) -> St
     return SteadyStateError(f"{end}strain is {strain:.1%}: check bending and torsional stiffness, or lower the loads")
 
 
-def _newton(mesh: Mesh, shape: Shape, omega: float, gravity: Array) -> Steady:
-    """Newton's method, converged to rounding.
+def _newton(mesh: Mesh, shape: Shape, omega: float, gravity: Array) -> Steady | None:
+    """The steady state by Newton's method from a shape, with the pencil before the last step; None if it fails."""
+    last = newton(Iterate(mesh, shape, omega, gravity))
+    if last is None or measures.out_of_range(mesh.beams.law, last.shape.relative @ mesh.corner).any():
+        return None
+    return Steady(last.displaced(1.0), last.pencil)
 
-    The squared error in the energy norm is that of the step, δᵀKδ. It is compared with the energy of rounding errors in the
-    nodes' poses, below which a step is meaningless. The size of a step is not a criterion: the steps of an almost
-    inextensible blade are tiny.
-    """
-    size = np.repeat([mesh.scale, 1.0], 3)
-    before = np.nan  # energy of the last step
-    for _ in range(_MAX_STEPS):
-        p = linearize(mesh, shape, omega, gravity)
+
+@dataclass(frozen=True)
+class Iterate:
+    """A shape of a mesh with its residual; see ``newton.Iterate``."""
+
+    mesh: Mesh
+    shape: Shape
+    omega: float
+    gravity: Array
+
+    @cached_property
+    def pencil(self) -> TreePencil:
+        """The residual and its derivative K."""
+        return linearize(self.mesh, self.shape, self.omega, self.gravity)
+
+    @cached_property
+    def step(self) -> Array:
+        """(dn,) Newton's step of the coordinates (ρ, β); infinite if K is singular."""
         try:
-            relative = elimination.solution(p.factor, -p.residual)
+            return elimination.solution(self.pencil.factor, -self.pencil.residual)
         except np.linalg.LinAlgError:
-            raise SteadyStateError("singular stiffness") from None
-        step = twists(p.links, relative[None])[0]
-        change = float(np.abs(step[:, :6] / size).max())
-        if not np.isfinite(change) or change > 10.0:
-            raise SteadyStateError("diverged")
-        energy = abs(float(relative @ p.residual))
-        if _converged(energy, before, rounding_energy(p, shape)):
-            if measures.out_of_range(mesh.beams.law, shape.relative @ mesh.corner).any():
-                raise SteadyStateError("elements are deformed beyond the range of their strain measure")
-            return Steady(displaced(mesh, shape, step, relative), p)
-        damping = min(1.0, 0.5 / max(change, 0.5))
-        shape, before = displaced(mesh, shape, damping * step, damping * relative), energy
-    raise SteadyStateError("no convergence")
+            return np.full_like(self.pencil.residual, np.inf)
+
+    @cached_property
+    def node_step(self) -> Array:
+        """(n, 6 or 12) the same step as twists of nodes 1 … n in their axes, and changes of β."""
+        return twists(self.pencil.links, self.step[None])[0]
+
+    @cached_property
+    def length(self) -> float:
+        """Longest displacement of a node in the step as a fraction of the mesh's length, or rotation in rad."""
+        return float(np.abs(self.node_step[:, :6] / np.repeat([self.mesh.scale, 1.0], 3)).max())
+
+    @property
+    def energy(self) -> float:
+        """Squared error in the energy norm, δᵀKδ of the step, J."""
+        return abs(float(self.step @ self.pencil.residual))
+
+    def converged(self, previous: Self | None) -> bool:
+        """Whether the energy is that of rounding errors in the nodes' poses, below which a step is meaningless.
+
+        The size of a step is not a criterion: the steps of an almost inextensible blade are tiny.
+        """
+        before = previous.energy if previous else np.nan
+        return self.length <= _DIVERGED and _converged(self.energy, before, rounding_energy(self.pencil, self.shape))
+
+    def following(self) -> Self | None:
+        """The shape after the step, or a part of it if it is long; None if it is too long.
+
+        Steps need not contract: those of stiff blades may grow a hundredfold before they converge.
+        """
+        if not self.length <= _DIVERGED:
+            return None
+        return replace(self, shape=self.displaced(min(1.0, _LONGEST_STEP / max(self.length, _LONGEST_STEP))))
+
+    def displaced(self, fraction: float) -> Shape:
+        """The shape after a fraction of the step."""
+        return displaced(self.mesh, self.shape, fraction * self.node_step, fraction * self.step)
 
 
 def _converged(energy: float, before: float, rounding: float) -> bool:
-    """Whether a step is the last one.
+    """Whether a step with this energy is the last one; ``before``: that of the last step, nan for the first one.
 
-    It is if its energy is that of rounding errors, and it is the first step or hardly smaller than the last one, or if the next
-    one would be negligible by quadratic convergence: rounding may be much less than its bound.
-
-    Args:
-        energy: of the step.
-        before: of the last step; nan for the first one.
-        rounding: bound of the energy of rounding errors.
+    It is if its energy is that of rounding errors, of which ``rounding`` is a bound, and it is the first step or hardly smaller
+    than the last one, or if the next one would be negligible by quadratic convergence: rounding may be far below its bound.
     """
     if np.isnan(before):
         return energy <= rounding
@@ -204,14 +218,7 @@ def extrapolate(mesh: Mesh, known: Mapping[float, Array], omega: float) -> Shape
     The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
     poses in the hub's axes, of which strains are small differences, these errors would be far larger.
     """
-    return _shape(mesh, _extrapolated(known, omega**2)) if known else None
-
-
-def _extrapolated(known: Mapping[float, Array], at: float) -> Array:
-    """The coordinates at ``at`` from those at known values of the same parameter."""
-    if at in known:
-        return known[at]
-    return extrapolation.at_zero(np.array(list(known)) - at, np.array(list(known.values())))
+    return _shape(mesh, extrapolated(known, omega**2)) if known else None
 
 
 def _shape(mesh: Mesh, values: Array) -> Shape:

@@ -1,64 +1,56 @@
-"""Continuation of a mechanism's equilibrium from a guess, which dead forces balance, until they vanish."""
+"""Continuation of a steady state: loads grow from zero, or forces that balance a guess fade, and the state follows."""
 
-from contextlib import suppress
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.description import MechanismError
-from ..tree import partition
-from ..tree.closure import CLOSED, MAX_STEP, close_loops
-from ..tree.state import ContradictionError
-from ..tree.topology import Tree
-from .balance import residual_at
-from .newton import Equilibrium, newton
+from . import extrapolation
 
 Array = NDArray[Any]
+State = TypeVar("State")
 
-_FIRST_STRIDE, _MIN_STRIDE = 0.25, 1e-3  # fractions of the path
+LATEST = 8
+"""Number of states from which the next one is extrapolated."""
+
+_FIRST_STRIDE = 0.5  # fraction of the path
+_MIN_STRIDE, _MIN_FIRST_STRIDE = 1e-3, 1e-9  # as a fraction of the path followed, and of the whole path
+_MAX_STATES = 300  # number of states that are tried
 
 
-def continue_from(tree: Tree, q: Array, grow: bool) -> tuple[float, Equilibrium | None]:
-    """Follow the equilibrium from the guess q (n,), which dead forces balance, until they vanish.
+def follow(solve: Callable[[float, Array], tuple[State, Array] | None], start: Array) -> tuple[float, State | None]:
+    """Follow a state from 0, where its coordinates are ``start``, to 1.
 
-    ``grow``: meanwhile rates, accelerations and gravity grow from zero. Returns the fraction of the path that was followed, and
-    the equilibrium at its end.
+    Each state starts from an extrapolation of the previous ones. A success doubles the stride, a failure halves it.
+
+    Args:
+        solve: the state at a fraction of the path and its coordinates, from a guess of these; None if there is none near.
+        start: coordinates at 0, of any shape.
+
+    Returns:
+        The fraction of the path that was followed, and the state there; None if it is 0.
     """
-    free = partition.free_coordinates(tree)
-
-    def loaded(part: float) -> Tree:
-        return _loaded(tree, part) if grow else tree
-
-    try:
-        start = residual_at(loaded(0.0), q)
-    except ContradictionError:
-        return 0.0, None
-    J = partition.jacobian(tree, start.state.kinematics.B)[:, free]
-    dead = start.forces + J.T @ start.state.multipliers.ravel()
-    part, stride, slope = 0.0, _FIRST_STRIDE, np.zeros_like(q)
-    equilibrium = None
-    while part < 1.0:
-        to = min(1.0, part + stride)
-        ahead, gap = close_loops(tree, q + (to - part) * slope, free)
-        equilibrium = None
-        if np.abs(gap).max(initial=0.0) <= CLOSED:
-            with suppress(MechanismError):  # the loops are singular there
-                equilibrium = newton(loaded(to), ahead, (1.0 - to) * dead, MAX_STEP)
-        if equilibrium is None or not equilibrium.tangent.balanced(equilibrium.residual):
+    latest, state = {0.0: start}, None
+    reached, stride = 0.0, _FIRST_STRIDE
+    for _ in range(_MAX_STATES):
+        fraction = min(1.0, reached + stride)
+        solution = solve(fraction, extrapolated(latest, fraction))
+        if solution is None:
             stride *= 0.5
-            if stride < _MIN_STRIDE:
-                return part, None
+            if stride < max(_MIN_STRIDE * reached, _MIN_FIRST_STRIDE):
+                break
             continue
-        slope, part, q = (equilibrium.state.q - q) / (to - part), to, equilibrium.state.q
-        stride *= 1.5
-    return 1.0, equilibrium
+        state, coordinates = solution
+        if fraction == 1.0:
+            return 1.0, state
+        latest = dict([*latest.items(), (fraction, coordinates)][-LATEST:])
+        reached, stride = fraction, 2.0 * stride
+    return reached, state
 
 
-def _loaded(tree: Tree, part: float) -> Tree:
-    """The tree with accelerations and gravity times ``part``, and rates times its root: inertial forces scale with ``part``."""
-    m = tree.mechanism
-    motions = tuple(replace(x, rate=x.rate * np.sqrt(part), acceleration=x.acceleration * part) for x in m.motions)
-    gravity = (m.gravity[0] * part, m.gravity[1] * part, m.gravity[2] * part)
-    return replace(tree, mechanism=replace(m, motions=motions, gravity=gravity))
+def extrapolated(latest: Mapping[float, Array], at: float) -> Array:
+    """The coordinates at ``at`` from those at other values of the same parameter, the latest last."""
+    if at in latest:
+        return latest[at]
+    return extrapolation.at_zero(np.array(list(latest)) - at, np.array(list(latest.values())))

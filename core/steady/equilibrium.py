@@ -1,6 +1,8 @@
 """Steady state of a mechanism: loop closure, then the balance of forces by Newton's method, relaxation or continuation."""
 
 from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,14 +10,15 @@ from numpy.typing import NDArray
 
 from ..mechanism.description import MechanismError
 from ..tree import partition
-from ..tree.closure import ASSEMBLED, assemble, close_loops
+from ..tree.closure import ASSEMBLED, CLOSED, MAX_STEP, assemble, close_loops
 from ..tree.scales import coordinate_units, length_at
 from ..tree.state import ContradictionError, State, check_rates
 from ..tree.strained import out_of_range
 from ..tree.topology import Tree
-from .balance import Residual, residual_at, tangent_at
-from .continuation import continue_from
-from .newton import Equilibrium, newton, relaxed
+from .balance import Balance, balance_at
+from .continuation import follow
+from .newton import newton
+from .relaxation import relaxed
 
 Array = NDArray[Any]
 Index = NDArray[np.intp]
@@ -35,13 +38,13 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     q = assemble(tree, guess)
     contradiction = None
     try:
-        equilibrium = newton(tree, q) or (_relaxed(tree, q) if guess else None)
+        equilibrium = newton(balance_at(tree, q)) or (_relaxed(tree, q) if guess else None)
     except ContradictionError as error:  # at the assembled guess, but perhaps not at the steady state
         equilibrium, contradiction = None, error
     reached = []
     for grow in (True, False):
         if equilibrium is None:
-            part, equilibrium = continue_from(tree, q, grow)
+            part, equilibrium = _continued(tree, q, grow)
             reached.append(part)
     if equilibrium is None and contradiction:
         raise contradiction
@@ -56,7 +59,7 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
             f"from the guess with dead forces fading{unguessed}: give a better guess, or check for a missing spring or joint"
         )
     check_rates(tree, equilibrium.state)
-    _check_balance(tree, equilibrium)
+    _check_balance(equilibrium)
     if beams:
         raise MechanismError(
             f"beam {beams[0]}: the steady state deforms it beyond the range of its strain measure{unguessed}: divide it into "
@@ -65,7 +68,44 @@ def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     return equilibrium.state
 
 
-def _relaxed(tree: Tree, q: Array) -> Equilibrium | None:
+def _continued(tree: Tree, q: Array, grow: bool) -> tuple[float, Balance | None]:
+    """Follow the equilibrium from the guess q (n,), which dead forces balance, until they vanish.
+
+    ``grow``: meanwhile rates, accelerations and gravity grow from zero. Returns the fraction of the path that was followed, and
+    the equilibrium at its end, if it was reached.
+    """
+    free = partition.free_coordinates(tree)
+    try:
+        start = balance_at(_loaded(tree, 0.0) if grow else tree, q)
+    except ContradictionError:
+        return 0.0, None
+    J = partition.jacobian(tree, start.state.kinematics.B)[:, free]
+    dead = start.forces + J.T @ start.state.multipliers.ravel()
+
+    def solve(fraction: float, guess: Array) -> tuple[Balance, Array] | None:
+        near, gap = close_loops(tree, guess, free)
+        if np.abs(gap).max(initial=0.0) > CLOSED:
+            return None
+        with suppress(MechanismError):  # the loops are singular there
+            here = balance_at(_loaded(tree, fraction) if grow else tree, near, (1.0 - fraction) * dead)
+            balance = newton(replace(here, trust=(near, MAX_STEP)))
+            if balance and balance.balanced:
+                return balance, balance.state.q
+        return None
+
+    reached, equilibrium = follow(solve, q)
+    return reached, equilibrium if reached == 1.0 else None
+
+
+def _loaded(tree: Tree, part: float) -> Tree:
+    """The tree with accelerations and gravity times ``part``, and rates times its root: inertial forces scale with ``part``."""
+    m = tree.mechanism
+    motions = tuple(replace(x, rate=x.rate * np.sqrt(part), acceleration=x.acceleration * part) for x in m.motions)
+    gravity = (m.gravity[0] * part, m.gravity[1] * part, m.gravity[2] * part)
+    return replace(tree, mechanism=replace(m, motions=motions, gravity=gravity))
+
+
+def _relaxed(tree: Tree, q: Array) -> Balance | None:
     for allow_unstable in (False, True):
         try:
             if equilibrium := relaxed(tree, q, allow_unstable):
@@ -90,12 +130,12 @@ def _without_guess(tree: Tree, q: Array) -> str:
 
 def null_motions(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:
     """Bases (i, d) of the null space of K̂, over the independent coordinates, and of its left null space."""
-    tangent = tangent_at(tree, residual_at(tree, state.q, independent=independent))
+    tangent = balance_at(tree, state.q, independent=independent).tangent
     root = np.sqrt(tangent.scale)[:, None]
     return tangent.K.null / root, tangent.K.left_null / root
 
 
-def residual_closed_by(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...]) -> Residual:
+def residual_closed_by(tree: Tree, q: Array, follow: Index, independent: tuple[str, ...]) -> Balance:
     """The balance near coordinates q (n,), after coordinates ``follow`` have closed the loops.
 
     Raises:
@@ -104,7 +144,7 @@ def residual_closed_by(tree: Tree, q: Array, follow: Index, independent: tuple[s
     q, gap = close_loops(tree, q, follow)
     if np.abs(gap).max(initial=0.0) > ASSEMBLED:
         raise MechanismError("loops: they do not close")
-    return residual_at(tree, q, independent=independent)
+    return balance_at(tree, q, independent=independent)
 
 
 def perturbed_again(tree: Tree, state: State, independent: tuple[str, ...]) -> State:
@@ -118,22 +158,21 @@ def perturbed_again(tree: Tree, state: State, independent: tuple[str, ...]) -> S
     sign = np.random.default_rng(1921).choice([-1.0, 1.0], len(free))
     units = coordinate_units(tree, length_at(tree, state.kinematics.poses))[free]
     q[free] += eps * sign * np.maximum(np.abs(q[free]), units)
-    here = residual_at(tree, close_loops(tree, q, free)[0], independent=independent)
+    here = balance_at(tree, close_loops(tree, q, free)[0], independent=independent)
     q = here.state.q.copy()
-    q[free] += tangent_at(tree, here).step(here)
-    return residual_at(tree, close_loops(tree, q, free)[0], independent=independent).state
+    q[free] += here.step
+    return balance_at(tree, close_loops(tree, q, free)[0], independent=independent).state
 
 
-def _check_balance(tree: Tree, equilibrium: Equilibrium) -> None:
+def _check_balance(here: Balance) -> None:
     """Check that no coordinate carries a force without a stiffness."""
-    here, tangent = equilibrium.residual, equilibrium.tangent
-    if tangent.balanced(here):
+    if here.balanced:
         return
-    size = np.where(tangent.rounding > 0, tangent.rounding, 1.0)
-    worst = int(np.argmax(np.abs(here.reduced) / size))
+    rounding = here.tangent.rounding
+    worst = int(np.argmax(np.abs(here.reduced) / np.where(rounding > 0, rounding, 1.0)))
     j = here.part.independent[worst]
     raise MechanismError(
-        f"coordinate {tree.coordinates[j]!r}: no steady state: {here.reduced[worst]:.3g} "
-        f"{'N m' if tree.screw[j, 3:].any() else 'N'} remain unbalanced and no stiffness resists them; prescribe its motion, "
-        "or add a spring"
+        f"coordinate {here.tree.coordinates[j]!r}: no steady state: {here.reduced[worst]:.3g} "
+        f"{'N m' if here.tree.screw[j, 3:].any() else 'N'} remain unbalanced and no stiffness resists them; prescribe its "
+        "motion, or add a spring"
     )

@@ -11,7 +11,7 @@ from ..tree.linearization import Linearization, about
 from ..tree.scales import coordinate_units, length_at
 from ..tree.state import driven_by_loops
 from ..tree.topology import Tree
-from .balance import residual_at, rounding_at
+from .balance import balance_at, rounding_at
 from .equilibrium import residual_closed_by
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def _varies_by_gravity(linear: Linearization, moving: list[Motion]) -> bool:
     if not any(mechanism.gravity):
         return False
     tree = replace(linear.tree, mechanism=replace(mechanism, gravity=(0.0, 0.0, 0.0)))
-    state = residual_at(tree, linear.state.q, independent=linear.names).state
+    state = balance_at(tree, linear.state.q, independent=linear.names).state
     return _largest_change(about(tree, state, linear.names), moving)[0] <= MAX_CHANGE
 
 
@@ -67,7 +67,7 @@ def _largest_change(
     rates = [(abs(m.rate) / units[m.coordinate], abs(m.acceleration) / units[m.coordinate]) for m in moving]
     times = [advance / (rate + np.sqrt(acceleration)) for rate, acceleration in rates for advance in ADVANCES]
     omega = max(max(rate, np.sqrt(acceleration)) for rate, acceleration in rates)
-    reduced = residual_at(linear.tree, linear.state.q, independent=linear.names).reduced
+    reduced = balance_at(linear.tree, linear.state.q, independent=linear.names).reduced
     changes = (_change(linear, reduced, advancing or moving, time, omega) for time in times)
     return max(changes, key=lambda change: change[0])
 

@@ -24,7 +24,7 @@ from southwell.core.modes import Modes
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.spectrum.eigen import UnstableError
-from southwell.core.steady.balance import residual_at
+from southwell.core.steady.balance import balance_at
 from southwell.core.tree import linearization
 from southwell.core.tree.spanning import compile_tree
 from southwell.core.tree.state import state_at
@@ -213,7 +213,7 @@ def test_the_solver_has_these_terms_on_random_trees(seed: int) -> None:
     theirs = linearization.about(tree, state)
     for name in ("M", "C", "K"):
         assert_close(getattr(ours, name), getattr(theirs, name))
-    assert_close(-ours.at.Q_hat, residual_at(tree, q).reduced)
+    assert_close(-ours.at.Q_hat, balance_at(tree, q).reduced)
     park2010.accelerations(t, ours.at)
 
 

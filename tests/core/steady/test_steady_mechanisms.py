@@ -7,7 +7,7 @@ import pytest
 from southwell import multibody as mb
 from southwell.core.mechanism.description import at_time
 from southwell.core.steady import equilibrium
-from southwell.core.steady.newton import relaxed
+from southwell.core.steady.relaxation import relaxed
 from southwell.core.tree.closure import assemble
 from southwell.core.tree.spanning import compile_tree
 from southwell.tests.support import guesses
@@ -55,7 +55,7 @@ def test_relaxation_does_not_end_at_an_unstable_equilibrium(stands: float, ends:
 
 def test_without_a_state_near_the_guess_the_one_elsewhere_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     tree = compile_tree(pendulums())
-    monkeypatch.setattr(equilibrium, "continue_from", lambda tree, q, grow: (0.25, None))
+    monkeypatch.setattr(equilibrium, "_continued", lambda tree, q, grow: (0.25, None))
     monkeypatch.setattr(equilibrium, "relaxed", lambda tree, q, allow_unstable: None)
     with pytest.raises(
         mb.MechanismError, match=r"reached 25 % .* a steady state was found at of other.rz = 0, of one.rz = 0: give a"
