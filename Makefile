@@ -1,31 +1,35 @@
-# make verify | make test | make test-slow | make lint | make bench | make readme | make docs | make clean
+# make verify | make test | make test-slow | make coverage | make lint | make bench | make readme | make docs | make clean
 # Python 3.11 or later with its headers and a C++ compiler are needed; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 INSTALLED := .venv/installed
-# the root is the package; pyright finds it by this name (extraPaths in pyproject.toml)
+# the root folder is the package; pyright finds it under this name (extraPaths in pyproject.toml)
 HERE := .venv/here
 KERNELS := $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-# one thread a process: the runs are parallel already
+# one thread per process: runs already use one process per core
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
-# without its bytecode on disk, each of the many processes would compile the package again
+# cached bytecode spares each of the many processes a compilation of the package
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: verify test test-slow lint bench readme docs clean
+.PHONY: verify test test-slow coverage lint bench readme docs clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out
 
-# a few minutes; what takes longer is in test-slow; a file in one process, since its tests share fixtures
+# loadfile: all tests of a file run in one process, because they share fixtures
 test: $(INSTALLED)
 	$(BIN)/pytest -n 2 --dist loadfile -m "not slow"
 
 test-slow: $(INSTALLED)
 	$(BIN)/pytest -n 2 --dist loadfile -m slow
+
+coverage: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
+	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" --cov=southwell --cov-report=term:skip-covered
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check
@@ -42,8 +46,8 @@ bench: $(INSTALLED)
 readme: $(INSTALLED)
 	$(BIN)/python -m southwell.reports.site.readme reports/out/results.jsonl
 
-# into build/site, with the results of the last make verify if there are any; as a module: the script would take the
-# command southwell, which lies beside it, for the package
+# into build/site, with the results of the last make verify if any; run as a module, because the script would import the
+# command southwell, which lies beside it, instead of the package
 docs: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build

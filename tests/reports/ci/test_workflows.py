@@ -25,7 +25,7 @@ ACTION = ROOT / "action.yml"
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 GITLAB = ROOT / "docs" / "gitlab-ci.yml"
 BASH = shutil.which("bash")
-SCRIPTS = [ROOT / ".ci" / name for name in ("every-code", "fuzz", "nightly", "run", "versions")]
+SCRIPTS = [ROOT / ".ci" / name for name in ("every-code", "fuzz", "nightly", "run", "system-packages", "versions")]
 
 
 def load(path: Path) -> dict[Any, Any]:
@@ -196,7 +196,7 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     for k, commit in enumerate(("aaa", "bbb"), 1):
         job = tmp_path / f"job{k}"
         git(tmp_path, "clone", "--quiet", "--depth=1", f"file://{origin}", str(job))
-        phrase = step(job, "Earlier runs")
+        phrase = step(job, "Fetch the history")
         assert ("no history yet" if k == 1 else "1 earlier runs") in phrase
         (job / "reports" / "out").mkdir(parents=True)
         shutil.copy(ROOT / "reports" / "site" / "readme.jsonl", job / "reports" / "out" / "results.jsonl")
@@ -210,7 +210,7 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(BASH is None, reason="no bash")
 @pytest.mark.parametrize(("status", "expected"), [(0, 0), (1, 0), (2, 2), (3, 3), (70, 70), (130, 130), (137, 137)])
-@pytest.mark.parametrize("name", ["action.yml: Solve, compare, judge", "nightly", "gitlab-ci.yml"])
+@pytest.mark.parametrize("name", ["action.yml: Run the matrix", "nightly", "gitlab-ci.yml"])
 def test_only_misses_are_left_to_the_gate(name: str, status: int, expected: int, tmp_path: Path) -> None:
     """The line that runs ``verify`` goes on after statuses 0 and 1, and ends the script with any other."""
     (line,) = re.findall(r"^ *(southwell verify .*)$", scripts()[name], re.MULTILINE)
