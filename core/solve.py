@@ -13,8 +13,9 @@ from .element.discretize import Mass, discretize
 from .element.measures import LARGEST_STRAIN, Measure
 from .element.mesh import Mesh
 from .modes import Modes
-from .spectrum.mesh_solver import MeshSolver
-from .spectrum.refinement import Meshes, as_given, refined, without_bias
+from .spectrum import mesh_solver
+from .spectrum.mesh_solver import Options, Start
+from .spectrum.refinement import AtSpeed, Key, Meshes, Starts, as_given, refined, without_bias
 from .steady.blade_state import LargeStrainError
 from .threads import one_thread
 
@@ -99,24 +100,24 @@ def sweep(
     if not accuracy > 0:
         raise ValueError(f"accuracy: {accuracy}: give a positive relative number, such as 1e-6")
     body = blade if effects.rotary_inertia else without_rotary_inertia(blade)
-    meshes, fastest = Meshes(body, count, mass, stiffness, load, effects, gravity), 0.0
+    meshes = Meshes(body, Options(count, effects, gravity), mass, stiffness, load)
+    starts: Starts = {}
     for omega in _checked(omegas, count):
         begun = time.perf_counter()
-        if abs(omega) > fastest:  # the graded mesh is made for a range of speeds, up to a power of two
-            fastest = 2.0 ** np.ceil(np.log2(abs(omega)))
-            meshes = Meshes(body, count, mass, stiffness, load, effects, gravity)
+        if abs(omega) > meshes.fastest:  # the graded mesh is made for a range of speeds, up to a power of two
+            meshes, starts = replace(meshes, fastest=2.0 ** np.ceil(np.log2(abs(omega)))), {}
         with one_thread():
-            found = (
-                refined(meshes, omega, fastest, accuracy)
+            result, starts = (
+                refined(meshes, omega, accuracy, starts)
                 if elements is None
-                else as_given(meshes, omega, elements, fastest)
+                else as_given(meshes, omega, elements, starts)
             )
-        if found.strain > LARGEST_STRAIN and not allow_large_strain:
+        if result.strain > LARGEST_STRAIN and not allow_large_strain:
             raise LargeStrainError(
-                f"omega: {omega:.6g} rad/s: steady strain {found.strain:.0%}: too large for linear elastic sections: the "
+                f"omega: {omega:.6g} rad/s: steady strain {result.strain:.0%}: too large for linear elastic sections: the "
                 "speed is too high or the blade too soft; check units, or allow large strains"
             )
-        yield replace(found, seconds=time.perf_counter() - begun)
+        yield replace(result, seconds=time.perf_counter() - begun)
 
 
 def mesh_modes(
@@ -151,13 +152,16 @@ def mesh_sweep(
     body = discretize(
         blade if effects.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load
     )
-    solver = MeshSolver(body, count, effects, gravity)
-    return (_with_one_thread(solver, omega) for omega in speeds)
+    return _swept(body, speeds, Options(count, effects, gravity))
 
 
-def _with_one_thread(solver: MeshSolver, omega: float) -> Modes:
-    with one_thread():
-        return solver.at(omega).modes
+def _swept(mesh: Mesh, speeds: Iterator[float], options: Options) -> Iterator[Modes]:
+    start = None
+    for omega in speeds:
+        with one_thread():
+            solved = mesh_solver.solve(mesh, omega, options, start)
+        start = solved.start
+        yield solved.modes
 
 
 def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
@@ -174,9 +178,9 @@ def chain_modes(
     body: Mesh, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
     """The lowest modes of a mesh, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
-    solver = MeshSolver(body, count, effects, gravity)
-    solved = solver.at(next(_checked([omega], count)))
-    return replace(solved.modes, rounding=solver.rounding(solved))
+    options = Options(count, effects, gravity)
+    solved = mesh_solver.solve(body, next(_checked([omega], count)), options)
+    return replace(solved.modes, rounding=mesh_solver.rounding(body, solved, options))
 
 
 def rigid_strain_bias(
@@ -190,7 +194,9 @@ def rigid_strain_bias(
     Rigid axial and torsional strains have a small compliance (``element.sections``), also in ``mesh_modes``. The bias is
     computed at a speed (rad/s) on two meshes, the finer one last; without rigid strains there is none.
     """
-    meshes = Meshes(blade, count, "consistent", "corotational", None, effects, NO_GRAVITY)
+    meshes = Meshes(blade, Options(count, effects))
     if meshes.softened is None:
         return [(np.ones(count), np.zeros(count)) for _ in runs]
-    return [without_bias(*(meshes.bias(n, meshes.uniform(n).at(omega)) for n in elements)) for omega, elements in runs]
+    starts: dict[Key, Start] = {}
+    at = ((AtSpeed(meshes, omega, starts), elements) for omega, elements in runs)
+    return [without_bias(*(speed.bias(Key(n), speed.solved(Key(n))) for n in elements)) for speed, elements in at]

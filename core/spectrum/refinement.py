@@ -6,24 +6,27 @@ order, by means of coarser meshes with twice the compliance.
 
 import itertools
 import warnings
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..blade import Blade
-from ..effects import Effects
 from ..element import sections
 from ..element.discretize import Mass, discretize
 from ..element.measures import Measure
+from ..element.mesh import Mesh
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import SteadyStateError
+from ..tree.pencil import Shape
 from . import accuracy, grading
 from .eigen import UnstableError
 from .lanczos import EigensolverError
-from .mesh_solver import MeshSolver, Solved
+from .mesh_solver import Options, Solved, Start, rounding, solve
 
 Array = NDArray[np.float64]
 
@@ -39,19 +42,28 @@ class AccuracyWarning(UserWarning):
     """Frequencies are less accurate than requested."""
 
 
-@dataclass
+class Key(NamedTuple):
+    """A mesh: the number of equal elements, or the times that the graded mesh is halved; whether rigid strains are softened."""
+
+    elements: int | None = None
+    level: int = 0
+    softened: bool = False
+
+
+Starts = Mapping[Key, Start]
+"""What each mesh has solved at previous speeds."""
+
+
+@dataclass(frozen=True)
 class Meshes:
-    """The meshes of one blade, each made at its first use."""
+    """The meshes of one blade, each made at its first use; ``fastest``: the speed for which meshes are graded, rad/s."""
 
     blade: Blade
-    count: int
-    mass: Mass
-    stiffness: Measure
-    load: Array | None
-    effects: Effects
-    gravity: Array
-    made: dict[tuple[int, bool], MeshSolver] = field(default_factory=dict)
-    nodes: list[Array] = field(default_factory=list)
+    options: Options
+    mass: Mass = "consistent"
+    stiffness: Measure = "corotational"
+    load: Array | None = None
+    fastest: float = 0.0
 
     @property
     def order(self) -> int:
@@ -63,43 +75,56 @@ class Meshes:
         """The blade with twice the compliance of rigid strains; None if no strain is rigid."""
         return sections.softened(self.blade)
 
-    def uniform(self, elements: int) -> MeshSolver:
-        """Solver on elements of equal length."""
-        return self._solver(elements, elements)
+    def mesh(self, key: Key) -> Mesh:
+        """The mesh with this key."""
+        if key not in self._made:
+            blade = self.softened if key.softened and self.softened else self.blade
+            nodes = self._nodes(key.level) if key.elements is None else key.elements
+            self._made[key] = discretize(blade, nodes, self.mass, self.stiffness, self.load)
+        return self._made[key]
 
-    def graded(self, level: int, fastest: float) -> MeshSolver:
-        """Solver on the mesh graded for the speed ``fastest`` (rad/s), halved ``level`` times."""
-        if not self.nodes:
-            self.nodes.append(grading.coarse(self.blade, max(_FEWEST, self.count), fastest))
-        while len(self.nodes) <= level:
-            self.nodes.append(grading.halved(self.nodes[-1]))
-        return self._solver(-level, self.nodes[level])
+    def _nodes(self, level: int) -> Array:
+        """Nodes of the graded mesh, halved ``level`` times."""
+        if not level:
+            return grading.coarse(self.blade, max(_FEWEST, self.options.count), self.fastest)
+        return grading.halved(self._nodes(level - 1))
 
-    def bias(self, key: int, solved: Solved) -> Array:
-        """(m,) relative change of frequencies due to the compliance of rigid strains.
+    @cached_property
+    def _made(self) -> dict[Key, Mesh]:
+        return {}
 
-        Args:
-            key: the number of equal elements, or minus the level of the graded mesh.
-            solved: the modes of that mesh.
-        """
-        if self.softened is None:
+
+@dataclass(frozen=True)
+class AtSpeed:
+    """The meshes at one speed (rad/s); the starts are replaced as meshes are solved."""
+
+    meshes: Meshes
+    omega: float
+    starts: dict[Key, Start]
+
+    def solved(self, key: Key, near: Shape | None = None) -> Solved:
+        """The modes of a mesh; see ``mesh_solver.solve``."""
+        solved = solve(self.meshes.mesh(key), self.omega, self.meshes.options, self.starts.get(key), near)
+        self.starts[key] = solved.start
+        return solved
+
+    def rounding(self, key: Key, solved: Solved) -> Array:
+        """(m,) relative error of the frequencies of a mesh due to rounding."""
+        return rounding(self.meshes.mesh(key), solved, self.meshes.options)
+
+    def bias(self, key: Key, solved: Solved) -> Array:
+        """(m,) relative change of a mesh's frequencies due to the compliance of rigid strains."""
+        if self.meshes.softened is None:
             return np.zeros(len(solved.modes.frequencies))
-        with_twice = self._solver(key, key if key > 0 else self.nodes[-key], softened=True)
-        return with_twice.at(solved.modes.omega, solved.state.shape).modes.frequencies / solved.modes.frequencies - 1.0
-
-    def _solver(self, key: int, elements: int | Array, *, softened: bool = False) -> MeshSolver:
-        if (key, softened) not in self.made:
-            blade = self.softened if softened and self.softened else self.blade
-            body = discretize(blade, elements, self.mass, self.stiffness, self.load)
-            self.made[key, softened] = MeshSolver(body, self.count, self.effects, self.gravity)
-        return self.made[key, softened]
+        twice = self.solved(key._replace(softened=True), solved.state.shape)
+        return twice.modes.frequencies / solved.modes.frequencies - 1.0
 
 
 def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
     """Factor (m,) that removes the bias from a frequency, and its relative uncertainty (m,).
 
     Args:
-        coarse, fine: (m,) ``Meshes.bias`` of two meshes, the second twice as fine. The bias is linear in the compliance,
+        coarse, fine: (m,) ``AtSpeed.bias`` of two meshes, the second twice as fine. The bias is linear in the compliance,
             except for a quadratic term.
     """
     return 1.0 - fine, np.abs(fine - coarse) + 3.0 * fine**2
@@ -108,18 +133,24 @@ def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
 _FAILURES = (SteadyStateError, UnstableError, ArithmeticError)
 
 
-def refined(meshes: Meshes, omega: float, fastest: float, requested: float) -> Modes:
-    """Halve the elements of the graded mesh until all uncertainties are small enough."""
+def refined(meshes: Meshes, omega: float, requested: float, starts: Starts) -> tuple[Modes, Starts]:
+    """The modes, and starts for the next speed: the graded mesh is halved until all uncertainties are small enough."""
+    at = AtSpeed(meshes, omega, dict(starts))
+    modes = _refined(at, requested)
+    return modes, at.starts
+
+
+def _refined(at: AtSpeed, requested: float) -> Modes:
+    meshes, omega = at.meshes, at.omega
     solved: list[Solved] = []
     best: Modes | None = None
     for level in itertools.count():
-        solver = meshes.graded(level, fastest)
-        if level > 2 and solver.body.elements > MAX_ELEMENTS:
+        mesh = meshes.mesh(Key(level=level))
+        if level > 2 and mesh.elements > MAX_ELEMENTS:
             break
-        before = meshes.graded(level - 1, fastest) if solved else None
-        near = steady.carried_over(before.body, solved[-1].state.shape, solver.body) if before else None
+        near = steady.carried_over(meshes.mesh(Key(level=level - 1)), solved[-1].state.shape, mesh) if solved else None
         try:
-            solved.append(solver.at(omega, near))
+            solved.append(at.solved(Key(level=level), near))
         except _FAILURES as error:
             if best is not None:
                 break
@@ -131,8 +162,8 @@ def refined(meshes: Meshes, omega: float, fastest: float, requested: float) -> M
         if len(solved) < 3 or len({len(s.modes.frequencies) for s in solved[-3:]}) > 1:
             continue
         estimate = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
-        rounded = solver.rounding(solved[-1])
-        factor, of_factor = without_bias(*(meshes.bias(k - level, solved[-1 - k]) for k in (2, 1)))
+        rounded = at.rounding(Key(level=level), solved[-1])
+        factor, of_factor = without_bias(*(at.bias(Key(level=level - k), solved[-1 - k]) for k in (2, 1)))
         values = factor * estimate.values
         order = np.argsort(values)
         uncertainty = (estimate.of_values + of_factor + rounded)[order]
@@ -159,21 +190,23 @@ def refined(meshes: Meshes, omega: float, fastest: float, requested: float) -> M
     return best
 
 
-def as_given(meshes: Meshes, omega: float, elements: int, fastest: float) -> Modes:
-    """Modes of one mesh, with uncertainties from a half and a quarter of its elements if stations are nodes of all three.
+def as_given(meshes: Meshes, omega: float, elements: int, starts: Starts) -> tuple[Modes, Starts]:
+    """Modes of one mesh, and starts for the next speed.
 
-    Otherwise the error depends on the positions of the stations and follows no order of convergence: the uncertainty is the
-    difference from the refined frequencies.
+    Uncertainties follow from a half and a quarter of its elements if stations are nodes of all three. Otherwise the error
+    depends on the positions of the stations and follows no order of convergence: the uncertainty is the difference from the
+    refined frequencies.
     """
-    solver = meshes.uniform(elements)
-    solved = solver.at(omega)
-    rounded, last = solver.rounding(solved), solved.modes
+    at = AtSpeed(meshes, omega, dict(starts))
+    solved = at.solved(Key(elements))
+    rounded, last = at.rounding(Key(elements), solved), solved.modes
     uncertainty = None
-    if elements // 4 >= max(_FEWEST, meshes.count) and _aligned(meshes.blade, elements // 4, elements // 2, elements):
-        uncertainty = _coarser(meshes, last)
+    fewest = max(_FEWEST, meshes.options.count)
+    if elements // 4 >= fewest and _aligned(meshes.blade, elements // 4, elements // 2, elements):
+        uncertainty = _coarser(at, last)
     if uncertainty is None:
-        uncertainty = _from_default(meshes, last, fastest)
-    return replace(last, uncertainty=uncertainty + rounded, rounding=rounded)
+        uncertainty = _from_default(at, last)
+    return replace(last, uncertainty=uncertainty + rounded, rounding=rounded), at.starts
 
 
 def _aligned(blade: Blade, *meshes: int) -> bool:
@@ -183,26 +216,26 @@ def _aligned(blade: Blade, *meshes: int) -> bool:
     return bool((np.abs(at - np.round(at)) < 1e-6).all())
 
 
-def _coarser(meshes: Meshes, last: Modes) -> Array | None:
+def _coarser(at: AtSpeed, last: Modes) -> Array | None:
     """(m,) uncertainties from a half and a quarter of the elements; None if these have no steady state."""
     n, m = last.elements, len(last.frequencies)
     try:
-        coarse, half = (meshes.uniform(k).at(last.omega) for k in (n // 4, n // 2))
-        bias = meshes.bias(n // 4, coarse)
+        coarse, half = (at.solved(Key(k)) for k in (n // 4, n // 2))
+        bias = at.bias(Key(n // 4), coarse)
     except _FAILURES:
         return None
     few, more = coarse.modes.frequencies[:m], half.modes.frequencies[:m]
     if len(few) < m or len(more) < m:
         return None
-    return accuracy.estimate(np.array([few, more, last.frequencies]), meshes.order).of_finest + np.abs(bias[:m])
+    return accuracy.estimate(np.array([few, more, last.frequencies]), at.meshes.order).of_finest + np.abs(bias[:m])
 
 
-def _from_default(meshes: Meshes, last: Modes, fastest: float) -> Array:
+def _from_default(at: AtSpeed, last: Modes) -> Array:
     """(m,) uncertainties from the difference to refined frequencies; infinite if refinement fails."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", AccuracyWarning)  # the sum below contains that uncertainty
-            true = refined(meshes, last.omega, fastest, _COMPARED)
+            true = _refined(at, _COMPARED)
     except _FAILURES:
         return np.full(len(last.frequencies), np.inf)
     m = min(len(last.frequencies), len(true.frequencies))

@@ -5,7 +5,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from southwell.core import solve
-from southwell.core.spectrum.mesh_solver import MeshSolver
+from southwell.core.spectrum import mesh_solver
 
 from ..support.beams import PARK
 
@@ -26,13 +26,13 @@ def threads() -> set[int]:
 )
 def test_the_solver_takes_one_thread(solved, monkeypatch: pytest.MonkeyPatch) -> None:
     inside: list[set[int]] = []
-    at = MeshSolver.at
+    balance = mesh_solver.balance
 
-    def watched(self, *arguments):
+    def watched(*arguments):
         inside.append(threads())
-        return at(self, *arguments)
+        return balance(*arguments)
 
-    monkeypatch.setattr(MeshSolver, "at", watched)
+    monkeypatch.setattr(mesh_solver, "balance", watched)
     with threadpool_limits(2, user_api="blas"):
         np.linalg.eigh(np.eye(3))
         results = solved()

@@ -1,5 +1,6 @@
 """Sweeps start from the previous speeds: the same frequencies with less work, and no mode is missed."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -8,13 +9,13 @@ import pytest
 
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
-from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
+from southwell.core.element.mesh import Mesh
 from southwell.core.spectrum import completeness, lanczos
 from southwell.core.spectrum import mesh_solver as solution
 from southwell.core.spectrum.completeness import MissedModesError
-from southwell.core.spectrum.lanczos import Start
-from southwell.core.spectrum.mesh_solver import MeshSolver
+from southwell.core.spectrum.mesh_solver import Options, Solved
+from southwell.core.spectrum.mesh_solver import solve as solve_mesh
 from southwell.core.steady import blade_state as steady
 from southwell.core.steady import extrapolation
 from southwell.core.steady.blade_state import Steady
@@ -36,8 +37,12 @@ def linearised(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return speeds
 
 
-def solver(blade=FLAT, count: int = 6) -> MeshSolver:
-    return MeshSolver(discretize(blade, 20), count, ALL_EFFECTS, np.zeros(3))
+def solved_in_turn(mesh: Mesh, speeds: Iterable[float], options: Options) -> Iterator[Solved]:
+    start = None
+    for omega in speeds:
+        solved = solve_mesh(mesh, omega, options, start)
+        start = solved.start
+        yield solved
 
 
 @pytest.mark.numerical
@@ -60,18 +65,15 @@ def test_the_basis_of_a_sweep_is_smaller(monkeypatch: pytest.MonkeyPatch) -> Non
         return eigh(matrix, triangle)
 
     monkeypatch.setattr(lanczos, "eigh", recorded)
-    one = solver(count=10)
-    one.at(3.0)
-    first = max(sizes)
-    sizes.clear()
-    for omega in (4.0, 5.0, 6.0):
-        one.at(omega)
-    assert max(sizes) < first
-    assert one.restarts == 0
+    largest = []
+    for _ in solved_in_turn(discretize(FLAT, 20), (3.0, 4.0, 5.0, 6.0), Options(10)):
+        largest.append(max(sizes))
+        sizes.clear()
+    assert max(largest[1:]) < largest[0]
 
 
 @pytest.fixture
-def lumped(monkeypatch: pytest.MonkeyPatch) -> MeshSolver:
+def lumped(monkeypatch: pytest.MonkeyPatch) -> Mesh:
     """A straight blade with lumped masses. Flap is decoupled exactly, not only to rounding, which depends on the processor."""
     balance = solution.balance
 
@@ -86,34 +88,33 @@ def lumped(monkeypatch: pytest.MonkeyPatch) -> MeshSolver:
         return replace(state, pencil=replace(p, M=M, C=C, K=K, links=replace(p.links, to_child=to_child)))
 
     monkeypatch.setattr(solution, "balance", decoupled)
-    return MeshSolver(discretize(FLAT, 40, "half_end", "body_fixed"), 6, ALL_EFFECTS, np.zeros(3))
+    return discretize(FLAT, 40, "half_end", "body_fixed")
 
 
-def only_flap(one: MeshSolver) -> Start:
+def only_flap(mesh: Mesh) -> lanczos.Start:
     """A start without any motion out of the plane of flap, which is decoupled at rest."""
-    mask = np.zeros((len(one.body.nodes) - 1, 6))
+    mask = np.zeros((len(mesh.nodes) - 1, 6))
     mask[:, [2, 4]] = 1.0
     vectors = np.random.default_rng(7).normal(size=(2, 2 * mask.size))
-    return Start(vectors * np.tile(mask.ravel(), 2), 26)
+    return lanczos.Start(vectors * np.tile(mask.ravel(), 2), 26)
 
 
 @pytest.mark.numerical
-def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped: MeshSolver) -> None:
-    right = lumped.at(0.0).modes.frequencies
-    lumped.start = only_flap(lumped)
-    state = solution.balance(lumped.body, 0.0, np.zeros(3), ALL_EFFECTS)
+def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped: Mesh) -> None:
+    right = solve_mesh(lumped, 0.0, Options(6))
+    basis = only_flap(lumped)
     with pytest.raises(MissedModesError):
-        lanczos.lanczos(state.pencil, 6, lumped.start)
-    np.testing.assert_allclose(lumped.at(0.0).modes.frequencies, right, rtol=1e-12)
-    assert lumped.restarts == 1
+        lanczos.lanczos(right.state.pencil, 6, basis)
+    again = solve_mesh(lumped, 0.0, Options(6), replace(right.start, basis=basis))
+    np.testing.assert_allclose(again.modes.frequencies, right.modes.frequencies, rtol=1e-12)
 
 
 @pytest.mark.numerical
-def test_the_count_alone_reports_them(lumped: MeshSolver, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = lumped.at(0.0).modes.frequencies
-    lumped.start = only_flap(lumped)
+def test_the_count_alone_reports_them(lumped: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    right = solve_mesh(lumped, 0.0, Options(6))
     monkeypatch.setattr(completeness, "check", lambda *_: None)
-    assert np.abs(lumped.at(0.0).modes.frequencies / right - 1.0).max() > 0.1
+    wrong = solve_mesh(lumped, 0.0, Options(6), replace(right.start, basis=only_flap(lumped)))
+    assert np.abs(wrong.modes.frequencies / right.modes.frequencies - 1.0).max() > 0.1
 
 
 @pytest.mark.numerical
@@ -122,8 +123,9 @@ def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
     gravity: float, linearised: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In both cases within the rounding error that is stated; the settled one takes fewer linearisations."""
-    body, fall, speeds = discretize(FLAT, 100), np.array([0.0, 0.0, gravity]), np.linspace(5.0, 8.0, 13)
-    counts, found = [], []
+    mesh, speeds = discretize(FLAT, 100), np.linspace(5.0, 8.0, 13)
+    options = Options(6, gravity=np.array([0.0, 0.0, gravity]))
+    counts, results = [], []
 
     def stalled(energy: float, before: float, rounding: float) -> bool:
         return energy <= 10.0 * rounding and energy > 1e-2 * before
@@ -131,11 +133,11 @@ def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
     for settled in (steady._converged, stalled):
         monkeypatch.setattr(steady, "_converged", settled)
         linearised.clear()
-        one = MeshSolver(body, 6, ALL_EFFECTS, fall)
-        solved = [one.at(omega) for omega in speeds]
+        solved = list(solved_in_turn(mesh, speeds, options))
         counts.append(len(linearised))
-        found.append((np.array([s.modes.frequencies for s in solved]), np.array([one.rounding(s) for s in solved])))
-    (settled, rounding), (stalled_, _) = found
+        errors = np.array([solution.rounding(mesh, s, options) for s in solved])
+        results.append((np.array([s.modes.frequencies for s in solved]), errors))
+    (settled, rounding), (stalled_, _) = results
     assert (np.abs(settled / stalled_ - 1.0) <= rounding).all()
     assert counts[0] <= counts[1] - 10
 
@@ -158,12 +160,11 @@ def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> Non
 
 
 def test_a_known_speed_is_not_extrapolated() -> None:
-    one = solver(replace(FLAT, precone=0.2))  # its shape is no polynomial in Ω²
-    for omega in (1.0, 20.0, 30.0, 5.0, 9.0):
-        solved = one.at(omega)
-    again = steady.extrapolate(one.body, one.known, -9.0)
+    mesh = discretize(replace(FLAT, precone=0.2), 20)  # its shape is no polynomial in Ω²
+    *_, last = solved_in_turn(mesh, (1.0, 20.0, 30.0, 5.0, 9.0), Options(6))
+    again = steady.extrapolate(mesh, last.start.coordinates, -9.0)
     assert again is not None
-    np.testing.assert_allclose(again.relative, solved.state.shape.relative, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(again.relative, last.state.shape.relative, rtol=0, atol=1e-14)
 
 
 @pytest.mark.numerical
