@@ -1,6 +1,7 @@
 """The printed tables: read as written, and compared with exact computation digit by digit."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from southwell.cases.input import library
 from southwell.cases.verify.published_tables import UNITS
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.effects import ALL_EFFECTS, Effects
-from southwell.core.solve import modes as core_modes
+from southwell.core.modes import Modes
+from southwell.core.solve import mesh_modes
 from southwell.references import published
 from southwell.references.published import Datum, Series, TableError
 from southwell.references.theories import assumed_modes, yoo_shin
@@ -47,16 +49,22 @@ def blade_of(name: str, series: Series) -> Blade:
 
 
 def computed(name: str, series: Series, datum: Datum) -> float:
-    """Computed by the code with the model of the series; the paper's column by core with the paper's discretisation."""
+    """The frequency computed with the model of the series."""
     if series.tapered:
         return float(tapered_beams.exact(series.height_taper, series.breadth_taper, datum.speed)[datum.mode - 1])
+    solved = solved_modes(name, published.load(name).series.index(series), datum.speed)
+    return float(family(solved, COLUMN[datum.family])[datum.mode - 1])
+
+
+@cache
+def solved_modes(name: str, number: int, speed: float) -> Modes:
+    """By the code with the model of the series; the paper's column by core with the paper's discretisation."""
+    series = published.load(name).series[number]
     blade = blade_of(name, series)
     if (name, series.name) == ("park2010", "present"):
-        found = core_modes(blade, datum.speed, 50, 8, mass="half_end", stiffness="body_fixed", effects=series.effects)
-    else:
-        code = {c.effects: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.effects]
-        found = code.solve(blade, datum.speed, 32, 10)
-    return float(family(found, COLUMN[datum.family])[datum.mode - 1])
+        return mesh_modes(blade, speed, 50, 8, mass="half_end", stiffness="body_fixed", effects=series.effects)
+    code = {c.effects: c for c in (assumed_modes.CODE, yoo_shin.CODE)}[series.effects]
+    return code.solve(blade, speed, 32, 10)
 
 
 @pytest.mark.slow
@@ -65,7 +73,7 @@ def test_a_datum_of_a_coarse_method_is_within_its_target(name: str, series: Seri
     case, _, _ = series.blade.partition("/")
     blade = next(v.blade for v in library.load(case).variants if v.name == series.blade)
     unit, speed = UNITS[published.load(name).unit]
-    found = core_modes(blade, datum.speed * speed, 120, 8, effects=series.effects)
+    found = mesh_modes(blade, datum.speed * speed, 120, 8, effects=series.effects)
     value = family(found, COLUMN[datum.family])[datum.mode - 1] / unit
     assert abs(datum.value / value - 1.0) < (series.target or 0.0)
 
@@ -86,16 +94,16 @@ def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Dat
 def test_core_prints_what_hodges_and_rutkowski_print() -> None:
     """Core is independent of the code that checks the digits; to one unit of the last digit, with 1601 stations."""
     (series,) = published.load("hodges_rutkowski1981").series
-    found = core_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
+    found = mesh_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
     printed = [datum.value for datum in series.data if datum.speed == 12]
     np.testing.assert_allclose(family(found, Z)[:3], printed, rtol=0, atol=1e-4)
 
 
-@pytest.mark.parametrize(("height", "breadth"), [(0.4, 0.4), (0.8, 0.8), (0.0, 0.8)])
+@pytest.mark.parametrize(("height", "breadth"), [(0.8, 0.8), (0.0, 0.8)])
 def test_core_and_the_series_agree_on_double_tapers(height: float, breadth: float) -> None:
     """Including the value misprinted as 38.4920."""
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
-    found = family(core_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
+    found = family(mesh_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
     np.testing.assert_allclose(found, tapered_beams.exact(height, breadth, 0.0)[:3], rtol=2e-6)
 
 

@@ -11,7 +11,7 @@ from scipy.optimize import root_scalar
 from southwell.core.blade import Blade, sample
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import STATIONS, Modes
-from southwell.core.solve import modes as core_modes
+from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CORE, MOTIONS, BladeAdapter, Independence, Motion
 
 ROOTS = [
@@ -75,7 +75,7 @@ class Twin(Analytic):
     levels: tuple[int, ...] = (10,)
 
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        modes = core_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed", effects=self.effects)
+        modes = mesh_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed", effects=self.effects)
         return Modes(omega, modes.frequencies * self.factor, modes.shapes, elements)
 
 

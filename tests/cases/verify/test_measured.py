@@ -30,10 +30,10 @@ EDGEWISE, FLAPWISE = 11.710953, 15.400199
 NONE = "speed [rad/s], measured [rad/s], mode\n"
 
 
-def read(tmp_path: Path, text: str, defaults: Defaults | None = None) -> UserResults:
-    path = tmp_path / "rig.csv"
+def read(tmp_path: Path, text: str, defaults: Defaults | None = None, name: str = "rig") -> UserResults:
+    path = tmp_path / f"{name}.csv"
     path.write_text(text, encoding="utf-8")
-    return user_results.read("rig", path, defaults)
+    return user_results.read(name, path, defaults)
 
 
 def park(speeds: tuple[float, ...]):
@@ -42,30 +42,34 @@ def park(speeds: tuple[float, ...]):
     return replace(case, variants=(replace(variant, speeds=np.array(speeds)),))
 
 
-def run(file: UserResults) -> Run:
-    with ThreadPoolExecutor(1) as executor:
-        return matrix.run([park((0.0, 12.0))], [], executor, user_results=[file], parts=False)
+@pytest.fixture(scope="module")
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A run with two rigs at 10 rad/s, which the case does not have.
 
-
-def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(tmp_path: Path) -> None:
-    """At 10 rad/s, which the case does not have: 1 % off with u_D = 2 %, and 10 % off."""
+    The first is 1 % off with u_D = 2 %, and 10 % off; the second has no other mode.
+    """
+    folder = tmp_path_factory.mktemp("rigs")
     text = f"{HEAD}10, {1.01 * EDGEWISE:.6f}, edgewise 1, 2\n10, {0.9 * FLAPWISE:.6f}, flapwise 1, 2\n10, 900, axial 1, 2\n"
-    found = run(read(tmp_path, text))
-    near, far, absent = (c for c in found.cells if c.code == "rig")
+    files = [read(folder, text), read(folder, f"{HEAD}10, 71.1, flapwise 2, 2\n", name="second")]
+    with ThreadPoolExecutor(1) as executor:
+        return matrix.run([park((0.0, 12.0))], [], executor, user_results=files, parts=False)
+
+
+def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(compared: Run) -> None:
+    near, far, absent = (c for c in compared.cells if c.code == "rig")
     assert [(c.verdict, c.role, c.omega, c.shares) for c in (near, far)] == [("measured", "measured", 10.0, "")] * 2
     assert near.difference == pytest.approx(0.01, abs=1e-5)
     assert near.reason.startswith("model error not visible at u_val = 2.0 %: E = −0.99 %, u_val from u_num ")
     assert "u_input 0, u_D 2.00 %" in near.reason
     assert far.reason.startswith(f"model error visible (at least {100 * (1 / 0.9 - 1) - 4:.1f} %): E = +11.11 %")
     assert (absent.verdict, absent.mode) == ("not applicable", 0)
-    assert not groups(witnesses(found, "park-cantilever"))
-    assert "rig" not in {w.name for w in witnesses(found, "park-cantilever")}
-    assert found.versions["rig"] == "measured, in rig.csv"
+    assert not groups(witnesses(compared, "park-cantilever"))
+    assert "rig" not in {w.name for w in witnesses(compared, "park-cantilever")}
+    assert compared.versions["rig"] == "measured, in rig.csv"
 
 
-def test_a_name_needs_no_other_mode_at_that_speed(tmp_path: Path) -> None:
-    found = run(read(tmp_path, f"{HEAD}10, 71.1, flapwise 2, 2\n"))
-    (cell,) = (c for c in found.cells if c.code == "rig")
+def test_a_name_needs_no_other_mode_at_that_speed(compared: Run) -> None:
+    (cell,) = (c for c in compared.cells if c.code == "second")
     assert cell.name == "flapwise 2"
 
 

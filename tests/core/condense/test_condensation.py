@@ -13,7 +13,7 @@ from southwell.core.condense.condensation import segments_in_place as in_place
 from southwell.core.condense.segments import segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.mechanism.description import inertia
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree.as_mechanism import mechanism
@@ -100,7 +100,7 @@ def test_condensed_cantilever_against_timoshenko() -> None:
     mesh = mesh_from_segments([cantilever_segment("average")] * 20, at(HUB))
     at_rest = chain_modes(mesh, 0.0, 6)
     np.testing.assert_allclose(at_rest.frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
-    turning, beam = chain_modes(mesh, 10.0, 6), modes(square_beam(), 10.0, 80, 6)
+    turning, beam = chain_modes(mesh, 10.0, 6), mesh_modes(square_beam(), 10.0, 80, 6)
     np.testing.assert_allclose(turning.frequencies, beam.frequencies, rtol=2e-4)
     assert (mac(turning, beam).diagonal() > 0.9999).all()
 
@@ -154,8 +154,11 @@ def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
 
 @pytest.mark.parametrize(
     ("omega", "shift", "turn", "within"),
-    [(0.0, 0.02, 1.0, 1e-7), (SPEED, 0.02, 0.0, 1e-6), (SPEED, 0.0, 0.1, 1e-5)],
-    ids=["at rest, both", "turning, shifted", "turning, rotated"],
+    [
+        pytest.param(0.0, 0.02, 1.0, 1e-7, id="at rest, both"),
+        pytest.param(SPEED, 0.02, 0.0, 1e-6, id="turning, shifted", marks=pytest.mark.slow),
+        pytest.param(SPEED, 0.0, 0.1, 1e-5, id="turning, rotated", marks=pytest.mark.slow),
+    ],
 )
 def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float, turn: float, within: float) -> None:
     """Shifted by 20 mm or rotated: the same frequencies, but for the screw motion between much rotated frames."""

@@ -13,7 +13,7 @@ from southwell.core.condense.segments import Segment, between, segment_from_matr
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.element import sections
 from southwell.core.mechanism.description import inertia
-from southwell.core.solve import LargeStrainError, modes
+from southwell.core.solve import LargeStrainError, mesh_modes, modes
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import PARK
 from southwell.tests.support.solids import at
@@ -101,10 +101,10 @@ def test_few_segments_have_infinite_uncertainty_and_large_strains_are_refused() 
 
 def test_bending_converges_with_fourth_order() -> None:
     """One rigid body per segment, against core's converged beam; also turning, where 20 segments leave 5e-6."""
-    exact = modes(PARK, 0.0, 160, 4).frequencies
+    exact = mesh_modes(PARK, 0.0, 160, 4).frequencies
     errors = [np.abs(uniform_chain(n)[:4] / exact - 1) for n in (10, 20)]
     assert (np.log2(errors[0] / errors[1]) > 3.7).all()
-    np.testing.assert_allclose(uniform_chain(20, 10.0)[:4], modes(PARK, 10.0, 160, 4).frequencies, rtol=1e-5)
+    np.testing.assert_allclose(uniform_chain(20, 10.0)[:4], mesh_modes(PARK, 10.0, 160, 4).frequencies, rtol=1e-5)
 
 
 def test_torsion_is_that_of_masses_in_the_middle() -> None:

@@ -11,7 +11,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import reading
 from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness
 from southwell.core.element.sections import frames, root
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 
 from ...support.beams import curved, tapered
 
@@ -153,7 +153,9 @@ def test_a_root_within_rounding_of_zero_is_the_root(tmp_path: Path, root: float)
     found = from_file(tmp_path, [[root, 0.0, 0.0], [10.0, 0.0, 0.0]], root)
     assert found.stations[0] == 0.0
     exact = from_file(tmp_path, [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
-    np.testing.assert_allclose(modes(found, 3.0, 10, 5).frequencies, modes(exact, 3.0, 10, 5).frequencies, rtol=1e-11)
+    np.testing.assert_allclose(
+        mesh_modes(found, 3.0, 10, 5).frequencies, mesh_modes(exact, 3.0, 10, 5).frequencies, rtol=1e-11
+    )
 
 
 def test_a_root_beyond_rounding_is_refused(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from southwell.core.blade import Blade, BladeError, section_mass, section_stiffn
 from southwell.core.element.discretize import discretize, divide
 from southwell.core.element.sections import frames
 from southwell.core.participation import participation
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 from southwell.core.space import spatial as sp
 from southwell.core.tree.as_mechanism import mechanism, one
 from southwell.references.joint_chains import joint_chain
@@ -79,33 +79,33 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
     )
     beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", one(second.beams, k)) for k in range(2))
     whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))
-    found = modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
+    found = mesh_modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
     np.testing.assert_allclose(found, mb.solve(whole).frequencies[:8], rtol=1e-9)
 
 
 @pytest.mark.parametrize("blade", [kinked(), kinked(precone=0.1, pitch=0.2), with_all()], ids=["beam", "coned", "all"])
 def test_the_general_solver_agrees_on_kinks(blade: Blade) -> None:
     """The same discretisation, with elements that end in frames other than those of their nodes."""
-    found = modes(blade, 1.0, 8, 6).frequencies
+    found = mesh_modes(blade, 1.0, 8, 6).frequencies
     np.testing.assert_allclose(found, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
 
 
 def test_elements_end_at_kinks_and_refinement_is_of_fourth_order() -> None:
-    f = [modes(kinked(), OMEGA, n, 6).frequencies for n in (80, 160, 320, 640)]
+    f = [mesh_modes(kinked(), OMEGA, n, 6).frequencies for n in (80, 160, 320, 640)]
     change = np.abs(np.diff(f, axis=0)).max(1)
     assert np.log2(change[:-1] / change[1:]).min() > 3.7
     for n in (2, 7, 50, 200):
         assert {0.0, 8.0, 10.0} <= set(divide(kinked(), n))
         assert len(divide(kinked(), n)) == n + 1
     np.testing.assert_array_equal(divide(kinked(), 160)[::4], divide(kinked(), 40))
-    assert modes(kinked(), OMEGA, 1, 2).elements == 2
+    assert mesh_modes(kinked(), OMEGA, 1, 2).elements == 2
 
 
 def test_a_well_rounded_corner_is_nearly_the_kink() -> None:
     """A dense table differs by its rounded corner only; the difference vanishes with the radius."""
-    exact = modes(kinked(), OMEGA, 160, 5).frequencies
+    exact = mesh_modes(kinked(), OMEGA, 160, 5).frequencies
     tighter = np.unique(np.concatenate([DENSE, 8 + np.outer([1, -1], 0.001 * 2.0 ** np.arange(10)).ravel()]))
-    off = [np.abs(modes(beam(s, line(s)), OMEGA, 160, 5).frequencies / exact - 1).max() for s in (DENSE, tighter)]
+    off = [np.abs(mesh_modes(beam(s, line(s)), OMEGA, 160, 5).frequencies / exact - 1).max() for s in (DENSE, tighter)]
     assert off[0] < 5e-4
     assert off[1] < off[0] / 4
 
@@ -119,17 +119,17 @@ def test_sections_turn_with_the_tangent_at_the_kink() -> None:
 
 def test_a_kink_of_zero_angle_changes_nothing() -> None:
     s = np.array([0.0, 8.0, 10.0])
-    plain, declared = (modes(beam(s, line(s, angle=0.0), k), OMEGA, 20, 6).frequencies for k in ((), (8.0,)))
+    plain, declared = (mesh_modes(beam(s, line(s, angle=0.0), k), OMEGA, 20, 6).frequencies for k in ((), (8.0,)))
     np.testing.assert_allclose(declared, plain, rtol=1e-12)
 
 
 def test_stiff_springs_at_the_root_clamp_a_kinked_blade() -> None:
-    clamped, stiff = (modes(kinked(root=np.full(6, k)), OMEGA, 10, 6).frequencies for k in (np.inf, 1e13))
+    clamped, stiff = (mesh_modes(kinked(root=np.full(6, k)), OMEGA, 10, 6).frequencies for k in (np.inf, 1e13))
     np.testing.assert_allclose(stiff, clamped, rtol=1e-7)
 
 
 def test_energy_fractions_of_a_kinked_blade_are_those_of_the_rounded_one() -> None:
-    sharp, round_ = (modes(b, OMEGA, 100, 4) for b in (kinked(), beam(DENSE, line(DENSE))))
+    sharp, round_ = (mesh_modes(b, OMEGA, 100, 4) for b in (kinked(), beam(DENSE, line(DENSE))))
     expected = participation(round_, beam(DENSE, line(DENSE)))
     np.testing.assert_allclose(participation(sharp, kinked()), expected, atol=0.01)
 
@@ -141,7 +141,7 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
     code = registry.code(name)
     if code.version() is None:
         pytest.skip(f"{name} is not installed")
-    ours = modes(blade, 1.0, 12, 6, mass="half_end", stiffness="body_fixed")
+    ours = mesh_modes(blade, 1.0, 12, 6, mass="half_end", stiffness="body_fixed")
     theirs = code.solve(blade, 1.0, 12, 6)
     np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=1e-8 if name == "pinocchio" else 1e-6)
     np.testing.assert_allclose(
@@ -187,8 +187,8 @@ def test_a_file_declares_its_kinks(tmp_path: Path) -> None:
     path = tmp_path / "blade.toml"
     path.write_text(FILE.format(kinks="[8.0]", k=K, m=M))
     found = reading(path).blade
-    expected = modes(kinked(), OMEGA, 20, 5).frequencies
-    np.testing.assert_allclose(modes(found, OMEGA, 20, 5).frequencies, expected, rtol=1e-8)
+    expected = mesh_modes(kinked(), OMEGA, 20, 5).frequencies
+    np.testing.assert_allclose(mesh_modes(found, OMEGA, 20, 5).frequencies, expected, rtol=1e-8)
     southwell_toml.write(found, path)
     assert reading(path).blade.kinks == (8.0,)
 

@@ -12,7 +12,7 @@ from southwell.cases.input.readers import reading
 from southwell.core.blade import Blade, BladeError, section_mass, without_rotary_inertia
 from southwell.core.blade_checks import body_fault
 from southwell.core.mechanism.description import MechanismError, check, inertia
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 
 from ...support.beams import PARK, curved
 
@@ -140,7 +140,7 @@ def test_offset_masses_keep_their_moments_without_rotary_inertia() -> None:
     assert (np.linalg.eigvalsh(centred) <= 1e-9).all()
     first = bare.mass[:, 2, 3]
     np.testing.assert_allclose(bare.mass[:, 3, 3], first**2 / bare.mass[:, 0, 0], rtol=1e-12)
-    assert np.isfinite(modes(bare, 1.0, 8, 4).frequencies).all()
+    assert np.isfinite(mesh_modes(bare, 1.0, 8, 4).frequencies).all()
 
 
 def test_impossible_bodies_of_a_mechanism_are_refused() -> None:

@@ -57,7 +57,7 @@ def in_SI(name: str) -> mb.Solution:
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in ACCEPTED])
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(mass=DECADES, length=DECADES, time=DECADES)
 def test_frequencies_scale_with_the_units(name: str, mass: int, length: int, time: int) -> None:
     """Within the stated rounding of both; the same coordinates are independent and the same constraints redundant."""
@@ -75,7 +75,7 @@ def test_frequencies_scale_with_the_units(name: str, mass: int, length: int, tim
 
 
 @pytest.mark.parametrize("name", UNSTEADY)
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(mass=DECADES, length=DECADES, time=DECADES)
 def test_refusals_do_not_depend_on_the_units(name: str, mass: int, length: int, time: int) -> None:
     case = UNSTEADY[name]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from southwell import Blade, section_mass, section_stiffness
-from southwell.core.solve import modes, sweep
+from southwell.core.solve import mesh_modes, modes, sweep
 from southwell.core.spectrum import gyroscopic
 from southwell.core.spectrum.eigen import UnstableError
 from southwell.core.spectrum.gyroscopic import GyroscopicStabilityWarning
@@ -58,7 +58,7 @@ def test_a_missing_mode_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
         monkeypatch.setattr(gyroscopic, "_nearest_zero", one_less)
         with pytest.raises(UnstableError):
-            modes(replace(shaft(), name=str(missing)), 2.0 * CRITICAL, 20, 4)
+            mesh_modes(replace(shaft(), name=str(missing)), 2.0 * CRITICAL, 20, 4)
 
 
 def test_a_cable_that_the_mesh_does_not_resolve_is_refused_without_iteration(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,4 +72,4 @@ def test_a_cable_that_the_mesh_does_not_resolve_is_refused_without_iteration(mon
     ends = np.array([0.0, 10.0])
     cable = Blade("cable", ends, np.repeat(stiffness, 2, 0), np.repeat(mass, 2, 0), np.zeros(2))
     with pytest.raises(UnstableError, match="not positive definite"):
-        modes(cable, 31.4, 250, count=2)
+        mesh_modes(cable, 31.4, 250, count=2)

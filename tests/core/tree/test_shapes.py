@@ -20,7 +20,7 @@ from southwell.cases.input.readers import elastodyn
 from southwell.cases.input.readers.source import Mount
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS
-from southwell.core.solve import mesh_modes, modes
+from southwell.core.solve import mesh_modes
 from southwell.core.space import spatial as sp
 from southwell.reports.campbell.shapes import coefficients, draw, scaled, write_csv
 from southwell.reports.shared.units import RPM
@@ -129,7 +129,7 @@ def test_shapes_for_elastodyn_exclude_twist() -> None:
     blade = replace(straight, twist=np.array([0.6, 0.3, 0.1, 0.0]))
     for p, q in zip(polynomials(blade, 2.0, 20), polynomials(straight, 2.0, 20), strict=True):
         np.testing.assert_allclose(p.coefficients, q.coefficients, atol=3e-5)
-    real = {p.mode: p for p in as_it_is(blade, modes(blade, 2.0, 20, 8))}
+    real = {p.mode: p for p in as_it_is(blade, mesh_modes(blade, 2.0, 20, 8))}
     (edge,) = (p for p in polynomials(blade, 2.0, 20) if p.mode == "edgewise 1")
     assert np.abs(real["edgewise 1"].shape - edge.shape).max() > 0.01
 
@@ -217,7 +217,7 @@ def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without
     def off(found: tuple[Polynomial, ...]) -> dict[str, float]:
         return {p.mode: np.abs(p.at(x) - np.power.outer(x, POWERS) @ PUBLISHED[p.mode]).max() for p in found}
 
-    plain, twisted = off(polynomials(blade, omega)), off(as_it_is(blade, modes(blade, omega, 50, 8)))
+    plain, twisted = off(polynomials(blade, omega)), off(as_it_is(blade, mesh_modes(blade, omega, 50, 8)))
     for name, within in (("flapwise 1", 5e-3), ("flapwise 2", 2e-2), ("edgewise 1", 2e-3)):
         assert plain[name] < within
         assert plain[name] < twisted[name]

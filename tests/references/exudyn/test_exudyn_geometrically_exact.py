@@ -65,7 +65,7 @@ def test_a_curved_twisted_tapered_blade_with_offset_mass(precone):
     blade = replace(uncoupled_strains(curved()), precone=precone)
     values = [CODE.solve(blade, 3.0, n, 5).frequencies for n in (30, 60, 120)]
     value = values[2] + (values[2] - values[1]) / 3
-    np.testing.assert_allclose(value, solve.modes(blade, 3.0, 60, 5).frequencies, rtol=1e-5)
+    np.testing.assert_allclose(value, solve.mesh_modes(blade, 3.0, 60, 5).frequencies, rtol=1e-5)
     np.testing.assert_allclose(value, REISSNER.solve(blade, 3.0, 40, 5).frequencies, rtol=1e-5)
     np.testing.assert_allclose(observed_order(values), 2.0, atol=0.03)
 
@@ -79,7 +79,7 @@ def test_a_twisted_coned_blade_with_a_tip_mass_has_a_steady_state():
         tip_mass=np.diag([0.5, 0.5, 0.5, 0.01, 0.004, 0.006]),
     )
     value, _ = extrapolated(CODE, lambda n: CODE.solve(blade, 8.0, n, 4).frequencies)
-    np.testing.assert_allclose(value, solve.modes(blade, 8.0, 60, 4).frequencies, rtol=2e-5)
+    np.testing.assert_allclose(value, solve.mesh_modes(blade, 8.0, 60, 4).frequencies, rtol=2e-5)
 
 
 def test_a_step_of_the_stiffness_is_no_element():
@@ -90,7 +90,7 @@ def test_a_step_of_the_stiffness_is_no_element():
     blade = Blade("stepped", np.array([0.0, 0.5, 0.5 + 1e-7, 1.0]), stiffness, uniform.mass[:1] * factor, np.zeros(4))
     assert len(exact.assemble(blade, 12).ends) == 13
     value, _ = extrapolated(CODE, lambda n: CODE.solve(blade, 5.0, n, 4).frequencies)
-    np.testing.assert_allclose(value, solve.modes(blade, 5.0, 60, 4).frequencies, rtol=1e-5)
+    np.testing.assert_allclose(value, solve.mesh_modes(blade, 5.0, 60, 4).frequencies, rtol=1e-5)
 
 
 def test_exudyn_has_the_exact_tangent_of_its_forces():

@@ -170,7 +170,7 @@ def test_segments_have_the_mass_and_inertia_of_the_blade():
 def limit(blade, omega):
     """Five frequencies, extrapolated, and core's."""
     coarse, fine = (TREE.solve(blade, omega, n, 5).frequencies for n in (48, 96))
-    return fine + (fine - coarse) / 3, solve.modes(blade, omega, 60, 5).frequencies
+    return fine + (fine - coarse) / 3, solve.mesh_modes(blade, omega, 60, 5).frequencies
 
 
 def test_the_layer_at_the_root_is_resolved():

@@ -24,7 +24,7 @@ POINT = np.diag([7.2, 7.2, 7.2, 0.0, 0.0, 0.0])
 
 
 def core(blade: Blade, omega: float, count: int = 5) -> Array:
-    return solve.modes(blade, omega, 100, count, effects=CODE.effects).frequencies
+    return solve.mesh_modes(blade, omega, 100, count, effects=CODE.effects).frequencies
 
 
 @needs_frame3dd
@@ -64,7 +64,7 @@ def test_shapes_agree_with_core() -> None:
     """For the pitched, twisted blade, up to sign; real because there is no Coriolis force."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 60, 4).shapes[:, :, 1:3].real.reshape(4, -1)
-    theirs = solve.modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
+    theirs = solve.mesh_modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours * theirs.conj(), axis=1)) / norms, 1, atol=1e-4)
 

@@ -29,7 +29,7 @@ TIP_MASS[[3, 5], [3, 5]] += 10.0
 
 
 def core(blade: Blade, omega: float, elements: int, count: int) -> Array:
-    return solve.modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed").frequencies
+    return solve.mesh_modes(blade, omega, elements, count, mass="half_end", stiffness="body_fixed").frequencies
 
 
 @pytest.mark.slow
@@ -70,7 +70,7 @@ def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int)
 def test_shapes_agree_with_core() -> None:
     """Between nodes too: the chain's spline against core's shape functions."""
     ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
-    theirs = solve.modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
+    theirs = solve.mesh_modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=2e-3)
 

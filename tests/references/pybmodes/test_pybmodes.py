@@ -41,7 +41,7 @@ def orders(blade: Blade, omega: float, levels: tuple[int, ...], count: int) -> A
 
 def core(blade: Blade, omega: float, count: int) -> Array:
     """Core without the same effects, with 160 elements of fourth order; accurate to 1e-7 or better."""
-    return solve.modes(blade, omega, 160, count, effects=CODE.effects).frequencies
+    return solve.mesh_modes(blade, omega, 160, count, effects=CODE.effects).frequencies
 
 
 def shaft(I_y: float, I_z: float) -> Blade:
@@ -105,7 +105,7 @@ def test_shapes_are_those_of_core() -> None:
     """Displacements by pairing, and the signs of the axes from the modes of a pitched, twisted blade."""
     blade = replace(tapered(), pitch=0.4)
     ours = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
-    theirs = solve.modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
+    theirs = solve.mesh_modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
     norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
     np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-5)
 
@@ -196,7 +196,7 @@ def test_why_mass_centres_off_the_axis_are_declined() -> None:
     mass[2, 3] = mass[3, 2] = m * e
     blade = replace(blade, mass=np.repeat(mass[None], 2, axis=0))
     assert "mass centres off the axis" in (CODE.unsupported(blade) or "")
-    ours = solve.modes(blade, 2 * np.pi, 80, 5, effects=Effects(coriolis=False)).frequencies
+    ours = solve.mesh_modes(blade, 2 * np.pi, 80, 5, effects=Effects(coriolis=False)).frequencies
     np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], ours, rtol=1e-4)
 
 

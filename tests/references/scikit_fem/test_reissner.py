@@ -147,8 +147,7 @@ class TestFrequencies:
         assert CODE.order == 4
         assert ((np.log2(first / second) > least) | (second < 2e-7)).all()
 
-    @pytest.mark.parametrize("omega", [0.0, 3.0])
-    @pytest.mark.parametrize("pitch", [0.0, 0.6])
+    @pytest.mark.parametrize(("pitch", "omega"), [(0.0, 0.0), (0.6, 3.0)])
     def test_a_blade_with_all_properties_agrees_with_core(self, pitch: float, omega: float) -> None:
         """Coupled, curved, sheared, twisted, tapered, offset, coned; a body off the tip's axis; both torsion and bending."""
         lump = 300.0 * body() / 5.0

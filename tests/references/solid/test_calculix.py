@@ -9,7 +9,7 @@ from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.matrix_files import read
 from southwell.core.condense.segments import between
 from southwell.core.effects import Effects
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, hexahedra
 from southwell.references.solid.mesh import blade, clamped, clamped_free_to_contract
@@ -41,7 +41,7 @@ def test_square_cantilever() -> None:
     at_rest = calculix.modes(bricks, SQUARE, 0.0, 6, clamped_free_to_contract(HUB))
     np.testing.assert_allclose(at_rest.frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
     turning = calculix.modes(bricks, SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
-    beam = modes(square_beam(), 10.0, 80, 6, effects=calculix.EFFECTS)
+    beam = mesh_modes(square_beam(), 10.0, 80, 6, effects=calculix.EFFECTS)
     np.testing.assert_allclose(turning.frequencies, beam.frequencies, rtol=2e-4)
     assert (mac(turning, beam).diagonal() > 0.999).all()
 

@@ -157,7 +157,7 @@ def test_a_held_bar_has_timoshenkos_frequencies() -> None:
     found = modes(BAR, 0.0, 20, 4).frequencies
     mass = identified.mass(BAR, np.array([0.0, 2.0]))
     beam = Blade("bar", np.array([0.0, 2.0]), np.repeat(square()[None], 2, axis=0), mass, np.zeros(2), hub_radius=0.1)
-    np.testing.assert_allclose(found, solve.modes(beam, 0.0, 60, 4).frequencies, rtol=3e-4)
+    np.testing.assert_allclose(found, solve.mesh_modes(beam, 0.0, 60, 4).frequencies, rtol=3e-4)
 
 
 # ------------------------------------------------------------------------------------------------------------ the adapter
@@ -204,7 +204,7 @@ def whole(omega: float) -> np.ndarray:
 @pytest.mark.parametrize("omega", [0.0, 10.0])
 def test_the_beam_is_the_solid(omega: float) -> None:
     """Six modes within 0.1 %: the difference that remains is that of beam theory."""
-    np.testing.assert_allclose(solve.modes(case(), omega, 80, 6).frequencies, whole(omega), rtol=1e-3)
+    np.testing.assert_allclose(solve.mesh_modes(case(), omega, 80, 6).frequencies, whole(omega), rtol=1e-3)
 
 
 @pytest.mark.slow
@@ -254,7 +254,7 @@ def test_frequencies_converge_with_the_fourth_power() -> None:
     ids=["bend–twist coupling", "extension–bending coupling", "sweep", "prebend", "twist"],
 )
 def test_a_beam_with_a_wrong_sign_is_not_the_solid(change) -> None:
-    off = solve.modes(change(case()), 10.0, 80, 6).frequencies / whole(10.0) - 1.0
+    off = solve.mesh_modes(change(case()), 10.0, 80, 6).frequencies / whole(10.0) - 1.0
     assert np.abs(off).max() > 5e-3, off
 
 
@@ -264,7 +264,7 @@ def test_the_difference_from_the_beam_falls_with_slenderness() -> None:
     chord, thick = ((2.0 * a, 2.0 * b) for a, b in (CURVED.chord, CURVED.thickness))
     stout = replace(CURVED, chord=chord, thickness=thick)
     off = [
-        modes(solid, 0.0, 40, 6).frequencies[5] / solve.modes(beam, 0.0, 60, 6).frequencies[5] - 1
+        modes(solid, 0.0, 40, 6).frequencies[5] / solve.mesh_modes(beam, 0.0, 60, 6).frequencies[5] - 1
         for solid, beam in ((CURVED, case()), (stout, curved_solid.beam(stout, 21)))
     ]
     assert 3.0 < off[1] / off[0] < 5.0, off

@@ -5,7 +5,7 @@ import pytest
 
 from southwell.core.condense import ties
 from southwell.core.effects import Effects
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
@@ -102,7 +102,7 @@ def test_square_cantilever_at_zero_speed_has_timoshenkos_frequencies() -> None:
 def test_square_cantilever_rotating_at_ten_rad_per_second() -> None:
     """Against core's Timoshenko beam, edgewise and flapwise: prestress, spin softening and Coriolis forces."""
     found = hexahedra.modes(square_bar(LENGTH, 60, start=HUB), SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
-    beam = modes(square_beam(), 10.0, 80, 6)
+    beam = mesh_modes(square_beam(), 10.0, 80, 6)
     np.testing.assert_allclose(found.frequencies, beam.frequencies, rtol=3e-4)
     assert (mac(found, beam).diagonal() > 0.999).all()
 
@@ -121,7 +121,7 @@ def test_coriolis_forces() -> None:
         found = hexahedra.modes(
             bricks, material, omega, 4, clamped_free_to_contract(0.0), coriolis=coriolis
         ).frequencies
-        exact = modes(beam, omega, 60, 4, effects=Effects(coriolis=coriolis)).frequencies
+        exact = mesh_modes(beam, omega, 60, 4, effects=Effects(coriolis=coriolis)).frequencies
         np.testing.assert_allclose(found, exact, rtol=1e-3)
         drop[coriolis] = found[0], exact[0]
     solids, beams = (drop[True][k] / drop[False][k] - 1 for k in (0, 1))

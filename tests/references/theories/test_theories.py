@@ -11,7 +11,7 @@ from scipy.optimize import root_scalar
 
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.effects import Effects
-from southwell.core.solve import modes as core_modes
+from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.theories import assumed_modes, exact_beam, southwell_equation, straight_beam, yoo_shin
 
@@ -217,7 +217,7 @@ def test_southwells_bracket_of_a_twisted_blade(omega: float) -> None:
 
 
 def extrapolated(blade: Blade, omega: float, count: int, order: int, model: Effects) -> np.ndarray:
-    coarse, fine = (core_modes(blade, omega, n, count, effects=model).frequencies for n in (100, 200))
+    coarse, fine = (mesh_modes(blade, omega, n, count, effects=model).frequencies for n in (100, 200))
     return fine + (fine - coarse) / (2.0**order - 1)
 
 
@@ -251,7 +251,7 @@ def test_gyroscopic_lag_has_the_solvers_sign() -> None:
     for found in (
         YOO_SHIN.solve(slender(), 10.0, 16, 4),
         EXACT.solve(slender(), 10.0, 16, 4),
-        core_modes(slender(), 10.0, 50, 4),
+        mesh_modes(slender(), 10.0, 50, 4),
     ):
         shape = found.shapes[0]
         ratio = shape[-1, X] / shape[-1, Y]
@@ -262,7 +262,7 @@ def test_gyroscopic_lag_has_the_solvers_sign() -> None:
 def test_flapwise_torsion_lag_has_the_solvers_sign() -> None:
     blade = uniform_blade("bar", 1.0, 0.2, EA=2000.0, GJ=3.0, EI_y=1.0, EI_z=20.0, mass=1.0, I_y=0.02, I_z=0.05)
     ratios = []
-    for found in (EXACT.solve(blade, 6.0, 16, 4), core_modes(blade, 6.0, 200, 4)):
+    for found in (EXACT.solve(blade, 6.0, 16, 4), mesh_modes(blade, 6.0, 200, 4)):
         shape = found.shapes[np.abs(found.shapes).max(1).argmax(1) == Z][0]
         ratios.append(shape[-1, TURN] / shape[-1, Z])
     assert abs(ratios[0].imag) > 0.01

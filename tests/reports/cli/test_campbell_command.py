@@ -163,7 +163,9 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
         2,
         f"southwell: --rpm: missing: {file} does not define rotor speeds: give them, as in 0:15:0.5\n",
     )
-    status, shown, _ = southwell(f"campbell {file} --omega 0:20:10 --hub-radius 3 --elements 8 -o {out}", capsys)
+    status, shown, _ = southwell(
+        f"campbell {file} --omega 0:20:10 --modes 2 --hub-radius 3 --elements 8 -o {out}", capsys
+    )
     assert status == 0
     assert "Southwell TOML: blade.toml" in shown
     page = (out / "campbell.md").read_text()
@@ -175,7 +177,7 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     found = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
     (out / "case.toml").write_text(BEAM.replace("hub_radius = 0.1", "hub_radius = 3.0"))
     blade = library.load(str(out / "case.toml")).variants[0].blade
-    np.testing.assert_allclose(found, modes(blade, 20.0, 8, 6).frequencies, rtol=1e-9)
+    np.testing.assert_allclose(found, modes(blade, 20.0, 8, 2).frequencies, rtol=1e-9)
 
 
 @pytest.mark.slow

@@ -64,6 +64,7 @@ def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_thro
         assert not {c.code for c in mine} & reported
 
 
+@pytest.mark.slow
 def test_the_output_of_the_command_is_what_it_prints(tmp_path: Path) -> None:
     """As southwell is run here; the figure is the one it draws. Uncertainties below 1e-8 are rounding: processors differ."""
     output = readme.example(tmp_path)

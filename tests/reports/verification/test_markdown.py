@@ -52,9 +52,15 @@ class Tables(HTMLParser):
             self.tables[-1][-1][-1] += data
 
 
-@pytest.fixture
-def report(tmp_path: Path) -> str:
-    return matrix_report.write(samples.run(), tmp_path).read_text(encoding="utf-8")
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of the sample run, with its figures."""
+    return matrix_report.write(samples.run(), tmp_path_factory.mktemp("report")).parent
+
+
+@pytest.fixture(scope="module")
+def report(folder: Path) -> str:
+    return (folder / "report.md").read_text(encoding="utf-8")
 
 
 def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
@@ -164,10 +170,10 @@ def test_differences_at_a_speed_are_those_of_the_cells(report: str) -> None:
             assert float(by_name[cell.name][1]) == pytest.approx(cell.full, rel=1e-6)
 
 
-def test_figures_named_in_the_report_are_there(report: str, tmp_path: Path) -> None:
+def test_figures_named_in_the_report_are_there(report: str, folder: Path) -> None:
     links = re.findall(r"!\[.*?\]\((.*?)\)", report)
     assert len(links) == 4
-    assert all((tmp_path / link).stat().st_size > 1000 for link in links)
+    assert all((folder / link).stat().st_size > 1000 for link in links)
 
 
 @pytest.mark.slow

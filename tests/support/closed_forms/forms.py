@@ -79,7 +79,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "turntable",
         "A mass on two springs on a turntable",
-        np.linspace(0.1, 9.9, 50),
+        np.linspace(0.1, 9.9, 16),
         pendulums.turntable_values,
         lambda omega: oscillating(pendulums.turntable(omega)),
         1e-9,
@@ -87,7 +87,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "pendulum",
         "A pendulum in a rotating plane",
-        np.concatenate([np.linspace(0.0, 3.0, 11), np.linspace(3.25, 8.0, 20)]),
+        np.concatenate([np.linspace(0.0, 3.0, 4), np.linspace(3.25, 8.0, 6)]),
         pendulums.pendulum_values,
         _pendulum_solved,
         1e-8,
@@ -95,7 +95,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "top",
         "Nutation of a heavy symmetric top",
-        np.linspace(0.8, 8.0, 25),
+        np.linspace(0.8, 8.0, 7),
         pendulums.top_values,
         _top_solved,
         1e-7,
@@ -103,7 +103,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "double-pendulum",
         "A double pendulum in a rotating plane",
-        np.linspace(0.0, 5.6, 29),
+        np.linspace(0.0, 5.6, 8),
         pendulums.double_pendulum_values,
         lambda omega: oscillating(pendulums.double_pendulum(omega)),
         1e-9,
@@ -111,7 +111,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "slider-crank",
         "A slider-crank on a turntable",
-        np.linspace(0.0, 10.0, 21),
+        np.linspace(0.0, 10.0, 6),
         linkages.slider_crank_values,
         lambda omega: oscillating(linkages.slider_crank(omega), {"guide.z": linkages.CRANK + linkages.CONNECTING}),
         1e-9,
@@ -119,7 +119,7 @@ FORMS: tuple[ClosedForm, ...] = (
     ClosedForm(
         "four-bar",
         "A parallelogram linkage on a turntable",
-        np.linspace(0.0, 7.0, 29),
+        np.linspace(0.0, 7.0, 8),
         linkages.parallelogram_values,
         _parallelogram_solved,
         1e-8,
