@@ -26,7 +26,7 @@ class Modes:
         uncertainty: (m,) relative uncertainty, if the code estimates it; empty: determined by refinement.
         rounding: (m,) relative error due to rounding alone, if the code estimates it; empty: not estimated.
         strain: largest steady strain of the reference curve (axial and shear); nan: not computed.
-        seconds: wall time of the solution.
+        seconds: wall time of the solution; nan: not measured, as of an answer from the store.
     """
 
     omega: float

@@ -12,7 +12,7 @@ import msgspec
 import portalocker
 
 from ..input.errors import CaseError
-from ..verify.appending import Appending
+from .appending import Appending
 from .plan import Header
 from .rows import Row
 

@@ -6,7 +6,7 @@ from importlib.metadata import version
 from msgspec import Struct
 
 from ...references.protocol import sources
-from ..verify import identity
+from ..store.digest import digest
 from .rows import Task, solve
 from .sampling import changes, sample
 from .schema import Study
@@ -16,8 +16,8 @@ class Header(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The first line of a study's file.
 
     Attributes:
-        study: digest of the blades, the speeds, the contents of the study file and this package.
-        package: digest of the sources on which answers depend, and of the libraries these use.
+        study: digest of the blades, the speeds and the contents of the study file.
+        package: digest of this package and the libraries it uses.
         version: of Southwell.
         seed: of the sample.
         blades: names, in the order of the tasks.
@@ -57,8 +57,8 @@ def header(study: Study) -> Header:
     """The header of a study."""
     text = study.text
     return Header(
-        study=identity.digest(solve, study.blades, study.speeds, text),
-        package=sources.digest(frozenset({solve.__module__})),
+        study=digest(solve, study.blades, study.speeds, text),
+        package=sources.package(),
         version=version("southwell"),
         seed=text.seed,
         blades=tuple(blade.name for blade in study.blades),

@@ -68,6 +68,16 @@ class Column:
     bundled: bool = True
     solves: bool = True
 
+    @property
+    def storable(self) -> bool:
+        """Whether its digest determines its answer: not for a code of another package or of unknown version."""
+        return self.bundled and bool(self.head.version or self.head.role == "table")
+
+    @property
+    def code(self) -> str:
+        """Name of the code."""
+        return self.head.code
+
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
         """Rows at all speeds that have a reference."""
         pairs = list(zip(speeds, core, strict=True))

@@ -16,11 +16,11 @@ from ...core.blade import Blade
 from ...references.protocol import sources
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
+from ...references.protocol.store import StoreError
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
 from . import error_budget, mechanism_columns
-from .appending import JournalError
 from .columns import Column, Rows, columns, failing
 from .mechanism_case import MechanismCase, Turning
 from .names import unique
@@ -175,7 +175,7 @@ def _answer(future: Future[Any]) -> Any:
     """The result of a task, or a failure if this package raised an error; only the cells of that task are lost."""
     try:
         return future.result()
-    except (CaseError, BrokenExecutor, JournalError):
+    except (CaseError, BrokenExecutor, StoreError):
         raise
     except Exception as error:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")

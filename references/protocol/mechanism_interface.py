@@ -25,7 +25,7 @@ class MechanismModes:
         steady: (k,) their steady values, m or rad.
         values: (m,) eigenvalues λ, 1/s, sorted by modulus: one of each conjugate pair, and the real ones.
         shapes: (m, k) motion of the coordinates in each mode, any scale.
-        seconds: wall time.
+        seconds: wall time; nan: not measured, as of an answer from the store.
     """
 
     coordinates: tuple[str, ...]

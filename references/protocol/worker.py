@@ -10,11 +10,14 @@ imports the code, checks its version and ``unsupported``, and writes one line pe
 
 import json
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from math import nan
 from typing import Any, TypeVar
 
 from ...core.blade import Blade
 from ...core.modes import Modes
-from . import boundary, registry, stored_answers
+from . import boundary, registry, sources, store
 from .boundary import NonsenseError
 from .child import Reply, failed, foreign_exception, serve
 from .interface import BladeAdapter, CodeError
@@ -65,7 +68,8 @@ def exchange(
 ) -> list[T | Failure]:
     """The answers to ``count`` questions, each validated by ``made(number, data)``, or failures in their place.
 
-    Answers that are in the store are taken from it; the process of the code is asked for the others.
+    Answers that are in the user's store are taken from it; the process of the code is asked for the others. Answers of codes
+    that are not part of this package or of unknown version are not stored, as no digest covers them; nor are failures.
 
     Args:
         module: reads the request in the process of the code.
@@ -76,10 +80,12 @@ def exchange(
         code: name or import path of the code.
         version: its version; empty if unknown.
     """
-    kept = stored_answers.reusable(code, version, limits)
-    keys = [stored_answers.key(module, request([k]), code, version) for k in range(count)] if kept else []
-    found = {k: _validated(made, k, _modes(stored_answers.get(kept, key))) for k, key in enumerate(keys) if kept}
-    out: dict[int, T | Failure] = {k: answer for k, answer in found.items() if not isinstance(answer, Failure)}
+    kept = store.opened() if limits.reuse and version and sources.bundled(code) else None
+    keys = [store.key(module, request([k]), code, version) for k in range(count)] if kept else []
+    out: dict[int, T | Failure] = {}
+    for k, key in enumerate(keys):
+        if kept and (answer := _stored(kept, key, made, k)):
+            out[k] = answer
     asked = [k for k in range(count) if k not in out]
     lines, ended = converse(module, request(asked), len(asked), limits) if asked else ([], NOTHING)
     for place, (k, line) in enumerate(zip(asked, lines, strict=False)):
@@ -88,17 +94,21 @@ def exchange(
         except NonsenseError as error:
             ended = Failure("nonsense", str(error))
             break
-        out[k] = boundary.failure(data) or _validated(made, k, _modes(data))
-        if kept and not isinstance(out[k], Failure):
-            stored_answers.put(kept, keys[k], code, line)
+        out[k] = answer = boundary.failure(data) or _validated(made, k, data.get("modes"))
+        if kept and not isinstance(answer, Failure):
+            with suppress(OSError):  # a full disk, or a damaged file
+                kept.put(keys[k], f"{code}, answers", line)
     return [out.get(k, ended) for k in range(count)]
 
 
 NOTHING = Failure("internal", "no question was asked")
 
 
-def _modes(reply: object) -> object:
-    return reply.get("modes") if isinstance(reply, dict) else None
+def _stored(kept: store.Store, key: str, made: Callable[[int, Any], T], number: int) -> T | None:
+    """The answer in the store, without the time that it took; None if there is none."""
+    with suppress(KeyError, ValueError, TypeError, AttributeError):
+        return replace(made(number, json.loads(kept.get(key)[0]).get("modes")), seconds=nan)  # type: ignore[type-var]
+    return None
 
 
 def _validated(made: Callable[[int, Any], T], number: int, data: Any) -> T | Failure:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade, clamped
-from ..protocol import stored_answers
+from ..protocol import store
 from . import hexahedra, identified
 from .curved import CurvedSolid
 from .materials import Orthotropic
@@ -107,9 +107,7 @@ def _stiffness(solid: CurvedSolid, stations: tuple[float, ...]) -> Array:
     """(k, 6, 6) section stiffness, interpolated between a few stations."""
     points = 0.5 * solid.length * (1.0 - np.cos(np.pi * np.arange(POINTS) / (POINTS - 1)))
     made_of = (solid, points.tolist(), hexahedra.version())
-    found = stored_answers.array(
-        f"{solid.name}, sections", __name__, made_of, lambda: identified.stiffness(solid, points, ACROSS)
-    ).reshape(POINTS, 36)
+    sections = store.array(f"{solid.name}, sections", made_of, lambda: identified.stiffness(solid, points, ACROSS))
     at = 2.0 * np.array(stations) / solid.length - 1.0
     nodes = np.vander(2.0 * points / solid.length - 1.0, POINTS)
-    return (np.vander(at, POINTS) @ np.linalg.solve(nodes, found)).reshape(-1, 6, 6)
+    return (np.vander(at, POINTS) @ np.linalg.solve(nodes, sections.reshape(POINTS, 36))).reshape(-1, 6, 6)

@@ -14,7 +14,7 @@ from .pytest_plugin import FIXTURE, PROPERTY, Chosen
 
 if TYPE_CHECKING:
     from ...cases.judge.results import Planned, Run
-    from ...cases.verify.journal import Journal
+    from ...cases.store.unfinished import Unfinished
 
 
 def _planned(session: pytest.Session) -> list[list[Any]]:
@@ -48,7 +48,7 @@ class PlanSender:
 class Report:
     """Collects the results of tests and writes the report at the end of the session.
 
-    Until then the folder has a journal, like that of ``southwell verify``.
+    Until then the folder has the file of an unfinished run, as with ``southwell verify``.
     """
 
     def __init__(self, folder: Path, config: pytest.Config) -> None:
@@ -57,7 +57,7 @@ class Report:
         self.planned: list[list[Any]] = []
         self.unfinished = ""
         self.open = ExitStack()
-        self.journal: Journal | None = None
+        self.file: Unfinished | None = None
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Record the selected tests, if this process runs them."""
@@ -81,11 +81,12 @@ class Report:
     def pytest_sessionfinish(self) -> None:
         """Write results.jsonl and report.md.
 
-        A stopped run keeps its journal instead of results.jsonl; its report does not replace that of a complete run.
+        A stopped run keeps its file instead of results.jsonl; its report does not replace that of a complete run.
         """
-        if self.journal is None:
+        if self.file is None:
             return
         from ...cases.judge import results
+        from ...cases.store import codec
         from ..verification import report as matrix_report
 
         run = self._run()
@@ -98,10 +99,10 @@ class Report:
                 if not run.unfinished or not path.exists():
                     matrix_report.write(run, self.folder)
                 if not run.unfinished:
-                    self.journal.remove()
+                    self.file.remove()
                 else:
-                    self.journal.begin(run)
-                    self.journal.put("pytest", (list(run.cells), list(run.levels)))
+                    self.file.begin(run)
+                    self.file.put("pytest", True, codec.encode((list(run.cells), list(run.levels))))
             except OSError as error:
                 raise self._unwritable(error) from error
 
@@ -113,18 +114,18 @@ class Report:
             terminalreporter.write_line(f"southwell: {self.folder / 'report.md'}")
 
     def _begin(self) -> None:
-        """Lock the folder and begin a journal, which marks the run as unfinished."""
-        if self.journal is not None:
+        """Lock the folder and begin the file of an unfinished run, which marks the run as unfinished."""
+        if self.file is not None:
             return
         from ...cases.input.errors import CaseError
         from ...cases.judge.results import Run
-        from ...cases.verify import journal
+        from ...cases.store import unfinished
 
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            self.open.enter_context(journal.locked(self.folder))
-            self.journal = self.open.enter_context(journal.Journal(self.folder))
-            self.journal.begin(Run((), command=self._command()))
+            self.open.enter_context(unfinished.locked(self.folder))
+            self.file = self.open.enter_context(unfinished.Unfinished(self.folder))
+            self.file.begin(Run((), command=self._command()))
         except CaseError as error:
             raise pytest.UsageError(f"--southwell-report: {error}") from error
         except OSError as error:

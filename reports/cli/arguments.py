@@ -13,7 +13,7 @@ from ...cases.input.errors import CaseError
 from ...cases.judge import results
 from ...cases.judge.results import Run
 from ...cases.run.cluster import SLURM
-from ...cases.verify import journal
+from ...cases.store import unfinished
 from ..shared.writing import writable
 from .errors import IncompleteError, UsageError
 
@@ -59,7 +59,7 @@ def writing(out: Path) -> Iterator[None]:
     with ExitStack() as stack:
         with writable(f"--out {out}"):
             out.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(journal.locked(out))
+            stack.enter_context(unfinished.locked(out))
         yield
 
 
@@ -85,9 +85,9 @@ def found(path: Path) -> Run:
     """
     file = path
     if os.path.isdir(path):
-        file = path / journal.NAME if (path / journal.NAME).exists() else path / RESULTS
+        file = path / unfinished.NAME if (path / unfinished.NAME).exists() else path / RESULTS
     try:
-        run = journal.read(file) if file.name == journal.NAME else results.read(file)
+        run = unfinished.read(file) if file.name == unfinished.NAME else results.read(file)
     except OSError as error:
         message = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
         raise CaseError(f"{file}: {message}") from error

@@ -61,6 +61,6 @@ def prune(*, days: Positive = 30.0) -> int:
 
 def _opened() -> store.Store:
     try:
-        return store.Store(store.path())
+        return store.users()
     except OSError as error:
         raise UsageError(f"store of answers: {error}: set SOUTHWELL_CACHE to another folder") from error

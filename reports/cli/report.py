@@ -4,7 +4,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 
 from ...cases.judge.results import Run
-from ...cases.verify import journal
+from ...cases.store import unfinished
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import terminal
@@ -58,7 +58,7 @@ def show(run: Run, folder: Path, executor: Executor | None = None) -> Path | Non
     report = None if keep else matrix_report.write(run, folder, executor)
     show_tables(run)
     kept = f"{folder / RESULTS}: of an earlier run, unchanged"
-    message = kept if keep else f"{report}, {folder / (journal.NAME if run.unfinished else RESULTS)}"
+    message = kept if keep else f"{report}, {folder / (unfinished.NAME if run.unfinished else RESULTS)}"
     output().print(message, markup=False, soft_wrap=True)
     return report
 

@@ -10,13 +10,13 @@ from msgspec import UNSET
 
 from ...cases.run.executors import executor
 from ...cases.study import parquet
+from ...cases.study.appending import JournalError
 from ...cases.study.journal import StudyJournal, read
 from ...cases.study.plan import Header, header
 from ...cases.study.run import run
 from ...cases.study.schema import Study
 from ...cases.study.schema import read as read_study
 from ...cases.study.statistics import Outcome, outcome, spreads
-from ...cases.verify.appending import JournalError
 from ..campbell import tables
 from ..campbell.tables import Sheet
 from ..shared import not_used

@@ -18,9 +18,9 @@ from ...cases.input.schema import Case
 from ...cases.judge.results import Run, Setting
 from ...cases.run.executors import executor
 from ...cases.run.software import Software
+from ...cases.store.unfinished import Unfinished
 from ...cases.verify import matrix, user_results
 from ...cases.verify import names as names_of
-from ...cases.verify.journal import Journal
 from ...cases.verify.settings import NOT_USED, settings
 from ...references.protocol import launch, registry, store
 from ...references.protocol.description import describe
@@ -156,7 +156,7 @@ def command(
             started.callback(shutil.rmtree, out / SCRATCH, ignore_errors=True)  # after the processes have ended
             pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
             with writable(f"--out {out}"):
-                opened = Journal(out)
+                opened = Unfinished(out)
             with opened as kept:
                 run, stopped = solve(
                     chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
@@ -191,7 +191,7 @@ def _store(fresh: bool) -> Store | None:
     if os.environ.get(store.FRESH):
         return None
     try:
-        return Store(store.path())
+        return store.users()
     except OSError as error:
         print(f"southwell: the store of answers is not used: {said(error)}", file=sys.stderr)
         return None

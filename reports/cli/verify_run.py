@@ -1,4 +1,4 @@
-"""A run of ``southwell verify``: every answer goes to the journal, and what was computed is kept if the run stops."""
+"""A run of ``southwell verify``: every answer is stored at once, and what was computed is kept if the run stops."""
 
 import shutil
 import sys
@@ -14,12 +14,12 @@ from ...cases.faults import table
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Control, Planned, Run
-from ...cases.verify import journal, matrix
-from ...cases.verify.cached import Cached
-from ...cases.verify.journal import Journal, Remembering
+from ...cases.store import unfinished
+from ...cases.store.stored import Stored
+from ...cases.store.unfinished import Unfinished
+from ...cases.verify import matrix
 from ...cases.verify.mechanism_case import MechanismCase
 from ...cases.verify.user_results import UserResults
-from ...references.protocol import sources
 from ...references.protocol.description import Description
 from ...references.protocol.store import Store
 from ..shared import console
@@ -43,7 +43,7 @@ def solve(
     codes: Sequence[Description],
     files: Sequence[UserResults],
     about: Run,
-    kept: Journal,
+    kept: Unfinished,
     out: Path,
     pool: Executor,
     stop: Callable[[], None],
@@ -53,18 +53,16 @@ def solve(
 ) -> tuple[Run, Stopped | None]:
     """The complete run, written to ``out``; or the part that was computed, and why it stopped.
 
-    Answers go to the journal at once. ``stop`` ends the workers of ``pool`` if the run stops; otherwise they are kept, for the
-    figures. ``seeded`` are the faults of each task. That a fault is detected is taken from the store only if no source of this
-    package and no version of a code has changed.
+    Answers go to ``kept`` at once, and to the user's store, ``kept_before``, if it may be used. ``stop`` ends the workers of
+    ``pool`` if the run stops; otherwise they are kept, for the figures. ``seeded`` are the faults of each task. That a fault is
+    detected is taken from the store only if no version of a code has changed.
     """
     scratch = out / SCRATCH
     shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
     watch = console.Watch()
     complete = False
-    fresh = Remembering(pool, kept)
-    state = (sources.package(), *(f"{name} {version}" for name, version in sorted(about.versions.items())))
-    cached = [Cached(pool, kept_before, also) for also in ((), state)] if kept_before else []
-    executor, trials = (Remembering(one, kept) for one in cached) if cached else (fresh, fresh)
+    state = tuple(f"{name} {version}" for name, version in sorted(about.versions.items()))
+    executor, trials = (Stored(pool, kept_before, kept, also) for also in ((), state))
     tried: list[Future[list[Control]]] = []
 
     def begin(plan: tuple[Planned, ...]) -> None:
@@ -83,8 +81,8 @@ def solve(
             return replace(run, unfinished=missing), Stopped(missing, INCOMPLETE)
         results.write(out / RESULTS, run)
         complete = True
-        if any(one.taken for one in cached):
-            print(f"southwell: {_taken(cached)}", file=sys.stderr)
+        if executor.taken or trials.taken:
+            print(f"southwell: {_taken((executor, trials))}", file=sys.stderr)
         return run, None
     except KeyboardInterrupt:
         stopped = Stopped("interrupted", INTERRUPTED)
@@ -98,14 +96,14 @@ def solve(
     finally:
         if not complete:
             stop()
-    return replace(journal.read(kept.path), unfinished=stopped.what), stopped
+    return replace(unfinished.read(kept.path), unfinished=stopped.what), stopped
 
 
-def _taken(cached: Sequence[Cached]) -> str:
-    times = [when for one in cached for when in one.taken]
+def _taken(stored: Sequence[Stored]) -> str:
+    times = [when for one in stored for when in one.taken]
     first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(times))) for when in (min, max))
     return (
-        f"{len(times)} of {sum(one.asked for one in cached)} answers are from the store, computed between {first} and {last}; "
+        f"{len(times)} of {sum(one.asked for one in stored)} answers are from the store, computed between {first} and {last}; "
         "--fresh computes them again"
     )
 

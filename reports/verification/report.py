@@ -10,7 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from ...cases.input import atomic
 from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.run.executors import Serial
-from ...cases.verify.cached import remembering
+from ...cases.store.stored import remembering
 from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table

@@ -6,9 +6,10 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import grimp
 import pytest
 
-from southwell.references.protocol import registry, sources
+from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, REFERENCE_LINE, BladeAdapter
 
 from ..support.beams import PARK
@@ -21,6 +22,14 @@ TOOLS = {"compiled", "space", "condense"}
 """Folders of core with rigid-body motions and condensation."""
 
 
+IMPORTS = grimp.build_graph("southwell", cache_dir=None)
+
+
+def imports(module: str) -> set[str]:
+    """Modules of the package that a module imports."""
+    return IMPORTS.find_modules_directly_imported_by(module)
+
+
 def modules(name: str) -> set[str]:
     """Modules of the package, except those of the protocol and of descriptions of mechanisms, that an adapter imports."""
     found: set[str] = set()
@@ -30,7 +39,7 @@ def modules(name: str) -> set[str]:
         todo = {
             other
             for module in todo
-            for other in sources.imported(module)
+            for other in imports(module)
             if not other.startswith(("southwell.references.protocol", "southwell.core"))
         } - found
     return found
@@ -38,7 +47,7 @@ def modules(name: str) -> set[str]:
 
 def imported_of_core(name: str) -> set[str]:
     """Parts of core that the modules of an adapter import: names of its modules and folders."""
-    found = {other for module in modules(name) for other in sources.imported(module)}
+    found = {other for module in modules(name) for other in imports(module)}
     return {other.split(".")[2] for other in found if other.startswith("southwell.core.")}
 
 
@@ -57,7 +66,7 @@ def test_the_reference_line_is_declared_by_the_codes_that_use_it(name: str) -> N
 
 @pytest.mark.parametrize("name", BLADE_CODES)
 def test_the_adapters_eigensolver_is_declared_by_the_codes_that_use_it(name: str) -> None:
-    imported = {other for module in modules(name) for other in sources.imported(module)}
+    imported = {other for module in modules(name) for other in imports(module)}
     own = "southwell.references.protocol.quadratic" in imported
     engine = registry.code(name).independence
     assert (engine.eigensolver == "the adapters' own") == own or engine.eigensolver == engine.engine

@@ -1,13 +1,17 @@
 """A verification that is killed and run again: how, and what it must leave."""
 
-import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import closing, suppress
 from pathlib import Path
 from time import monotonic, sleep
+
+from southwell.cases.judge import results  # noqa: F401 # a type of answers
+from southwell.cases.store import codec
 
 SUPPORT = Path(__file__).parent
 
@@ -112,19 +116,23 @@ def asked(folder: Path) -> list[str]:
     return path.read_text().splitlines() if path.exists() else []
 
 
-def stored(journal: Path) -> list[str]:
-    """Code and blade of each of these codes' columns that a journal holds."""
-    found = []
-    for line in journal.read_bytes().split(b"\n")[:-1] if journal.exists() else []:
-        value = json.loads(line).get("value")
-        if isinstance(value, list) and value[0] == "tuple" and value[1][1:] and value[1][1][0] == "Cell":
-            (
-                _,
-                case,
-                *_,
-            ) = value[1][1]
-            found.append(f"{value[1][1][5]} {case}")
-    return [name for name in found if name.startswith(("first", "second"))]
+def answers(path: Path) -> int:
+    """Number of answers in the file of an unfinished run."""
+    return len(_rows(path, "label != 'run'"))
+
+
+def stored(path: Path) -> list[str]:
+    """Code and blade of each of these codes' columns in the file of an unfinished run."""
+    first = [cells[0] for (value,) in _rows(path, "label = 'rows'") if (cells := codec.decode(value)[0])]
+    return [f"{cell.code} {cell.case}" for cell in first if cell.code.startswith(("first", "second"))]
+
+
+def _rows(path: Path, where: str) -> list[tuple[bytes]]:
+    if not path.exists():
+        return []
+    with closing(sqlite3.connect(path, timeout=20)) as base, suppress(sqlite3.OperationalError):  # no table yet
+        return base.execute(f"select value from answers where {where} order by computed").fetchall()
+    return []
 
 
 def files(folder: Path) -> Sequence[str]:

@@ -12,7 +12,8 @@ from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.regression import gate, history
 from southwell.cases.regression.gate import compare
-from southwell.cases.verify import journal
+from southwell.cases.store import codec
+from southwell.cases.store.unfinished import Unfinished
 from southwell.reports.ci import gate_text, junit
 
 from ...reports.cli.test_cli import southwell
@@ -286,13 +287,13 @@ def test_an_incomplete_run_does_not_pass(
     assert "Incomplete: " in (tmp_path / "site" / "index.html").read_text()
 
 
-def test_a_folder_with_a_journal_has_no_finished_run(
+def test_a_folder_with_an_unfinished_run_has_no_finished_one(
     folders, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """An earlier complete run lies in the folder, and a later one was killed in it."""
-    with journal.Journal(tmp_path / "before") as one:
-        one.begin(BEFORE)
-        one.put("x", (list(BEFORE.cells), []))
+    with Unfinished(tmp_path / "before") as file:
+        file.begin(BEFORE)
+        file.put("x", True, codec.encode((list(BEFORE.cells), [])))
     status, out, _ = southwell(folders("gate {0}/before"), capsys)
     assert (status, out.splitlines()[0]) == (3, "Incomplete: the run was stopped before its results were written.")
     earlier = (tmp_path / "before" / "results.jsonl").read_bytes()

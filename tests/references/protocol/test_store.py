@@ -13,7 +13,7 @@ from southwell.references.protocol.store import Store
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    return tmp_path / "cache" / store.NAME
+    return tmp_path / store.NAME
 
 
 def test_several_writers_lose_nothing(file: Path) -> None:
@@ -30,7 +30,7 @@ def test_several_writers_lose_nothing(file: Path) -> None:
 
 def test_a_new_file_is_opened_by_many_at_once(tmp_path: Path) -> None:
     for n in range(20):
-        new = tmp_path / f"cache{n}" / store.NAME
+        new = tmp_path / f"{n}.sqlite"
         with ThreadPoolExecutor(8) as pool:
             list(pool.map(lambda _, new=new: Store(new).close(), range(8)))
         assert Store(new).kept() == []
@@ -57,16 +57,36 @@ def test_prune_removes_what_is_old(file: Path) -> None:
     assert kept.kept() == []
 
 
+def test_a_file_that_has_grown_too_large_loses_its_older_half(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = Store(file)
+    for k in range(8):
+        kept.put(str(k), "x", b"0" * 10_000)
+        kept.base.execute("update answers set computed = ? where key = ?", (float(k), str(k)))
+    kept.close()
+    assert Store(file).kept()[0].count == 8
+    monkeypatch.setattr(store, "MAX_BYTES", 50_000)
+    (left,) = Store(file).kept()
+    assert (left.count, left.first) == (4, 4.0)
+
+
+def test_an_answer_that_cannot_be_written_is_an_error(file: Path) -> None:
+    kept = Store(file)
+    kept.base.execute("pragma max_page_count = 4")
+    with pytest.raises(store.StoreError, match="full"):
+        kept.put("a", "x", b"0" * 100_000)
+    assert kept.kept() == []
+
+
 @pytest.mark.skipif(os.name == "nt", reason="POSIX modes")
-def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path) -> None:
+def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "open").mkdir()
     (tmp_path / "open").chmod(0o777)
+    monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "open"))
     with pytest.raises(OSError, match="only this user"):
-        Store(tmp_path / "open" / store.NAME)
+        store.users()
 
 
 def test_a_file_that_is_no_store(file: Path) -> None:
-    file.parent.mkdir(mode=0o700)
     file.write_text("not a database, " * 100)
     with pytest.raises(OSError, match="not a database"):
         Store(file)

@@ -17,7 +17,9 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.judge import results
-from southwell.cases.verify import journal, matrix
+from southwell.cases.judge.results import Cell
+from southwell.cases.store import unfinished
+from southwell.cases.verify import matrix
 from southwell.core.solve import modes
 from southwell.references.protocol.registry import names
 from southwell.reports.cli import app as cli
@@ -253,7 +255,7 @@ def test_a_code_that_is_absent_is_not_an_error(beam: Path, tmp_path: Path, capsy
 
 
 def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
-    """A verification that has finished some cells and now waits for codes that hang; and its journal."""
+    """A verification that has finished some cells and now waits for codes that hang; and the file of its answers."""
     out = mark / "out"
     beam.write_text(BEAM + "[variants.a]\n[variants.b]\n[variants.c]\n[variants.d]\n")  # more to do than hands
     command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
@@ -268,14 +270,19 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
         start_new_session=True,
         preexec_fn=heeding,
     )
-    results_file = out / journal.NAME
+    results_file = out / unfinished.NAME
     waited = time.monotonic() + 120
-    while not (results_file.exists() and b'"exact-beam"' in results_file.read_bytes().partition(b'"answer"')[2]):
+    while not any(cell.code == "exact-beam" for cell in kept_cells(results_file)):
         assert child.poll() is None
         assert time.monotonic() < waited
         time.sleep(0.1)
     assert len(running(mark)) > 2
     return child, results_file
+
+
+def kept_cells(file: Path) -> tuple[Cell, ...]:
+    """The cells in the file of an unfinished run, as soon as it has been begun."""
+    return unfinished.read(file).cells if file.exists() else ()
 
 
 def heeding() -> None:
@@ -313,7 +320,7 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert time.monotonic() - began < 30  # the hanging code's own limit is 300 s
     assert child.returncode == 130
     assert "Traceback" not in err
-    kept = journal.read(results_file)
+    kept = unfinished.read(results_file)
     assert f"southwell: interrupted: {len(kept.cells)} cells are kept" in err
     assert not (results_file.parent / "results.jsonl").exists()
     assert len(kept.cells) >= 4

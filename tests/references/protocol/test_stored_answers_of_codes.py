@@ -1,6 +1,7 @@
 """Answers of codes taken from the store: every part of the key counts, and only what is missing is asked for."""
 
 import json
+import platform
 import sqlite3
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,7 +13,7 @@ import pytest
 
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import STATIONS, Modes
-from southwell.references.protocol import sources, store, stored_answers, worker
+from southwell.references.protocol import sources, store, worker
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.wire import encode
 from southwell.references.protocol.worker import Answer, answers
@@ -43,7 +44,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
 
 def _modes(omega: float, elements: int, count: int) -> Modes:
     shapes = np.full((count, len(STATIONS), 4), 1.0 / 3.0 + 2.0j / 7.0)
-    return Modes(omega, omega + np.arange(1.0, count + 1), shapes, elements)
+    return Modes(omega, omega + np.arange(1.0, count + 1), shapes, elements, seconds=0.25)
 
 
 def ask(**changed: Any) -> list[Answer]:
@@ -87,8 +88,8 @@ def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]
 @pytest.mark.parametrize(
     "change",
     [
-        lambda m: m.setattr(sources, "adapter", lambda code: "another source"),
-        lambda m: m.setattr(store, "machine", lambda: ("another machine",)),
+        lambda m: m.setattr(sources, "package", lambda: "another source"),
+        lambda m: m.setattr(platform, "machine", lambda: "another machine"),
         lambda m: m.setattr(worker, "__name__", "another module"),
     ],
 )
@@ -136,16 +137,23 @@ def test_a_damaged_answer_is_computed_again(asked: Asked, tmp_path: Path) -> Non
         np.testing.assert_array_equal(a.frequencies, b.frequencies)
 
 
+def test_the_time_of_a_stored_answer_is_not_reported_as_measured(asked: Asked) -> None:
+    first, again = ask(runs=RUNS[:1]), ask(runs=RUNS[:1])
+    assert isinstance(first[0], Modes)
+    assert isinstance(again[0], Modes)
+    assert (first[0].seconds, np.isnan(again[0].seconds)) == (0.25, True)
+
+
 def test_an_array_is_made_once_for_each_question(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[float] = []
 
-    def array(x: float, module: str = stored_answers.__name__) -> Any:
-        return stored_answers.array("array", module, (x,), lambda: made.append(x) or np.array([[x, 1.0 / 3.0]]))
+    def array(x: float, label: str = "array") -> Any:
+        return store.array(label, (x,), lambda: made.append(x) or np.array([[x, 1.0 / 3.0]]))
 
     for _ in range(2):
         np.testing.assert_array_equal(array(2.0), [[2.0, 1.0 / 3.0]])
     array(np.nextafter(2.0, 3.0))
-    array(2.0, worker.__name__)
+    array(2.0, "another")
     assert made == [2.0, np.nextafter(2.0, 3.0), 2.0]
     monkeypatch.setenv(store.FRESH, "1")
     array(2.0)

@@ -1,12 +1,12 @@
 """A run that is killed continues: nothing is asked twice, nothing is lost, nothing is left behind."""
 
-import json
 import os
 import resource
 import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from time import monotonic
@@ -14,13 +14,14 @@ from time import monotonic
 import pytest
 
 from southwell.cases.judge import results
-from southwell.cases.verify import journal
+from southwell.cases.store import codec, unfinished
+from southwell.cases.store.unfinished import Unfinished
 
 from ...support import killing
 
 pytestmark = pytest.mark.slow
 
-JOURNAL, RESULTS = journal.NAME, "results.jsonl"
+PARTIAL, RESULTS = unfinished.NAME, "results.jsonl"
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +40,6 @@ def same(folder: Path, undisturbed: Path) -> None:
     assert killing.running(folder) == []
 
 
-def answers(path: Path) -> int:
-    return path.read_bytes().count(b'"kind":"answer"') if path.exists() else 0
-
-
 def reported(folder: Path, command: str) -> tuple[int, str]:
     """Status and first line of a command on the folder of results, in a process of its own."""
     line = [sys.executable, "-m", "southwell", *command.split(), "out"]
@@ -55,8 +52,8 @@ def reported(folder: Path, command: str) -> tuple[int, str]:
     "count", [pytest.param(1, marks=pytest.mark.nightly), 4, pytest.param(8, marks=pytest.mark.nightly)]
 )
 def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
-    path = tmp_path / "out" / JOURNAL
-    assert killing.kill(killing.start(tmp_path), lambda: answers(path) >= count)
+    path = tmp_path / "out" / PARTIAL
+    assert killing.kill(killing.start(tmp_path), lambda: killing.answers(path) >= count)
     kept, before = killing.stored(path), killing.asked(tmp_path)
     assert not (tmp_path / "out" / RESULTS).exists()
     if count == 8:
@@ -84,7 +81,7 @@ def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Pat
 
 @pytest.mark.nightly
 def test_a_changed_case_or_version_takes_no_earlier_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "out" / JOURNAL
+    path = tmp_path / "out" / PARTIAL
     assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)
     kept = killing.stored(path)
     monkeypatch.setattr(killing, "CASE", killing.CASE.replace("2.5", "2.6").replace("E = 7e10", "E = 7.1e10"))
@@ -105,7 +102,7 @@ def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(
     (out / RESULTS).write_bytes(earlier)
     first = killing.start(tmp_path)
     until = monotonic() + 120
-    while not (out / JOURNAL).exists():
+    while not (out / PARTIAL).exists():
         assert monotonic() < until
     status, shown, err = killing.ended(killing.start(tmp_path))
     assert (status, shown, err.count("\n")) == (2, "", 1)
@@ -116,10 +113,10 @@ def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(
 
 
 def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: Path) -> None:
-    """A limit on the size of files stands for the disk: the journal cannot grow, and no half line is left in it."""
+    """A limit on the size of files stands for the disk: no answer can be written, and the next run continues."""
 
     def limited() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (12_000, resource.RLIM_INFINITY))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, resource.RLIM_INFINITY))
 
     killing.write(tmp_path)
     child = subprocess.Popen(
@@ -129,27 +126,59 @@ def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: P
     status, _, err = killing.ended(child)
     assert status == 3
     assert "Traceback" not in err
-    assert f"{JOURNAL}: File too large: " in err.splitlines()[-1]
-    assert (tmp_path / "out" / JOURNAL).read_bytes().endswith(b"}\n")
+    assert f"{PARTIAL}: " in err.splitlines()[-1]
+    kept, before = killing.stored(tmp_path / "out" / PARTIAL), killing.asked(tmp_path)
     assert killing.ended(killing.start(tmp_path))[0] == 0
+    assert not set(killing.asked(tmp_path)[len(before) :]) & set(kept)
     same(tmp_path, undisturbed)
 
 
-@pytest.mark.parametrize("damage", [b'{"kind":"answer","key":"x', b"\0\0\0\n", b'{"kind":"answer"}\n', b"[]\n"])
-def test_a_journal_s_damaged_lines_are_asked_again(damage: bytes, tmp_path: Path) -> None:
-    with journal.Journal(tmp_path) as one:
-        one.begin(results.Run((), command="a"))
-        one.put("first", ([], []))
-    whole = (tmp_path / JOURNAL).read_bytes()
-    (tmp_path / JOURNAL).write_bytes(whole + damage)
-    with journal.Journal(tmp_path) as one:
-        one.begin(results.Run((), command="a"))
-        assert one.get("first") == ([], [])
+def put(file: Unfinished, key: str, *cells: results.Cell) -> None:
+    file.put(key, True, codec.encode((list(cells), [])))
+
+
+CELL = results.Cell("case", 1.0, 1, "flapwise", "first", "1.0", "code", 1.0, 1.0, 0.0, 0.0, 1e-3, "pass", ordinal=1)
+PLAN = tuple(results.Planned("case", code, 1, 1) for code in ("first", "second", "third"))
+
+
+def test_a_damaged_answer_is_asked_again(tmp_path: Path) -> None:
+    with Unfinished(tmp_path) as file:
+        file.begin(results.Run((), command="a", plan=PLAN))
+        put(file, "first", CELL)
+        put(file, "second", replace(CELL, code="second"))
+        file.store.base.execute("update answers set value = substr(value, 2) where key = 'first'")
         with pytest.raises(KeyError):
-            one.get("x")
-        one.put("second", ([], []))
-    assert [json.loads(line)["kind"] for line in (tmp_path / JOURNAL).read_bytes().splitlines()[-1:]] == ["answer"]
-    assert journal.read(tmp_path / JOURNAL).unfinished
+            file.get("first")
+        assert codec.decode(file.get("second")) == ([replace(CELL, code="second")], [])
+    run = unfinished.read(tmp_path / PARTIAL)
+    assert [cell.code for cell in run.cells] == ["second"]
+    assert "cells of case × first and 1 more are missing, of 3 planned" in run.unfinished
+
+
+def test_an_answer_belongs_to_the_runs_that_use_it(tmp_path: Path) -> None:
+    """One of an earlier plan is shown only if the later run has taken it; rows are in the order of the plan."""
+    with Unfinished(tmp_path) as file:
+        file.begin(results.Run((), command="a", plan=PLAN))
+        for code in ("third", "second", "first"):
+            put(file, code, replace(CELL, code=code))
+    assert [cell.code for cell in unfinished.read(tmp_path / PARTIAL).cells] == ["first", "second", "third"]
+    with Unfinished(tmp_path) as file:
+        file.begin(results.Run((), command="b", plan=PLAN))
+        file.get("third")
+        file.get("second")
+    run = unfinished.read(tmp_path / PARTIAL)
+    assert ([cell.code for cell in run.cells], run.command) == (["second", "third"], "b")
+    with Unfinished(tmp_path) as file:
+        file.begin(results.Run((), command="b", plan=PLAN))
+    assert len(unfinished.read(tmp_path / PARTIAL).cells) == 2
+
+
+def test_a_run_that_was_killed_before_its_plan_has_no_answer(tmp_path: Path) -> None:
+    Unfinished(tmp_path).close()
+    assert unfinished.read(tmp_path / PARTIAL).unfinished == "the run was stopped before its first answer"
+    (tmp_path / PARTIAL).write_bytes(b"not a database, " * 100)
+    with pytest.raises(OSError, match="not a database"):
+        unfinished.read(tmp_path / PARTIAL)
 
 
 @pytest.mark.nightly
@@ -160,7 +189,7 @@ def test_killed_at_a_hundred_random_moments(tmp_path: Path, undisturbed: Path) -
     began = monotonic()
     assert killing.ended(killing.start(tmp_path))[0] == 0
     longest = monotonic() - began
-    path = tmp_path / "out" / JOURNAL
+    path = tmp_path / "out" / PARTIAL
     while kills < int(os.environ.get("SOUTHWELL_KILLS", "100")):
         until = monotonic() + random.uniform(0.2, 1.0) * longest
         kept, before = killing.stored(path), len(killing.asked(tmp_path))

@@ -15,8 +15,8 @@ import pytest
 
 from southwell.cases.judge.results import Cell, Control
 from southwell.cases.run.executors import Serial
-from southwell.cases.verify import cached
-from southwell.cases.verify.cached import Cached
+from southwell.cases.store import stored
+from southwell.cases.store.stored import Stored
 from southwell.cases.verify.cells import Head, failed
 from southwell.cases.verify.columns import Column
 from southwell.core.blade import uniform_blade
@@ -43,14 +43,14 @@ def lost(head: Head, core: Any) -> tuple[list[Cell], list[Any]]:
 @pytest.fixture
 def kept(tmp_path: Path) -> Store:
     CALLS.clear()
-    return Store(tmp_path / "cache" / store.NAME)
+    return Store(tmp_path / store.NAME)
 
 
 def test_an_answer_is_computed_once(kept: Store) -> None:
-    first = Cached(Serial(), kept)
+    first = Stored(Serial(), kept)
     assert [first.submit(double, x).result() for x in (1.0, 2.0, 1.0)] == [2.0, 4.0, 2.0]
     assert CALLS == [1.0, 2.0]
-    again = Cached(Serial(), kept)
+    again = Stored(Serial(), kept)
     assert again.submit(double, 2.0).result() == 4.0
     assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
 
@@ -62,7 +62,7 @@ def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
 
     head = Head("blade", "absent", "", "code", 1e-3)
     column = Column("absent", ALL_EFFECTS, head, partial(lost, head), solves=False)
-    one = Cached(Refusing(), kept)
+    one = Stored(Refusing(), kept)
     cells, _ = one.submit(column, [1.0], [None]).result()
     assert (len(cells), CALLS, one.asked) == (1, ["absent"], 0)
     with pytest.raises(AssertionError, match="a task was started"):
@@ -71,7 +71,7 @@ def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
 
 def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: Store) -> None:
     for also in (("code 1.0",), ("code 1.1",), ("code 1.0",)):
-        Cached(Serial(), kept, also).submit(double, 2.0)
+        Stored(Serial(), kept, also=also).submit(double, 2.0)
     assert CALLS == [2.0, 2.0]
 
 
@@ -82,7 +82,7 @@ def trial(detected_by: tuple[str, ...]) -> list[Control]:
 
 def test_a_fault_that_was_not_detected_is_tried_again(kept: Store) -> None:
     for detected_by in ((), (), ("beam: fail",), ("beam: fail",)):
-        assert Cached(Serial(), kept).submit(trial, detected_by).result()[0].detected_by == detected_by
+        assert Stored(Serial(), kept).submit(trial, detected_by).result()[0].detected_by == detected_by
     assert CALLS == [(), (), ("beam: fail",)]
 
 
@@ -96,45 +96,45 @@ def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Question, speed, version, effects, sources of this package, machine, and the kernel that is asked for."""
     head = column().head
     keys = {
-        cached.question(column(), [0.0]),
-        cached.question(column(), [1.0]),
-        cached.question(column(head=replace(head, version="1.1")), [0.0]),
-        cached.question(column(head=replace(head, code="other")), [0.0]),
-        cached.question(column(adapter="another source"), [0.0]),
-        cached.question(column(effects=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
-        cached.question(double, 1.0),
-        cached.question(double, 2.0),
+        stored.question(column(), [0.0]),
+        stored.question(column(), [1.0]),
+        stored.question(column(head=replace(head, version="1.1")), [0.0]),
+        stored.question(column(head=replace(head, code="other")), [0.0]),
+        stored.question(column(adapter="another source"), [0.0]),
+        stored.question(column(effects=replace(ALL_EFFECTS, coriolis=False)), [0.0]),
+        stored.question(double, 1.0),
+        stored.question(double, 2.0),
     }
     assert len(keys) == 8
     for change in (
         lambda m: m.setattr(platform, "machine", lambda: "another"),
         lambda m: m.setenv("OPENBLAS_CORETYPE", "another"),
-        lambda m: m.setattr(sources, "digest", lambda modules: "other sources"),
+        lambda m: m.setattr(sources, "package", lambda: "other sources"),
     ):
         with monkeypatch.context() as m:
             change(m)
-            assert cached.question(double, 1.0) not in keys
-    assert cached.question(double, 1.0) in keys
+            assert stored.question(double, 1.0) not in keys
+    assert stored.question(double, 1.0) in keys
 
 
 def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
-    assert cached.storable(column())
-    assert not cached.storable(column(bundled=False))
-    assert not cached.storable(column(head=replace(column().head, version="")))
+    assert column().storable
+    assert not column(bundled=False).storable
+    assert not column(head=replace(column().head, version="")).storable
 
 
 def test_failures_are_not_kept(kept: Store) -> None:
     for _ in range(2):
-        Cached(Serial(), kept).submit(column(), [], []).result()
+        Stored(Serial(), kept).submit(column(), [], []).result()
     assert CALLS == ["code", "code"]
     assert kept.kept() == []
 
 
 def test_a_damaged_answer_is_computed_again(kept: Store, tmp_path: Path) -> None:
-    Cached(Serial(), kept).submit(double, 1.0).result()
-    sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None).execute("update answers set value = '3.0'")
+    Stored(Serial(), kept).submit(double, 1.0).result()
+    sqlite3.connect(tmp_path / store.NAME, isolation_level=None).execute("update answers set value = '3.0'")
     assert len(kept.damaged()) == 1
-    assert Cached(Serial(), kept).submit(double, 1.0).result() == 2.0
+    assert Stored(Serial(), kept).submit(double, 1.0).result() == 2.0
     assert CALLS == [1.0, 1.0]
     assert kept.damaged() == []
 
@@ -162,4 +162,4 @@ def test_the_question_of_another_blade_is_another() -> None:
     blades = [
         uniform_blade("a", 6.0, 0.3, EA=1e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=m) for m in (1.2, np.nextafter(1.2, 2.0))
     ]
-    assert cached.question(partial(double, blades[0])) != cached.question(partial(double, blades[1]))
+    assert stored.question(partial(double, blades[0])) != stored.question(partial(double, blades[1]))
