@@ -190,7 +190,7 @@ def test_the_file_of_a_changed_study_is_refused(before: str, after: str, tmp_pat
 def test_the_file_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     one = study(tmp_path)
     solved(one, tmp_path / "out.jsonl", answer=stub)
-    monkeypatch.setattr(sources, "digest", lambda modules: "other")
+    monkeypatch.setattr(sources, "package", lambda: "other")
     with pytest.raises(CaseError, match="another version of Southwell or its libraries"):
         solved(one, tmp_path / "out.jsonl", answer=stub)
 
