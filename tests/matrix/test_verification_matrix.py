@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from southwell.cases.faults.table import BY_NAME, FAST
 from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
@@ -123,3 +124,14 @@ def test_the_surrogate_rises_as_the_papers_blade_does(run: Run) -> None:
     assert rest / (2 * np.pi) == pytest.approx(1.06, abs=0.01)
     assert twenty / rest - 1.0 == pytest.approx(0.08, abs=0.005)
     assert thirty / rest - 1.0 == pytest.approx(0.165, abs=0.01)
+
+
+@needs_run
+@pytest.mark.parametrize("name", FAST)
+def test_a_fast_fault_is_detected_by_a_named_cell(run: Run, name: str) -> None:
+    (control,) = (control for control in run.controls if control.control == name)
+    assert control.detected_by
+    trial = BY_NAME[name].trial
+    assert trial
+    assert all(line.startswith(trial.case) for line in control.detected_by)
+    assert all(line.endswith(("fail", "inconclusive")) for line in control.detected_by)

@@ -34,18 +34,6 @@ def test_the_table_is_large_and_names_are_unique() -> None:
     assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", FAST)
-def test_a_fast_fault_is_detected_by_a_named_cell(name: str) -> None:
-    (control,) = table.run([name])
-    assert control.detected_by, name
-    assert not control.needs
-    case = BY_NAME[name].trial
-    assert case
-    assert all(line.startswith(case.case) for line in control.detected_by)
-    assert all(line.endswith(("fail", "inconclusive")) for line in control.detected_by)
-
-
 @pytest.mark.parametrize("canaries", [counting_canaries, gate_canaries])
 def test_the_canaries_of_counting_history_and_gate_report_nothing(canaries: Any) -> None:
     assert canaries.canaries() == []

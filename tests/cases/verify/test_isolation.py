@@ -141,7 +141,7 @@ def test_a_lost_pool_worker_is_no_interruption(
 
     monkeypatch.setattr(matrix, "run", lost)
     with pytest.raises(SystemExit) as ended:
-        cli.main(["verify", case.path, "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
+        cli.main(["verify", case.path, "--faults", "none", "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
     said = capsys.readouterr().err
     assert ended.value.code == INCOMPLETE
     assert "a worker process was killed" in said
@@ -154,7 +154,15 @@ def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, fo
     (folder / "southwell").mkdir()
     for name in ("random.py", "json.py", "numpy.py", "ctypes.py", "southwell/__init__.py"):
         (folder / name).write_text("import os\nos._exit(9)\n", encoding="utf-8")
-    command = [str(Path(sys.executable).with_name("southwell")), "verify", case.path, "--codes", "yoo-shin"]
+    command = [
+        str(Path(sys.executable).with_name("southwell")),
+        "verify",
+        case.path,
+        "--faults",
+        "none",
+        "--codes",
+        "yoo-shin",
+    ]
     ended = subprocess.run(
         [*command, "--faults", "none", "--workers", "1"], capture_output=True, text=True, timeout=200
     )

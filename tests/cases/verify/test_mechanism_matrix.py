@@ -240,10 +240,9 @@ def test_what_makes_no_case_is_told(tmp_path: Path, old: str, new: str, match: s
 
 
 def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
+    options = ["--codes", "southwell-equation", "--faults", "none", "--workers", "1"]
     with pytest.raises(SystemExit) as ended:
-        cli.main(
-            ["verify", str(path), "--codes", "southwell-equation", "--out", str(tmp_path / "out"), "--workers", "1"]
-        )
+        cli.main(["verify", str(path), *options, "--out", str(tmp_path / "out")])
     return int(ended.value.code or 0), capsys.readouterr().out
 
 

@@ -258,7 +258,7 @@ def test_a_beam_with_a_wrong_sign_is_not_the_solid(change) -> None:
     assert np.abs(off).max() > 5e-3, off
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_difference_from_the_beam_falls_with_slenderness() -> None:
     """The sixth mode of half as slender a solid: the difference grows with the square of chord over length."""
     chord, thick = ((2.0 * a, 2.0 * b) for a, b in (CURVED.chord, CURVED.thickness))

@@ -143,7 +143,7 @@ def test_a_speed_without_a_steady_state_ends_a_verification_with_one_line(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     beam.write_text(BEAM.replace("10.0]", "1e5]"))
-    status, _, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
+    status, _, err = southwell(f"verify {beam} --codes exact-beam --faults none --out {tmp_path / 'out'}", capsys)
     assert status == 2
     assert [line for line in err.splitlines() if line.startswith("southwell: ")] == err.splitlines()[-1:]
     assert "100000 rad/s" in err
@@ -215,7 +215,9 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    status, shown, _ = southwell(f"verify {beam} --codes exact-beam,yoo-shin --out {out} --workers 1", capsys)
+    status, shown, _ = southwell(
+        f"verify {beam} --codes exact-beam,yoo-shin --faults none --out {out} --workers 1", capsys
+    )
     assert status == 0
     run = results.read(out / "results.jsonl")
     foreign = [c for c in run.cells if c.shares != "everything"]
@@ -241,7 +243,9 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
 def test_a_code_that_is_wrong_ends_with_status_1(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    status, shown, _ = southwell(f"verify {beam} --codes misbehaving:WELL_BEHAVED --out {tmp_path / 'out'}", capsys)
+    status, shown, _ = southwell(
+        f"verify {beam} --codes misbehaving:WELL_BEHAVED --faults none --out {tmp_path / 'out'}", capsys
+    )
     assert status == 1
     assert "4 ✘ fail" in shown.splitlines()[0]
 
@@ -249,7 +253,9 @@ def test_a_code_that_is_wrong_ends_with_status_1(
 @pytest.mark.slow
 @pytest.mark.usefixtures("importable")
 def test_a_code_that_is_absent_is_not_an_error(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    status, _, _ = southwell(f"verify {beam} --codes exact-beam,misbehaving:ABSENT --out {tmp_path / 'out'}", capsys)
+    status, _, _ = southwell(
+        f"verify {beam} --codes exact-beam,misbehaving:ABSENT --faults none --out {tmp_path / 'out'}", capsys
+    )
     assert status == 0
     assert "not installed: pip install manners" in (tmp_path / "out" / "report.md").read_text()
 
@@ -259,7 +265,7 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
     out = mark / "out"
     beam.write_text(BEAM + "[variants.a]\n[variants.b]\n[variants.c]\n[variants.d]\n")  # more to do than hands
     command = [sys.executable, "-m", "southwell", "verify", str(beam), "--workers", "2", "--out", str(out)]
-    command += ["--codes", "exact-beam,misbehaving:HANG"]
+    command += ["--codes", "exact-beam,misbehaving:HANG", "--faults", "none"]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2] / "support"), "SOUTHWELL_TEST": str(mark)}
     child = subprocess.Popen(
         command,
@@ -364,7 +370,7 @@ def test_interrupted_before_anything_is_finished_there_is_no_report(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(matrix, "run", interrupt)
-    status, out, err = southwell(f"verify {beam} --codes exact-beam --out {tmp_path / 'out'}", capsys)
+    status, out, err = southwell(f"verify {beam} --codes exact-beam --faults none --out {tmp_path / 'out'}", capsys)
     assert (status, out, err.count("\n")) == (130, "", 1)
     assert err.startswith("southwell: interrupted: no cell was finished; run the same `southwell verify` again")
     assert not (tmp_path / "out" / "report.md").exists()
