@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...references.protocol.interface import CodeError
-from ...references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from ...references.protocol.interface import CodeError, MechanismAdapter, MechanismModes
 from .asking import BrokenError, NotForItError, keep, named
 
 Array = NDArray[Any]

@@ -8,8 +8,8 @@ from msgspec import Meta, Struct
 
 from ...references.protocol import boundary, registry
 from ...references.protocol.boundary import NonsenseError
-from ...references.protocol.child import Reply, foreign_exception, serve
 from ...references.protocol.process import Failure, Limits, converse, one_line
+from ...references.protocol.wire import Reply, foreign_exception, serve
 from .suite import CHECKS, EVERY, Check, Outcome, judge
 
 LIMITS = Limits(seconds=600.0)

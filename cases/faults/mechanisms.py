@@ -10,9 +10,9 @@ from ...core.mechanism.description import Mechanism, inertia
 from ...core.spectrum import modal
 from ...core.steady import periodic
 from ...core.tree.linearization import Linearization
-from ...references.protocol.mechanism_interface import MechanismModes
-from ...references.protocol.mechanism_worker import Answer
+from ...references.protocol.interface import MechanismModes
 from ...references.protocol.process import Failure
+from ...references.protocol.worker import MechanismAnswer as Answer
 from ..verify import mechanism_columns
 from .seeding import Fault, Seam, Trial
 

@@ -20,10 +20,10 @@ from ...core.participation import numbered
 from ...core.spectrum.eigen import EigenError
 from ...core.tree.dynamics import reduced_mass
 from ...references.protocol.description import Description
-from ...references.protocol.interface import Independence
-from ...references.protocol.mechanism_interface import MechanismModes
-from ...references.protocol.mechanism_worker import Answer, answers
+from ...references.protocol.interface import Independence, MechanismModes
 from ...references.protocol.process import Failure, Limits
+from ...references.protocol.worker import MechanismAnswer as Answer
+from ...references.protocol.worker import mechanism_answers as answers
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError
 from ..input.mechanism_schema import ClosedForm

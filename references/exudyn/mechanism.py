@@ -20,9 +20,8 @@ from ...core.mechanism.description import Mechanism
 from ...core.rank import ranked
 from ...core.tree.spanning import compile_tree
 from ...core.tree.topology import Tree
-from ..protocol.damped import damped_modes
-from ..protocol.interface import CORE, CodeError, Independence
-from ..protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from ..protocol.interface import CORE, CodeError, Independence, MechanismAdapter, MechanismModes
+from ..protocol.quadratic import damped_modes
 from . import system as ex
 from .loops import System, own_coordinates, system, velocity
 
@@ -96,7 +95,7 @@ class ExudynMechanism(MechanismAdapter):
         return None
 
     def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
-        """All modes; see ``mechanism_interface.MechanismAdapter``.
+        """All modes; see ``interface.MechanismAdapter``.
 
         Raises:
             CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.

@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..protocol import install
-from ..protocol.interface import CodeError
+from ..protocol.interface import CodeError, extra
 
 Array = NDArray[np.float64]
 
-HINT = install.extra("codes")
+HINT = extra("codes")
 
 DISTRIBUTION = "exudyn"
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.mesh import Mesh
-from ..protocol import install
+from ..protocol.interface import extra
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
@@ -127,7 +127,7 @@ def _inertia(lump: Array) -> Any:
 CODE = JointChain(
     name="drake",
     title="Drake, chain of joints",
-    hint=install.extra("more-codes"),
+    hint=extra("more-codes"),
     independence=from_core("Drake"),
     distribution="drake",
     max_elements=80,  # each number in the recursion over 6·elements joints has 12·elements derivatives

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.mesh import Mesh
-from ..protocol import install
+from ..protocol.interface import extra
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
@@ -137,7 +137,7 @@ def build(chain: Mesh) -> MujocoChain:
 CODE = JointChain(
     name="mujoco",
     title="MuJoCo, chain of joints",
-    hint=install.extra("more-codes"),
+    hint=extra("more-codes"),
     independence=from_core("MuJoCo"),
     distribution="mujoco",
     max_elements=80,  # the time of the differences grows as its square, of the eigenproblem as its cube

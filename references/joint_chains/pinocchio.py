@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.element.mesh import Mesh
-from ..protocol import install
+from ..protocol.interface import extra
 from .joint_chain import JointChain, bodies, from_core, places, require_symmetries
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ def inertial(model: Any, data: Any, q: Array, omega: float) -> tuple[Array, Arra
 CODE = JointChain(
     name="pinocchio",
     title="Pinocchio, chain of joints",
-    hint=install.extra("codes"),
+    hint=extra("codes"),
     independence=from_core("Pinocchio"),
     distribution="pin",
     max_elements=60,  # its workspace has four arrays of (6·elements + 1)³ numbers, 1.5 GB for 60

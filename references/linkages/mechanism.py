@@ -5,7 +5,7 @@ built here (``spanning``) and may cut other joints. Pinocchio computes inertia f
 closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body. The equations of
 motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not
 by core's partition into independent and dependent coordinates. The curvature of the constraints under their reactions
-is analytical. The eigensolver is ``protocol.damped``, as for ``exudyn-loops``.
+is analytical. The eigensolver is ``protocol.quadratic``, as for ``exudyn-loops``.
 """
 
 from collections.abc import Mapping
@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import Mechanism
-from ..protocol import install
-from ..protocol.damped import damped_modes
-from ..protocol.interface import CodeError, Independence
-from ..protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from ..protocol.interface import CodeError, Independence, MechanismAdapter, MechanismModes, extra
+from ..protocol.quadratic import damped_modes
 from .plant import Plant, Tangent
 from .spanning import spanning
 
@@ -64,7 +62,7 @@ class PinocchioMechanism(MechanismAdapter):
     name = "pinocchio-loops"
     title = "Pinocchio, loops by null space"
     effects = ALL_EFFECTS
-    hint = install.extra("codes")
+    hint = extra("codes")
     distribution = "pin"
     independence = Independence(
         engine="Pinocchio",
@@ -91,7 +89,7 @@ class PinocchioMechanism(MechanismAdapter):
         return None
 
     def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
-        """All modes; see ``mechanism_interface.MechanismAdapter``.
+        """All modes; see ``interface.MechanismAdapter``.
 
         Raises:
             CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.

@@ -14,8 +14,7 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
-from .interface import DIGITS, MOTIONS, Motion
-from .mechanism_interface import MechanismModes
+from .interface import DIGITS, MOTIONS, MechanismModes, Motion
 from .process import Failure, one_line
 from .wire import decode_complex, decode_modes
 

@@ -19,12 +19,10 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
-from .child import Reply, failed, foreign_exception, serve
-from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, Motion, Shares, shares
-from .mechanism_interface import MechanismAdapter
+from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, MechanismAdapter, Motion, Shares, shares
 from .process import Failure, Limits, converse, one_line, raised
 from .registry import UnknownCodeError
-from .wire import decode_blade, encode
+from .wire import Reply, decode_blade, encode, failed, foreign_exception, serve
 
 TOGETHER = 2
 """Processes used at the same time."""
@@ -35,7 +33,7 @@ ASKING = Limits(seconds=120.0)
 
 @dataclass(frozen=True)
 class Description:
-    """A code, as its adapter declares it (``interface.BladeAdapter``, ``mechanism_interface.MechanismAdapter``).
+    """A code, as its adapter declares it (``interface.BladeAdapter``, ``interface.MechanismAdapter``).
 
     Attributes:
         asked: the name or import path given to ``describe``; ``worker.answers`` accepts it too.

@@ -1,4 +1,4 @@
-"""The interface of a code: the base class of every adapter.
+"""The interface of a code: the base classes of every adapter, for blades and for mechanisms.
 
 An adapter declares class attributes and implements ``unsupported`` and ``modes``. The base class adds the version and the
 refusal. Rules for every adapter:
@@ -10,13 +10,22 @@ refusal. Rules for every adapter:
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import metadata
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
+
+if TYPE_CHECKING:
+    from ...core.mechanism.description import Mechanism
+
+Complex = NDArray[np.complex128]
 
 Shares = Literal["nothing", "mechanical model", "discretisation", "undeclared"]
 
@@ -60,6 +69,11 @@ class Independence:
     rotation: str
     sections: str = "blade"
     eigensolver: str = "the adapters' own"
+
+
+def extra(name: str) -> str:
+    """The command that installs an extra of this package; from a checkout, until the package is published."""
+    return f"pip install '.[{name}]' in a checkout of Southwell"
 
 
 def shares(independence: Independence | None) -> Shares:
@@ -159,3 +173,55 @@ class BladeAdapter(Adapter):
                 f"elements: {elements}: {self.name} allows {self.max_elements}, since its time or memory grows as their "
                 "square or cube; use fewer"
             )
+
+
+@dataclass(frozen=True)
+class MechanismModes:
+    """A mechanism's modes about its steady state.
+
+    Attributes:
+        coordinates: names of the code's k coordinates; those of cut joints may be missing.
+        steady: (k,) their steady values, m or rad.
+        values: (m,) eigenvalues λ, 1/s, sorted by modulus: one of each conjugate pair, and the real ones.
+        shapes: (m, k) motion of the coordinates in each mode, any scale.
+        seconds: wall time; nan: not measured, as of an answer from the store.
+    """
+
+    coordinates: tuple[str, ...]
+    steady: NDArray[np.float64]
+    values: Complex
+    shapes: Complex
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        m, k = len(self.values), len(self.coordinates)
+        if self.shapes.shape != (m, k) or self.steady.shape != (k,):
+            raise ValueError(f"shapes: {self.shapes.shape}, steady: {self.steady.shape}, expected {(m, k)} and {(k,)}")
+        if not (np.isfinite(self.values).all() and np.isfinite(self.shapes).all() and np.isfinite(self.steady).all()):
+            raise ValueError("eigenvalues, shapes or steady state are not finite")
+
+
+class MechanismAdapter(Adapter):
+    """A source of a mechanism's modes. A code may be a ``BladeAdapter`` as well."""
+
+    @abstractmethod
+    def unsupported_mechanism(self, mechanism: "Mechanism") -> str | None:
+        """The reason, in one line, why this code cannot solve this mechanism; None if it can."""
+
+    @abstractmethod
+    def mechanism_modes(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
+        """All modes of a supported mechanism about the steady state near ``guess``.
+
+        Raises:
+            CodeError: no steady state, or no convergence.
+        """
+
+    def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
+        """The modes, or a refusal; arguments as for ``mechanism_modes``.
+
+        Raises:
+            CodeError: unsupported mechanism, no steady state, or no convergence.
+        """
+        if reason := self.unsupported_mechanism(mechanism):
+            raise CodeError(reason)
+        return self.mechanism_modes(mechanism, guess)

@@ -4,7 +4,9 @@
 ``q = φ exp(iωt)`` every ω is real. The problem is solved in inverse form, whose largest eigenvalues 1/ω belong to the
 lowest modes, so stiff and massless coordinates do not reduce the accuracy (their eigenvalues cluster at 1/ω = 0).
 
-Core has a different solver and never uses this one.
+``damped_modes`` solves the damped or unstable problem of a few coordinates.
+
+Core has different solvers and never uses these.
 """
 
 from collections.abc import Callable
@@ -208,3 +210,18 @@ def _unstable(K: Any) -> CodeError:
     full = K.toarray() if sp.issparse(K) else K  # only for the error message
     lowest = np.linalg.eigvalsh((full + full.T) / 2)[0]
     return CodeError(f"stiffness: lowest eigenvalue {lowest:.3g}: no stable steady state at this rotor speed; lower it")
+
+
+def damped_modes(M: Array, C: Array, K: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Eigenvalues (m,), 1/s, and vectors (n, m) of ``λ² M + λ C + K``, all (n, n).
+
+    Of each conjugate pair only the eigenvalue with positive imaginary part is returned; sorted by modulus.
+    """
+    n = len(M)
+    zero, one = np.zeros((n, n)), np.eye(n)
+    found = np.linalg.eig(np.block([[zero, one], [-np.linalg.solve(M, np.hstack([K, C]))]]))
+    values, z = (np.asarray(a, np.complex128) for a in found)
+    kept = values.imag >= -1e-12 * np.abs(values).max(initial=0.0)
+    values, x = values[kept], z[:n, kept]
+    order = np.argsort(np.abs(values), kind="stable")
+    return values[order], x[:, order]

@@ -11,8 +11,7 @@ from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any, TypedDict
 
-from .interface import BladeAdapter
-from .mechanism_interface import MechanismAdapter
+from .interface import BladeAdapter, MechanismAdapter
 from .process import Failure, one_line, raised
 
 GROUP = "southwell.codes"
@@ -119,7 +118,7 @@ def code(name: str) -> Any:
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {message}: {ADVICE}")
     adapter = getattr(holder, attribute)
     if not isinstance(adapter, BladeAdapter | MechanismAdapter):
-        bases = "southwell.references.protocol: interface.BladeAdapter or mechanism_interface.MechanismAdapter"
+        bases = "southwell.references.protocol: interface.BladeAdapter or interface.MechanismAdapter"
         raise UnknownCodeError(
             f"code: {path} is {type(adapter).__name__}, not an adapter: derive its class from {bases}"
         )

@@ -23,8 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import sources
-from .cache import cache
-from .private_folder import folder
+from .cache import cache, private_folder
 
 NAME = "answers.sqlite"
 
@@ -179,7 +178,7 @@ def users() -> Store:
         OSError: if its folder is not writable, or other users can write to it, or the file is not a store.
     """
     place = cache()
-    if not folder(place.parent, place.name):
+    if not private_folder(place.parent, place.name):
         raise OSError(f"{place}: not a folder that only this user can write to")
     return Store(path())
 

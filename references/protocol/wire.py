@@ -1,21 +1,34 @@
-"""Encode blades and modes as JSON for exchange between processes.
+"""What the processes exchange: blades, mechanisms and modes as JSON, and the side of the process that answers.
 
 Floats are preserved exactly (shortest round-trip representation); ``Infinity`` stands for a rigid strain. A complex
 array, which has thousands of numbers, is ``{"sizes": […], "base64": …}``: little-endian pairs of 64-bit floats.
 """
 
+import fcntl
+import json
+import os
+import sys
 from base64 import b64decode, b64encode
+from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any
+from typing import Any, TextIO
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
+from ...core.mechanism.description import Mechanism
 from ...core.modes import Modes
-from .mechanism_interface import MechanismModes
+from .interface import MechanismModes
+from .process import raised
+
+Reply = dict[str, Any]
 
 COMPLEX = np.dtype("<c16")
+
+HIGH = 200
+"""Lowest file descriptor of the pipe for answers; some codes write to descriptor 3."""
 
 
 def encode(value: Blade | Modes | MechanismModes) -> dict[str, Any]:
@@ -30,6 +43,16 @@ def decode_blade(data: dict[str, Any]) -> Blade:
         BladeError: if the blade is invalid.
     """
     return Blade(**data)
+
+
+def encode_mechanism(mechanism: Mechanism) -> Any:
+    """Encode a mechanism as dictionaries, lists, numbers and strings."""
+    return msgspec.to_builtins(mechanism, enc_hook=_plain)
+
+
+def decode_mechanism(data: Any) -> Mechanism:
+    """Decode a mechanism; the inverse of ``encode_mechanism``."""
+    return msgspec.convert(data, Mechanism, dec_hook=lambda _, value: np.array(value, dtype=float))
 
 
 def decode_modes(data: dict[str, Any]) -> Modes:
@@ -57,3 +80,42 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return value.item() if isinstance(value, np.generic) else value
+
+
+def serve(answer: Any) -> None:
+    """Write each reply that ``answer(request)`` yields as one line, immediately."""
+    request = json.loads(sys.stdin.buffer.readline())
+    with answers_pipe() as pipe:
+        pipe.write("\n")  # ready: the time limit of the first answer starts
+        pipe.flush()
+        replies: Iterator[Reply] = answer(request)
+        for number, reply in enumerate(replies):
+            pipe.write(_line({"run": number, **reply}) + "\n")
+            pipe.flush()
+
+
+def answers_pipe() -> TextIO:
+    """Reserve standard output for answers: redirect prints of the code to standard error, and its input to the null device."""
+    pipe = os.fdopen(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, HIGH), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    return pipe
+
+
+def failed(kind: str, reason: str) -> Reply:
+    """A reply that gives a reason instead of an answer."""
+    return {"kind": kind, "reason": reason}
+
+
+def foreign_exception(error: BaseException, where: str = "") -> Reply:
+    """The reply for an exception that a code must not raise, including ``SystemExit``."""
+    return failed("nonsense", f"{where}: {raised(error)}" if where else raised(error))
+
+
+def _line(reply: Reply) -> str:
+    try:
+        return json.dumps(reply)
+    except Exception as error:  # whatever a code puts into its answer
+        return json.dumps({"run": reply["run"], **foreign_exception(error, "its answer")})

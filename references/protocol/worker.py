@@ -1,28 +1,39 @@
-"""Run codes that solve blades in separate processes. ``process`` enforces the limits, ``boundary`` validates the answers.
+"""Run codes in separate processes. ``process`` enforces the limits, ``boundary`` validates the answers.
 
-The process reads one request ::
+The process reads one request, with a blade or with mechanisms ::
 
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "mechanisms": [{…}, …], "guess": {…}}
 
-imports the code, checks its version and ``unsupported``, and writes one line per run as soon as it is solved:
-``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished runs are kept.
+imports the code, checks its version and whether it declines, and writes one line per question as soon as it is solved:
+``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished answers are kept.
 """
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from math import nan
 from typing import Any, TypeVar
 
 from ...core.blade import Blade
+from ...core.mechanism.description import Mechanism
 from ...core.modes import Modes
 from . import boundary, registry, sources, store
 from .boundary import NonsenseError
-from .child import Reply, failed, foreign_exception, serve
-from .interface import BladeAdapter, CodeError
+from .interface import CodeError, MechanismModes
 from .process import Failure, Limits, converse, one_line
-from .wire import decode_blade, encode
+from .wire import (
+    Reply,
+    decode_blade,
+    decode_mechanism,
+    encode,
+    encode_mechanism,
+    failed,
+    foreign_exception,
+    serve,
+)
 
 T = TypeVar("T")
 
@@ -30,6 +41,8 @@ Run = tuple[float, int, int]
 """Rotor speed (rad/s), elements, number of modes."""
 
 Answer = Modes | Failure
+
+MechanismAnswer = MechanismModes | Failure
 
 
 def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, version: str = "") -> list[Answer]:
@@ -54,11 +67,25 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, versio
         omega, _, count = runs[number]
         return boundary.modes(data, omega, count)
 
-    return exchange(__name__, request, len(runs), limits, modes, name, version)
+    return _exchange(request, len(runs), limits, modes, name, version)
 
 
-def exchange(
-    module: str,
+def mechanism_answers(
+    name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits, version: str = ""
+) -> list[MechanismAnswer]:
+    """A code's modes of each mechanism about the steady state near ``guess``, or a failure, in the order of ``mechanisms``.
+
+    Other arguments and exceptions as for ``answers``.
+    """
+    fixed = {**registry.address(name), "guess": dict(guess)}
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return json.dumps({**fixed, "mechanisms": [encode_mechanism(mechanisms[k]) for k in numbers]}).encode()
+
+    return _exchange(request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data), name, version)
+
+
+def _exchange(
     request: Callable[[Sequence[int]], bytes],
     count: int,
     limits: Limits,
@@ -72,7 +99,6 @@ def exchange(
     that are not part of this package or of unknown version are not stored, as no digest covers them; nor are failures.
 
     Args:
-        module: reads the request in the process of the code.
         request: the request with the questions of these numbers.
         count: number of questions.
         limits: for each of them.
@@ -81,13 +107,13 @@ def exchange(
         version: its version; empty if unknown.
     """
     kept = store.opened() if limits.reuse and version and sources.bundled(code) else None
-    keys = [store.key(module, request([k]), code, version) for k in range(count)] if kept else []
+    keys = [store.key(request([k]), code, version) for k in range(count)] if kept else []
     out: dict[int, T | Failure] = {}
     for k, key in enumerate(keys):
         if kept and (answer := _stored(kept, key, made, k)):
             out[k] = answer
     asked = [k for k in range(count) if k not in out]
-    lines, ended = converse(module, request(asked), len(asked), limits) if asked else ([], NOTHING)
+    lines, ended = converse(__name__, request(asked), len(asked), limits) if asked else ([], NOTHING)
     for place, (k, line) in enumerate(zip(asked, lines, strict=False)):
         try:
             data = boundary.reply(line, place)
@@ -118,7 +144,7 @@ def _validated(made: Callable[[int, Any], T], number: int, data: Any) -> T | Fai
         return Failure("nonsense", one_line(error))
 
 
-def declined(code: Any, asked: str, question: object) -> Reply | None:
+def _declined(code: Any, asked: str, question: object) -> Reply | None:
     """A reply if the code is not installed, declines the problem, or raises an exception; None otherwise.
 
     Args:
@@ -140,30 +166,42 @@ def declined(code: Any, asked: str, question: object) -> Reply | None:
         return foreign_exception(error, "version()")
 
 
-def _solve(code: BladeAdapter, blade: Blade, run: Run) -> Reply:
-    omega, elements, count = run
+def _solved(method: str, expected: type, solve: Callable[[], Any]) -> Reply:
+    """The modes that ``solve`` returns, or a failure; whatever a code raises affects this question only."""
     try:
-        modes = code.solve(blade, omega, elements, count)
-        if not isinstance(modes, Modes):
-            return failed("nonsense", f"modes(): {type(modes).__name__}, not Modes")
+        modes = solve()
+        if not isinstance(modes, expected):
+            return failed("nonsense", f"{method}(): {type(modes).__name__}, not {expected.__name__}")
         return {"modes": encode(modes)}
     except CodeError as error:
         return failed("refused", one_line(error))
-    except BaseException as error:  # whatever the code raises affects this run only
+    except BaseException as error:
         return foreign_exception(error)
 
 
 def _answer(request: Any) -> Iterator[Reply]:
-    runs, code = request["runs"], registry.loaded(request)
+    code = registry.loaded(request)
     if isinstance(code, Failure):
-        yield from [failed(code.kind, code.reason)] * len(runs)
+        yield from [failed(code.kind, code.reason)] * len(request.get("runs") or request["mechanisms"])
+    elif "blade" in request:
+        yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"])
+    else:
+        yield from _mechanism_replies(code, map(decode_mechanism, request["mechanisms"]), request["guess"])
+
+
+def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run]) -> Iterator[Reply]:
+    if refusal := _declined(code, "unsupported", blade):
+        yield from [refusal] * len(runs)
         return
-    blade = decode_blade(request["blade"])
-    if no := declined(code, "unsupported", blade):
-        yield from [no] * len(runs)
-        return
-    for run in runs:
-        yield _solve(code, blade, run)
+    for omega, elements, count in runs:
+        yield _solved("modes", Modes, partial(code.solve, blade, omega, elements, count))
+
+
+def _mechanism_replies(code: Any, mechanisms: Iterable[Mechanism], guess: Mapping[str, float]) -> Iterator[Reply]:
+    for mechanism in mechanisms:
+        yield _declined(code, "unsupported_mechanism", mechanism) or _solved(
+            "mechanism_modes", MechanismModes, partial(code.solve_mechanism, mechanism, guess)
+        )
 
 
 def main() -> None:

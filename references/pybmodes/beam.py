@@ -29,8 +29,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from ...core.blade import Blade, clamped, coupled, sample, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol import install
-from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion
+from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion, extra
 from ..theories.grading import element_ends
 from .input_file import write
 
@@ -70,7 +69,7 @@ class PyBModes(BladeAdapter):
     levels = (SECTIONS, 2 * SECTIONS, 4 * SECTIONS)
     order = 2
     finest = 320  # the matrices are dense
-    hint = install.extra("codes")
+    hint = extra("codes")
     distribution = "pybmodes"
 
     def unsupported(self, blade: Blade) -> str | None:

@@ -15,9 +15,8 @@ from scipy.sparse import dia_array
 from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sample, straight
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
-from ..protocol import install
 from ..protocol.cache_last import cache_last
-from ..protocol.interface import BladeAdapter, CodeError, Independence
+from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
 from . import forms as forms
@@ -45,7 +44,7 @@ class ScikitFemBeam(BladeAdapter):
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4
-    hint = install.extra("codes")
+    hint = extra("codes")
     distribution = "scikit-fem"
 
     def unsupported(self, blade: Blade) -> str | None:

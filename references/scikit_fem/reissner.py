@@ -19,9 +19,8 @@ from scipy.sparse import linalg as spla
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
-from ..protocol import install
 from ..protocol.cache_last import cache_last
-from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
+from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence, extra
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, moments, steps
 from . import reissner_forms as forms
@@ -54,7 +53,7 @@ class ScikitFemReissner(BladeAdapter):
     order = 4
     finest = 96
     max_elements = 300  # the matrices are dense, with up to 12 rows per element
-    hint = install.extra("codes")
+    hint = extra("codes")
     distribution = "scikit-fem"
 
     def unsupported(self, blade: Blade) -> str | None:

@@ -22,16 +22,15 @@ from scipy.sparse.linalg import splu
 
 from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
-from ..protocol import install
 from ..protocol.cache_last import cache_last
-from ..protocol.interface import CodeError
+from ..protocol.interface import CodeError, extra
 from ..protocol.quadratic import gyroscopic_modes
 from .materials import Material, Orthotropic, rotated
 from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless
 
 Array = NDArray[np.float64]
 
-HINT = install.extra("codes")
+HINT = extra("codes")
 
 NEWTON = 12
 """Iterations of Newton's method."""

@@ -8,7 +8,7 @@ from typing import cast
 
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
-from ...references.protocol import install
+from ...references.protocol.interface import extra
 from . import colours, columns, document, print_nodes
 
 
@@ -26,7 +26,7 @@ def require() -> None:
         import typst  # noqa: F401
     except ImportError as error:
         raise PdfError(
-            f"--pdf: Typst cannot be used ({error}): {install.extra('pdf')}; or give --html and print that page from a browser"
+            f"--pdf: Typst cannot be used ({error}): {extra('pdf')}; or give --html and print that page from a browser"
         ) from error
 
 

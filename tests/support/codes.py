@@ -1,8 +1,7 @@
 """The registered codes of this package, by what they solve."""
 
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import BladeAdapter
-from southwell.references.protocol.mechanism_interface import MechanismAdapter
+from southwell.references.protocol.interface import BladeAdapter, MechanismAdapter
 
 BLADE_CODES = [name for name, path in registry.registered().items() if isinstance(registry.code(path), BladeAdapter)]
 MECHANISM_CODES = [

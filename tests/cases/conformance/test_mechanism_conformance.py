@@ -11,8 +11,7 @@ from southwell.cases.conformance.suite import CHECKS, EVERY, FOR_MECHANISMS, jud
 from southwell.cases.conformance.worker import outcomes
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import CodeError
-from southwell.references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from southwell.references.protocol.interface import CodeError, MechanismAdapter, MechanismModes
 from southwell.tests.support.codes import MECHANISM_CODES
 
 from ...reports.cli.test_cli import southwell

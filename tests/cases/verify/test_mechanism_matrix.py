@@ -17,9 +17,9 @@ from southwell.cases.verify.cells import Head
 from southwell.cases.verify.columns import columns as blade_columns
 from southwell.cases.verify.mechanism_columns import cells
 from southwell.core.effects import ALL_EFFECTS
-from southwell.references.protocol import boundary, mechanism_worker, registry, wire
+from southwell.references.protocol import boundary, registry, wire, worker
 from southwell.references.protocol.description import describe
-from southwell.references.protocol.mechanism_interface import MechanismAdapter, MechanismModes
+from southwell.references.protocol.interface import MechanismAdapter, MechanismModes
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
@@ -156,11 +156,10 @@ def test_codes_for_mechanisms_have_no_column_of_a_blade_unless_there_is_no_other
 
 def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
     m = library.mechanism("pitch-link").mechanism
-    request = mechanism_worker.Request("code", None, {"flap.rz": 0.1}, [m])
-    back = mechanism_worker.decode(json.loads(mechanism_worker.encode(request)))
-    for ours, theirs in zip(m.bodies, back.mechanisms[0].bodies, strict=True):
+    back = wire.decode_mechanism(json.loads(json.dumps(wire.encode_mechanism(m))))
+    for ours, theirs in zip(m.bodies, back.bodies, strict=True):
         np.testing.assert_array_equal(ours.inertia, theirs.inertia)
-    for ours, theirs in zip(m.joints, back.mechanisms[0].joints, strict=True):
+    for ours, theirs in zip(m.joints, back.joints, strict=True):
         np.testing.assert_array_equal(ours.at_parent, theirs.at_parent)
         assert (ours.name, ours.kind, ours.cut) == (theirs.name, theirs.kind, theirs.cut)
     modes = reference().modes
@@ -204,7 +203,7 @@ def test_a_code_for_mechanisms_without_the_base_class_is_refused() -> None:
 
 def test_a_code_that_raises_is_one_cells_outcome() -> None:
     m = library.mechanism("pitch-link").mechanism
-    (answer,) = mechanism_worker.answers(
+    (answer,) = worker.mechanism_answers(
         "southwell.tests.cases.verify.test_mechanism_matrix:CODE", [m], {}, Limits(60.0)
     )
     assert answer == Failure("nonsense", "RuntimeError: out of cheese")

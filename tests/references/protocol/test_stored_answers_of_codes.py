@@ -90,7 +90,6 @@ def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]
     [
         lambda m: m.setattr(sources, "package", lambda: "another source"),
         lambda m: m.setattr(platform, "machine", lambda: "another machine"),
-        lambda m: m.setattr(worker, "__name__", "another module"),
     ],
 )
 def test_source_and_machine_count(
