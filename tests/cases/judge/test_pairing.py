@@ -50,15 +50,15 @@ def test_weights_integrate_a_tapered_blade_and_its_tip_mass() -> None:
     assert weights(blade)[:, 2, 2].sum() == pytest.approx(8.0 + 2.0)
 
 
-def test_weights_turn_an_offset_mass_with_the_twist() -> None:
-    """Mass 1 kg/m, its centre at y = 0.5 m in section axes: rotation about x moves it along z; twisted by 90°, along −y."""
+def test_weights_turn_an_offset_mass_with_twist_and_pitch() -> None:
+    """Mass 1 kg/m, its centre at y = 0.5 m in section axes: rotation about x moves it along z; turned by 90°, along −y."""
     mass = section_mass([1.0, 1.0])
     mass[:, 2, 3] = mass[:, 3, 2] = 0.5
     mass[:, 0, 5] = mass[:, 5, 0] = -0.5
     mass[:, 3, 3] = mass[:, 5, 5] = 0.25
-    blade = replace(BLADE, mass=mass, twist=np.full(2, np.pi / 2))
-    total = weights(blade).sum(0)
-    np.testing.assert_allclose(total[3], [0.0, -3.0, 0.0, 1.5], atol=1e-12)
+    for twist, pitch in ((np.pi / 2, 0.0), (0.0, np.pi / 2)):
+        total = weights(replace(BLADE, mass=mass, twist=np.full(2, twist), pitch=pitch)).sum(0)
+        np.testing.assert_allclose(total[3], [0.0, -3.0, 0.0, 1.5], atol=1e-12)
 
 
 @given(st.permutations(range(4)), st.tuples(TURN, TURN, TURN, TURN))
@@ -138,6 +138,15 @@ def test_a_rival_is_mentioned() -> None:
     found = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0], WEIGHT)
     assert found[0].mode == 0
     assert found[0].note.startswith("ambiguous: MAC 0.61 with 12 rad/s")
+    assert found[0].ambiguous
+
+
+def test_a_rival_of_nearly_the_same_frequency_is_not_ambiguous() -> None:
+    """Two modes 0.1 % apart may be any combination of two shapes."""
+    rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
+    (partner,) = pair(REFERENCE, modes([10.0, 10.01], [REFERENCE.shapes[0], rival]), [0], WEIGHT)
+    assert partner.note
+    assert not partner.ambiguous
 
 
 def test_no_modes_no_partner() -> None:

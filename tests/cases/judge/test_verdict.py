@@ -47,8 +47,15 @@ def test_two_missing_effects_are_quantified_apart_and_together() -> None:
     assert "no prestretch: −2.00 %, no coriolis: −3.00 %, together −5.00 %" in reason
 
 
-def test_a_missing_effect_that_does_not_matter_is_a_plain_pass() -> None:
-    assert known(-9e-4, TARGET, [Effect("prestretch", -9e-4)]) == ("pass", "")
+def test_an_effect_of_a_few_per_cent_of_the_shift_is_named() -> None:
+    _, reason = known(-0.0123, TARGET, [Effect("prestretch", -0.012), Effect("rotary inertia", -3e-4)])
+    assert "no rotary inertia" in reason
+    assert "together" in reason
+
+
+@pytest.mark.parametrize(("shift", "verdict"), [(-9e-4, "pass"), (-1.1e-3, "known difference")])
+def test_a_missing_effect_is_a_plain_pass_up_to_the_target(shift: float, verdict: str) -> None:
+    assert known(shift, TARGET, [Effect("prestretch", shift)])[0] == verdict
 
 
 def test_a_mode_that_only_exists_without_the_effect_has_a_cause_without_a_size() -> None:
@@ -66,6 +73,14 @@ def test_a_wide_but_true_bracket_is_an_estimate_and_a_wrong_one_fails() -> None:
     assert bracketed(1e-5, None, TARGET)[0] == "inconclusive"
 
 
+def test_a_bracket_is_relative_to_the_codes_own_answer() -> None:
+    """Answers of 0.5 ± 100 % and of 2 ± 50 % reach the reference of 1; a little less does not."""
+    assert bracketed(-0.5, 1.01, TARGET)[0] == "estimate"
+    assert bracketed(-0.5, 0.99, TARGET)[0] == "fail"
+    assert bracketed(1.0, 0.51, TARGET)[0] == "estimate"
+    assert bracketed(1.0, 0.49, TARGET)[0] == "fail"
+
+
 def test_a_coarse_discretisation_is_excused_only_by_its_own_refinement() -> None:
     def verdict(difference: float, limit: float | None, remainder: float = 0.0) -> tuple[str, str]:
         return discretised(difference, 1e-7, TARGET, remainder, limit, "50 elements")
@@ -77,6 +92,11 @@ def test_a_coarse_discretisation_is_excused_only_by_its_own_refinement() -> None
     assert verdict(-4e-4, None) == ("pass", "")
     assert verdict(-1.3e-3, 2e-7, 9e-4)[0] == "known difference"  # a printed number, nearly core's so discretised
     assert verdict(-1.3e-3, 2e-7, 1.1e-3)[0] == "fail"  # and one that is not
+
+
+def test_the_uncertainty_counts_where_refinements_should_lead_to_the_reference() -> None:
+    assert discretised(-1.3e-3, 2e-4, TARGET, 0.0, 7e-4, "50 elements")[0] == "known difference"
+    assert discretised(-1.3e-3, 4e-4, TARGET, 0.0, 7e-4, "50 elements")[0] == "fail"
 
 
 @pytest.mark.parametrize(

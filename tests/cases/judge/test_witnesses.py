@@ -1,12 +1,13 @@
 """Who counts as a witness: by what it shares with core, once for each group, and only if it agrees throughout."""
 
 import re
+from dataclasses import replace
 from io import StringIO
 
 import pytest
 from rich.console import Console
 
-from southwell.cases.judge.results import Cell, Origin, Run
+from southwell.cases.judge.results import Cell, Origin, Run, Setting
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification import terminal
@@ -84,6 +85,25 @@ def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str
     found = witnesses(run(cell("alpha"), silent), "beam")
     assert [(w.standing, w.fine, w.answers) for w in found] == [(standing, standing, 1)]
     assert groups(found) == []
+
+
+def test_a_disagreement_outweighs_an_open_answer() -> None:
+    wrong = cell("alpha", mode=2, difference=2e-3, verdict="fail")
+    unknown = cell("alpha", mode=3, uncertainty=None, verdict="inconclusive")
+    (witness,) = witnesses(run(cell("alpha"), unknown, wrong), "beam")
+    assert witness.standing == "disagrees"
+
+
+def test_a_measurement_is_no_witness() -> None:
+    assert witnesses(run(cell("rig", role="measured", verdict="measured")), "beam") == []
+
+
+def test_a_table_with_one_wider_target_is_coarse() -> None:
+    """The case's target is 0.1 %; one number of the table supports only 2 %."""
+    table = [cell("author2000/a", role="table", version="", mode=k, target=t) for k, t in ((1, 1e-3), (2, 2e-2))]
+    setting = Setting("beam", "", "", "", "rad_s", target=1e-3)
+    (witness,) = witnesses(replace(run(*table), settings=(setting,)), "beam")
+    assert (witness.kind, witness.target) == ("coarse source", 2e-2)
 
 
 def test_who_gave_no_number_is_no_witness() -> None:

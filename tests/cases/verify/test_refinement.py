@@ -1,6 +1,7 @@
 """How far a solver is refined, with solvers whose error is known: ``f = f∞ (1 + c n⁻ᵖ)``."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -95,3 +96,28 @@ def test_an_unknown_order_doubles_the_elements() -> None:
     wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
     solve(ask, [1.0], Refining((10, 20, 30), ORDER, 60), 1, lambda *_: wanted)
     assert [n for _, n, _ in asked] == [10, 20, 30, 60]
+
+
+def test_a_level_with_as_many_elements_as_the_one_before_is_a_failure() -> None:
+    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
+    (found,) = solve(
+        lambda runs: [of(w, min(n, 20), 0.0) for w, n, _ in runs],
+        [1.0],
+        Refining((10, 20, 30), ORDER, 60),
+        1,
+        lambda *_: wanted,
+    )
+    assert found.failure
+    assert found.failure.kind == "nonsense"
+    assert [answer.elements for answer in found.answers] == [10, 20]
+
+
+def test_the_uncertainty_that_a_code_states_is_added_to_that_of_refinement() -> None:
+    answers = [of(1.0, n, n**-2.0) for n in (10, 20, 40)]
+    rounded = [*answers[:-1], replace(answers[-1], uncertainty=np.array([1e-3]))]
+    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
+    (alone,), (with_rounding,) = (follow(a, wanted, ORDER) for a in (answers, rounded))
+    assert alone.estimate
+    assert with_rounding.estimate
+    assert alone.estimate.uncertainty
+    assert with_rounding.estimate.uncertainty == pytest.approx(alone.estimate.uncertainty + 1e-3)
