@@ -11,11 +11,10 @@ from ..steady.equilibrium import null_motions, steady
 from ..tree.closure import assemble
 from ..tree.kinematics import kinematics
 from ..tree.linearization import Linearization, about
-from ..tree.partition import freedom, partition
+from ..tree.partition import freedom
 from ..tree.scales import coordinate_units, length_at
 from ..tree.spanning import compile_tree
-from ..tree.state import State, driven_by_loops
-from ..tree.topology import Tree
+from ..tree.state import driven_by_loops
 from . import eigen
 
 _NUDGE = 1e-3  # distance of the nearby configuration, rad or fraction of the mechanism's length
@@ -46,8 +45,8 @@ def linearize(
     tree = compile_tree(at_time(mechanism, time))
     try:
         state = steady(tree, guess)
-        _check_regular(tree, state)
         linear = about(tree, state, independent)
+        _check_regular(linear)
         if all(m.law is None for m in mechanism.motions):
             periodic.check(linear)
     except NotFiniteError as error:
@@ -55,11 +54,11 @@ def linearize(
     return linear
 
 
-def _check_regular(tree: Tree, state: State) -> None:
+def _check_regular(linear: Linearization) -> None:
     """Check that the number of degrees of freedom is the same in a nearby assembled configuration."""
+    tree, state, here = linear.tree, linear.state, linear.partition
     if not tree.welds:
         return
-    here = partition(tree, state.kinematics)
     units = coordinate_units(tree, length_at(tree, state.kinematics.poses))
     count = len(here.independent)
     nudge = here.R @ (units[here.independent] * np.random.default_rng(1921).normal(size=count))
@@ -90,7 +89,7 @@ def modes(linear: Linearization, count: int | None = None) -> eigen.Eigen | eige
             f"coordinate {linear.names[int(idle.argmax())]!r}: it has no mass, stiffness or damping: give its body mass, or "
             "prescribe its motion"
         )
-    rigid = null_motions(linear.tree, linear.state, linear.names)
+    rigid = null_motions(linear)
     if not _conservative(linear):
         return eigen.damped(M, C, K, count, rigid)
     C, K = 0.5 * (C - C.T), 0.5 * (K + K.T)

@@ -56,7 +56,8 @@ class Balance:
     @cached_property
     def tangent(self) -> "Tangent":
         """The derivative of the reduced forces."""
-        return tangent_at(self.tree, self)
+        check_finite(self.reduced)
+        return tangent_at(self.tree, self.state, self.part)
 
     @cached_property
     def step(self) -> Array:
@@ -170,7 +171,9 @@ def balance_at(tree: Tree, q: Array, dead: Array | float = 0.0, independent: tup
     forces = dynamics.unbalanced(tree, state.kinematics, state.cartesian, q, state.v)[free] - dead
     if tree.welds:
         reactions = -transposed_jacobian(tree, state, free).solve(forces).reshape(-1, 6)
-        state = replace(state, multipliers=reactions, cartesian=dynamics.cartesian(tree, state.kinematics, reactions))
+        state = replace(
+            state, multipliers=reactions, cartesian=dynamics.with_reactions(tree, state.cartesian, reactions)
+        )
     part = partition.partition(tree, state.kinematics, independent)
     return Balance(tree, state, part, forces, part.onto(forces), dead)
 
@@ -182,9 +185,9 @@ def transposed_jacobian(tree: Tree, state: State, free: NDArray[np.intp]) -> Ran
     return ranked(J.T, 1.0 / coordinate_units(tree, length)[free], 1.0 / weld_units(tree, length))
 
 
-def tangent_at(tree: Tree, here: Balance) -> Tangent:
+def tangent_at(tree: Tree, state: State, part: partition.Partition) -> Tangent:
     """K̂ = Rᵀ (K R + C δv/δq + M δv̇/δq): in moving loops, rates and accelerations change with q."""
-    state, part, k = here.state, here.part, here.state.kinematics
+    k = state.kinematics
     R, K = part.R, part.among_free(state.tangent[2])
     by_independent = K @ R if len(part.dependent) else K
     if driven_by_loops(tree, state).any():
@@ -197,25 +200,23 @@ def tangent_at(tree: Tree, here: Balance) -> Tangent:
         M, C = (part.among_free(a) for a in state.tangent[:2])
         by_independent = by_independent + C @ R1 + M @ R2
     units = coordinate_units(tree, length_at(tree, k.poses))
-    rounding, unit = rounding_at(tree, here), units[part.independent]
+    rounding, unit = rounding_at(tree, state, part), units[part.independent]
     least = (replace(part, R=np.abs(R)).onto(_forces_of_unit_strain(tree, state, units)[part.free]) + rounding) / unit
     reduced = part.onto(by_independent)
     scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
     check_finite(scale)
-    check_finite(here.reduced)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = reduced / root[:, None] / root
     error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(least, 0.0)) / root
     return Tangent(scaled, factored(scaled, error), root**2, rounding, units[part.free])
 
 
-def rounding_at(tree: Tree, here: Balance) -> Array:
+def rounding_at(tree: Tree, state: State, part: partition.Partition) -> Array:
     """(i,) size of the forces of which the reduced ones are the sum.
 
     R is rounded relative to its norm, not to each entry: where loops transmit forces, Rᵀ times their reactions vanishes only to
     rounding.
     """
-    state, part = here.state, here.part
     length = length_at(tree, state.kinematics.poses)
     units = coordinate_units(tree, length)[part.free]
     stiffness = np.abs(part.among_free(state.tangent[2]))

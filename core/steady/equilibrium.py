@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from ..mechanism.description import MechanismError
 from ..tree import partition
 from ..tree.closure import ASSEMBLED, CLOSED, MAX_STEP, assemble, close_loops
+from ..tree.linearization import Linearization
 from ..tree.scales import coordinate_units, length_at
 from ..tree.state import ContradictionError, State, check_rates
 from ..tree.strained import out_of_range
 from ..tree.topology import Tree
-from .balance import Balance, balance_at
+from .balance import Balance, balance_at, tangent_at
 from .continuation import follow
 from .newton import newton
 from .relaxation import relaxed
@@ -128,9 +129,9 @@ def _without_guess(tree: Tree, q: Array) -> str:
     return f"; without a guess, a steady state was found at {values}"
 
 
-def null_motions(tree: Tree, state: State, independent: tuple[str, ...]) -> tuple[Array, Array]:
+def null_motions(linear: Linearization) -> tuple[Array, Array]:
     """Bases (i, d) of the null space of K̂, over the independent coordinates, and of its left null space."""
-    tangent = balance_at(tree, state.q, independent=independent).tangent
+    tangent = tangent_at(linear.tree, linear.state, linear.partition)
     root = np.sqrt(tangent.scale)[:, None]
     return tangent.K.null / root, tangent.K.left_null / root
 

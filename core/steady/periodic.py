@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.description import MechanismError
 from ..mechanism.motion import Motion
+from ..tree import dynamics
 from ..tree.linearization import Linearization, about
 from ..tree.scales import coordinate_units, length_at
 from ..tree.state import driven_by_loops
@@ -65,11 +66,18 @@ def _largest_change(
     """The largest relative change as some motions (all by default) advance, and the name of what changes."""
     units = dict(zip(linear.tree.coordinates, _units(linear), strict=True))
     rates = [(abs(m.rate) / units[m.coordinate], abs(m.acceleration) / units[m.coordinate]) for m in moving]
-    times = [advance / (rate + np.sqrt(acceleration)) for rate, acceleration in rates for advance in ADVANCES]
+    times = {advance / (rate + np.sqrt(acceleration)) for rate, acceleration in rates for advance in ADVANCES}
     omega = max(max(rate, np.sqrt(acceleration)) for rate, acceleration in rates)
-    reduced = balance_at(linear.tree, linear.state.q, independent=linear.names).reduced
+    reduced = _reduced(linear)
     changes = (_change(linear, reduced, advancing or moving, time, omega) for time in times)
     return max(changes, key=lambda change: change[0])
+
+
+def _reduced(linear: Linearization) -> Array:
+    """(i,) unbalanced forces along the independent coordinates."""
+    state = linear.state
+    forces = dynamics.unbalanced(linear.tree, state.kinematics, state.cartesian, state.q, state.v)
+    return linear.partition.onto(forces[linear.partition.free])
 
 
 def _units(linear: Linearization) -> Array:
@@ -95,10 +103,10 @@ def _change(
     )
     try:
         later = residual_closed_by(tree, q, follow, linear.names)
-        then = about(tree, later.state, linear.names)
+        then = about(tree, later.state, p=later.part)
     except MechanismError:  # a loop that cannot follow, or goes through a singularity
         return np.inf, "a loop"
-    size = rounding_at(tree, later)
+    size = rounding_at(tree, later.state, later.part)
     unbalanced = later.reduced - reduced
     scale = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
     root = np.sqrt(np.maximum(scale, 1e-6 * size / _units(linear)[linear.partition.independent]))

@@ -5,6 +5,7 @@ forces leave unbalanced, and its variation ``M ξ̈ + C ξ̇ + K ξ`` with the s
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,17 +41,17 @@ class Cartesian:
     ends: NDArray[np.intp]
     stiffness: Array
 
-    @property
+    @cached_property
     def M(self) -> csr_array:
         """(6 (b + m), 6 (b + m)), sparse."""
         return self._sparse(0)
 
-    @property
+    @cached_property
     def C(self) -> csr_array:
         """(6 (b + m), 6 (b + m)), sparse."""
         return self._sparse(1)
 
-    @property
+    @cached_property
     def K(self) -> csr_array:
         """(6 (b + m), 6 (b + m)), sparse."""
         return self._sparse(2)
@@ -97,13 +98,8 @@ class _Sum:
 _NO_ENDS, _NO_SPRINGS = (np.zeros((0, 2), dtype=np.intp),), (np.zeros((0, 6, 6)),)
 
 
-def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Cartesian:
-    """Gather inertia, gravity, springs, beams and the reactions of cut joints.
-
-    Args:
-        tree: the mechanism.
-        k: its kinematics.
-        multipliers: (w, 6) wrench of each weld on the body, reversed on the copy; zero by default.
+def cartesian(tree: Tree, k: Kinematics) -> Cartesian:
+    """Gather inertia, gravity, springs, beams and loads, without the reactions of cut joints.
 
     Raises:
         MechanismError: a beam with mass whose ends do not move together in the steady state.
@@ -116,10 +112,26 @@ def cartesian(tree: Tree, k: Kinematics, multipliers: Array | None = None) -> Ca
         _load(tree, k, load, out)
     for batch in tree.batches:
         _beams(tree, k, batch, out)
-    if multipliers is not None:
-        for (body, copy), w in zip(tree.welds, multipliers, strict=True):
-            _weld(body, copy, w, out)
     return out.total()
+
+
+def with_reactions(tree: Tree, c: Cartesian, multipliers: Array) -> Cartesian:
+    """The same with the reactions of cut joints: ``multipliers`` (w, 6), wrench of each weld on the body, reversed on the copy.
+
+    They follow the bodies; only the multipliers vary.
+    """
+    out = _Sum(len(c.g))
+    for weld, w in zip(tree.welds, multipliers, strict=True):
+        out.add(np.array([weld[::-1]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
+    reactions = out.total()
+    return Cartesian(
+        c.g + reactions.g,
+        c.size + reactions.size,
+        *(
+            np.concatenate([getattr(part, name) for part in (c, reactions)])
+            for name in ("row", "column", "blocks", "ends", "stiffness")
+        ),
+    )
 
 
 def inertias(tree: Tree, k: Kinematics) -> Array:
@@ -246,11 +258,6 @@ def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> 
             f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, but its ends do not move together steadily; lump its mass, "
             "or fix the motion between its ends"
         )
-
-
-def _weld(body: int, copy: int, w: Array, out: _Sum) -> None:
-    """Equal and opposite reactions w (6,) of a weld, which follow the bodies; only the multipliers vary."""
-    out.add(np.array([[copy, body]]), _between(w, np.zeros((6, 6)), np.zeros((6, 6))))
 
 
 def reduced_mass(k: Kinematics, c: Cartesian) -> Array:

@@ -33,10 +33,12 @@ class Linearization:
         return tuple(self.tree.coordinates[j] for j in self.partition.independent)
 
 
-def about(tree: Tree, state: State, independent: tuple[str, ...] | None = None) -> Linearization:
-    """Linearise about a given state; ``independent``: names to use as q_I, chosen numerically if not given."""
+def about(
+    tree: Tree, state: State, independent: tuple[str, ...] | None = None, p: Partition | None = None
+) -> Linearization:
+    """Linearise about a given state; ``independent``: names to use as q_I, chosen numerically if not given; or a partition."""
     M, C, K = state.tangent
-    p = partition(tree, state.kinematics, independent)
+    p = p or partition(tree, state.kinematics, independent)
     M, C, K = (p.among_free(a) for a in (M, C, K))
     if not len(p.dependent):  # R is the unit matrix
         return Linearization(tree, state, p, M, C, K)

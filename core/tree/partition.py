@@ -106,19 +106,18 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     dependent, chosen = pivots(scaled)
     rank = len(dependent)
     if independent is not None:
-        wanted = [tree.coordinate(name) for name in independent]
-        chosen = np.flatnonzero(np.isin(free, wanted))
+        chosen = np.flatnonzero(np.isin(free, [tree.coordinate(name) for name in independent]))
         dependent = np.setdiff1d(np.arange(len(free)), chosen)
-        if len(chosen) != len(free) - rank or ranked(scaled[:, dependent]).rank < rank:
-            raise MechanismError(
-                f"independent: {', '.join(independent)} do not determine the others: give {len(free) - rank} that are free "
-                "and not tied to each other by a loop, or leave the choice to the solver"
-            )
+    pinv = ranked(J[:, dependent], equations, units[dependent])
+    if independent is not None and (len(chosen) != len(free) - rank or pinv.rank < rank):
+        raise MechanismError(
+            f"independent: {', '.join(independent)} do not determine the others: give {len(free) - rank} that are free "
+            "and not tied to each other by a loop, or leave the choice to the solver"
+        )
     R = np.zeros((len(free), len(chosen)))
     R[chosen, np.arange(len(chosen))] = 1.0
     R1, R2 = np.zeros_like(R), np.zeros_like(R)
     if rank:
-        pinv = ranked(J[:, dependent], equations, units[dependent])
         J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
         # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14), and δq = R δq_I (eq. 15)
         R[dependent] = -pinv.solve(J[:, chosen])
